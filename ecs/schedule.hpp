@@ -1,0 +1,77 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace torsion {
+
+/// One system of a schedule. `run` is a free function over the tables that Context reaches.
+template <class Context>
+struct System {
+  std::string_view name;
+  std::string_view purpose;                 // one line for `torsion check`
+  std::string_view needs;                   // what a scene must have for it, in words
+  bool (*needed)(const Context&) = nullptr; // nullptr: always
+  void (*run)(Context&) = nullptr;
+  std::uint32_t every = 1;                  // runs in steps whose number is a multiple of this
+};
+
+/// Runs systems in the order given, each at its own rate, and times each. What no entity needs is left out at
+/// construction: it costs nothing, and `is_on` says so.
+template <class Context>
+class Schedule {
+ public:
+  struct Timing {
+    std::uint64_t runs = 0;
+    double total_s = 0.0;
+    double longest_s = 0.0;
+  };
+  struct Row {
+    System<Context> system;
+    bool on = true;
+    Timing timing;
+  };
+
+  Schedule() = default;
+
+  /// Decides once, from the tables as loaded, which systems run. Load time only.
+  Schedule(std::vector<System<Context>> systems, const Context& context) {
+    rows_.reserve(systems.size());
+    for (const System<Context>& system : systems) {
+      rows_.push_back({system, system.needed == nullptr || system.needed(context), Timing{}});
+    }
+  }
+
+  /// One step: every system that is on and due, in order. Allocates nothing.
+  void run(Context& context, std::uint64_t step) {
+    for (Row& row : rows_) {
+      if (!row.on || step % row.system.every != 0) {
+        continue;
+      }
+      const auto start = std::chrono::steady_clock::now();
+      row.system.run(context);
+      const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      row.timing.runs += 1;
+      row.timing.total_s += elapsed;
+      row.timing.longest_s = elapsed > row.timing.longest_s ? elapsed : row.timing.longest_s;
+    }
+  }
+
+  [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
+
+  [[nodiscard]] bool is_on(std::string_view name) const {
+    for (const Row& row : rows_) {
+      if (row.system.name == name) {
+        return row.on;
+      }
+    }
+    return false;
+  }
+
+ private:
+  std::vector<Row> rows_;
+};
+
+}  // namespace torsion

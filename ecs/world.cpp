@@ -1,0 +1,31 @@
+#include "ecs/world.hpp"
+
+namespace torsion {
+
+void World::reserve(const Capacities& capacities, const Settings& chosen) {
+  settings.reserve(1);
+  parts.reserve(capacities.parts);
+  fields.reserve(capacities.fields);
+  field_nodes.reserve(capacities.field_nodes);
+  field_bricks.reserve(capacities.field_bricks);
+  fixed_volumes.reserve(capacities.fixed_volumes);
+  samples.reserve(capacities.samples);
+  balls.reserve(capacities.balls);
+  sections.reserve(capacities.anchors * kBeamStations);
+  clock.reserve(1);
+  bodies.reserve(capacities.bodies);
+  tools.reserve(capacities.tools);
+  regions.reserve(capacities.regions);
+  cells.reserve(capacities.regions * chosen.grid_side * chosen.grid_side);
+  anchors.reserve(capacities.anchors);
+  body_handles.reserve(capacities.bodies);
+  tool_handles.reserve(capacities.tools);
+  region_handles.reserve(capacities.regions);
+
+  settings.append();
+  settings.at<Settings>(0) = chosen;
+  clock.append();
+  clock.at<Clock>(0) = Clock{};
+}
+
+}  // namespace torsion

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "ecs/scene_description.hpp"
+#include "ecs/result.hpp"
+#include "ecs/schedule.hpp"
+#include "ecs/world.hpp"
+
+namespace torsion {
+
+struct Scratch;  // systems/scratch.hpp: memory that systems share within one step
+
+/// What a system of the physics step may touch.
+struct StepContext {
+  World& world;
+  std::span<const Pose> tool_poses;  // (tools) the tool frames in the world at the end of this step
+  Scratch& scratch;
+};
+
+/// The systems of one step in the order of the paper's Fig. 4.
+std::vector<System<StepContext>> step_systems();
+
+/// A world with the schedule that moves it and the memory that the schedule needs.
+struct Simulation {
+  Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+  ~Simulation();
+
+  World world;
+  std::unique_ptr<Scratch> scratch;
+  Schedule<StepContext> schedule;
+};
+
+/// What may be chosen for a run besides what the scene says; kAuto: as the scene says.
+struct PrepareOptions {
+  ContactModel contact_model = ContactModel::kAuto;
+  BodyModel body_model = BodyModel::kAuto;
+  double rate = 1000.0;              // Hz
+  Settings settings;
+  bool use_cache = true;             // distance fields and beam sections from the user's cache folder
+};
+
+/// Load-time work: distance fields, surface samples, anchors, beam sections; then all tables, filled.
+/// Bodies and tools get the rows that they have in `scene`. Fails with a message that names the node.
+Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options);
+
+/// One step of world.clock's dt: reads one pose a tool, writes every table that changes. Never throws, never
+/// allocates; what went wrong is in Clock::faults. @pre tool_poses.size() == tools
+void step(Simulation& simulation, std::span<const Pose> tool_poses);
+
+}  // namespace torsion

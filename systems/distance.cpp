@@ -1,0 +1,159 @@
+#include "systems/distance.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "systems/distance_field.hpp"
+#include "systems/distance_shapes.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr std::size_t kBlock =
+    32;  // points: 8 columns of doubles in 2 KiB of the first-level cache
+
+struct Block {
+  std::array<double, kBlock> x;
+  std::array<double, kBlock> y;
+  std::array<double, kBlock> z;
+  std::array<double, kBlock> value;
+};
+
+struct Placement {
+  glm::dmat3 rotation;  // part to owner
+  glm::dvec3 position;  // m, owner's frame
+  bool turned;
+};
+
+Placement placement_of(const Pose& pose) {
+  const glm::dquat& q = pose.rotation;
+  return {glm::mat3_cast(q), pose.position, q.x != 0.0 || q.y != 0.0 || q.z != 0.0};
+}
+
+/// Calls f with the distance function of `part` in its own frame.
+template <class F>
+void with_shape(const World& world, const ShapePart& part, F&& f) {
+  const glm::dvec3& half = part.half_extent;
+  switch (part.kind) {
+    case ShapeKind::kSphere:
+      return f(SphereDistance{half.x});
+    case ShapeKind::kEllipsoid:
+      return f(EllipsoidDistance{half});
+    case ShapeKind::kBox:
+      return f(BoxDistance{half});
+    case ShapeKind::kCylinder:
+      return f(CylinderDistance{half.x, half.y});
+    case ShapeKind::kCapsule:
+      return f(CapsuleDistance{half.x, larger(half.y - half.x, 0.0)});
+    case ShapeKind::kMesh:
+      return f(FieldDistance(world, part.field));
+  }
+}
+
+/// Replaces x, y, z of `block` by the gradient.
+template <class Shape>
+void evaluate_block(const Shape& shape, Block& block, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Distance distance = shape(block.x[i], block.y[i], block.z[i]);
+    block.value[i] = distance.value;
+    block.x[i] = distance.gradient.x;
+    block.y[i] = distance.gradient.y;
+    block.z[i] = distance.gradient.z;
+  }
+}
+
+void to_part_frame(const Placement& placement, std::span<const glm::dvec3> points, Block& block) {
+  const glm::dvec3 shift = placement.position;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    block.x[i] = points[i].x - shift.x;
+    block.y[i] = points[i].y - shift.y;
+    block.z[i] = points[i].z - shift.z;
+  }
+  if (!placement.turned) {
+    return;
+  }
+  const glm::dmat3& r = placement.rotation;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double x = block.x[i];
+    const double y = block.y[i];
+    const double z = block.z[i];
+    block.x[i] = r[0].x * x + r[0].y * y + r[0].z * z;
+    block.y[i] = r[1].x * x + r[1].y * y + r[1].z * z;
+    block.z[i] = r[2].x * x + r[2].y * y + r[2].z * z;
+  }
+}
+
+void gradients_to_owner_frame(const Placement& placement, std::size_t count, Block& block) {
+  if (!placement.turned) {
+    return;
+  }
+  const glm::dmat3& r = placement.rotation;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = block.x[i];
+    const double y = block.y[i];
+    const double z = block.z[i];
+    block.x[i] = r[0].x * x + r[1].x * y + r[2].x * z;
+    block.y[i] = r[0].y * x + r[1].y * y + r[2].y * z;
+    block.z[i] = r[0].z * x + r[1].z * y + r[2].z * z;
+  }
+}
+
+void store(const Block& block, bool first_part, std::span<Distance> distances) {
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    if (first_part || block.value[i] < distances[i].value) {
+      distances[i] = {block.value[i], {block.x[i], block.y[i], block.z[i]}};
+    }
+  }
+}
+
+}  // namespace
+
+Distance signed_distance(const World& world, Range parts, const glm::dvec3& point) {
+  Distance nearest{std::numeric_limits<double>::infinity(), glm::dvec3(0.0)};
+  bool first_part = true;
+  for (const ShapePart& part : world.parts.rows<ShapePart>(parts)) {
+    const Placement placement = placement_of(part.pose);
+    glm::dvec3 local = point - placement.position;
+    if (placement.turned) {
+      local = local * placement.rotation;
+    }
+    with_shape(world, part, [&](const auto& shape) {
+      const Distance distance = shape(local.x, local.y, local.z);
+      if (first_part || distance.value < nearest.value) {
+        nearest = {distance.value,
+                   placement.turned ? placement.rotation * distance.gradient : distance.gradient};
+      }
+    });
+    first_part = false;
+  }
+  return nearest;
+}
+
+void signed_distances(const World& world, Range parts, std::span<const glm::dvec3> points,
+                      std::span<Distance> distances) {
+  TORSION_ASSERT(points.size() == distances.size());
+  if (parts.count == 0) {
+    std::fill(distances.begin(), distances.end(),
+              Distance{std::numeric_limits<double>::infinity(), glm::dvec3(0.0)});
+  }
+  bool first_part = true;
+  Block block;
+  for (const ShapePart& part : world.parts.rows<ShapePart>(parts)) {
+    const Placement placement = placement_of(part.pose);
+    with_shape(world, part, [&](const auto& shape) {
+      for (std::size_t first = 0; first < points.size(); first += kBlock) {
+        const std::size_t count = std::min(kBlock, points.size() - first);
+        to_part_frame(placement, points.subspan(first, count), block);
+        evaluate_block(shape, block, count);
+        gradients_to_owner_frame(placement, count, block);
+        store(block, first_part, distances.subspan(first, count));
+      }
+    });
+    first_part = false;
+  }
+}
+
+}  // namespace torsion

@@ -1,0 +1,72 @@
+#include "ecs/hash.hpp"
+
+#include <cstddef>
+#include <span>
+
+#include <gtest/gtest.h>
+
+#include "tests/ecs/small_world.hpp"
+#include "tests/support/allocation_guard.hpp"
+
+namespace torsion {
+namespace {
+
+TEST(HashTest, EqualWorldsHaveEqualHashes) {
+  EXPECT_EQ(hash(test::small_world(1)), hash(test::small_world(1)));
+  EXPECT_NE(hash(test::small_world(1)), hash(test::small_world(2)));
+}
+
+// Flips the lowest bit of the last byte of one column and puts it back.
+void expect_hash_to_change(const World& world, std::span<std::byte> column) {
+  ASSERT_FALSE(column.empty());
+  const std::uint64_t before = hash(world);
+  column.back() ^= std::byte{1};
+  EXPECT_NE(hash(world), before);
+  column.back() ^= std::byte{1};
+  EXPECT_EQ(hash(world), before);
+}
+
+TEST(HashTest, EveryColumnOfEveryTableCounts) {
+  World world = test::small_world(3);
+  std::apply(
+      [&world](auto&... tables) {
+        (tables.each_column([&world](std::span<std::byte> bytes, std::size_t /*row_size*/) {
+          expect_hash_to_change(world, bytes);
+        }),
+         ...);
+      },
+      world.tables());
+}
+
+TEST(HashTest, EveryEntityPoolCounts) {
+  World world = test::small_world(3);
+  std::apply(
+      [&world](auto&... pools) {
+        (expect_hash_to_change(world, std::as_writable_bytes(std::span(pools.slots()))), ...);
+      },
+      world.pools());
+  const std::uint64_t before = hash(world);
+  world.region_handles.set_first_free(world.region_handles.first_free() + 1);
+  EXPECT_NE(hash(world), before);
+}
+
+TEST(HashTest, RowsBeyondTheSizeDoNotCount) {
+  World world = test::small_world(4);
+  const std::uint64_t before = hash(world);
+  world.cells.append(1);
+  world.cells.at<CellGeometry>(world.cells.size() - 1).depth = 1.0;
+  EXPECT_NE(hash(world), before);
+  world.cells.erase(world.cells.size() - 1);
+  EXPECT_EQ(hash(world), before);
+}
+
+TEST(HashTest, AllocatesNothing) {
+  const World world = test::small_world(5);
+  const test::AllocationGuard guard;
+  const std::uint64_t value = hash(world);
+  EXPECT_EQ(guard.allocations(), 0U);
+  EXPECT_NE(value, 0U);
+}
+
+}  // namespace
+}  // namespace torsion

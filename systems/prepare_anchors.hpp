@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ecs/scene_description.hpp"
+#include "ecs/world.hpp"
+
+namespace torsion {
+
+/// Anchors of one body and the sections of their beams, kBeamStations rows an anchor, root first.
+struct PreparedAnchors {
+  std::vector<AnchorRest> anchors;
+  std::vector<BeamSection> sections;
+};
+
+inline constexpr std::uint32_t kAnchorsPerBody = 48;
+
+/// Spreads anchors over a body's rest surface, away from what is fixed, and cuts the straight beam from the fixed
+/// point to each of them. Load time only; the same input gives the same bits. Returns nothing (empty vectors) only
+/// for a body whose whole surface is fixed.
+/// @param body   the description: surfaces (m, body frame) and the fixed region
+/// @param world  read: parts, fields, field_nodes, field_bricks, fixed_volumes
+/// @param parts  the body's rows in world.parts
+/// @param volumes  the body's rows in world.fixed_volumes
+/// @param count  how many anchors, 8 to 60
+PreparedAnchors prepare_anchors(const BodyDescription& body, const World& world, Range parts, Range volumes,
+                                std::uint32_t count = kAnchorsPerBody);
+
+}  // namespace torsion

@@ -105,7 +105,9 @@ class Table {
  private:
   template <class T>
   void clear_rows(Range range) {
-    std::memset(static_cast<void*>(std::get<Column<T>>(columns_).data() + range.first), 0, range.count * sizeof(T));
+    if (range.count > 0) {
+      std::memset(static_cast<void*>(std::get<Column<T>>(columns_).data() + range.first), 0, range.count * sizeof(T));
+    }
   }
 
   template <class T>

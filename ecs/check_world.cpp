@@ -1,0 +1,175 @@
+#include "ecs/check_world.hpp"
+
+#include <cstdint>
+#include <string_view>
+
+namespace torsion {
+namespace {
+
+// Collects the first thing that is wrong; further calls change nothing.
+struct Findings {
+  std::string first;
+
+  void require(bool holds, std::string_view table, std::uint32_t row, std::string_view what) {
+    if (!holds && first.empty()) {
+      first.append(table).append(" row ").append(std::to_string(row)).append(": ").append(what);
+    }
+  }
+};
+
+bool inside(Range range, std::uint32_t size) {
+  return range.first <= size && range.count <= size - range.first;
+}
+
+std::uint64_t product(glm::uvec3 counts) {
+  constexpr std::uint32_t kMany = 1U << 20U;  // keeps the product of three within 64 bits
+  if (counts.x > kMany || counts.y > kMany || counts.z > kMany) {
+    return UINT64_MAX;
+  }
+  return std::uint64_t{counts.x} * counts.y * counts.z;
+}
+
+void check_sizes(const World& world, Findings& findings) {
+  findings.require(world.settings.size() == 1, "settings", 0, "must be the only row");
+  findings.require(world.clock.size() == 1, "clock", 0, "must be the only row");
+  findings.require(world.sections.size() == std::uint64_t{world.anchors.size()} * kBeamStations,
+                   "sections", 0, "their number must be that of the anchors times the stations");
+  if (!findings.first.empty()) {
+    return;
+  }
+  const std::uint64_t side = world.settings.at<Settings>(0).grid_side;
+  findings.require(side >= 1 && side <= 256, "settings", 0, "grid_side must be 1 to 256");
+  findings.require(world.cells.capacity() >= world.regions.capacity() * side * side, "cells", 0,
+                   "there must be room for one grid a region");
+}
+
+void check_fields(const World& world, Findings& findings) {
+  for (std::uint32_t row = 0; row < world.parts.size(); ++row) {
+    const ShapePart& part = world.parts.at<ShapePart>(row);
+    findings.require(part.kind <= ShapeKind::kMesh, "parts", row, "unknown kind of shape");
+    findings.require(part.kind != ShapeKind::kMesh || part.field < world.fields.size(), "parts",
+                     row, "its distance field is not there");
+  }
+  for (std::uint32_t row = 0; row < world.fields.size(); ++row) {
+    const DistanceField& field = world.fields.at<DistanceField>(row);
+    findings.require(inside(field.coarse_nodes, world.field_nodes.size()) &&
+                         product(field.cells + 1U) == field.coarse_nodes.count,
+                     "fields", row, "its coarse nodes are not there");
+    findings.require(inside(field.bricks, world.field_bricks.size()) &&
+                         product(field.cells) == field.bricks.count,
+                     "fields", row, "its bricks are not there");
+    if (!findings.first.empty()) {
+      return;
+    }
+    const std::uint64_t brick_nodes = product(glm::uvec3(field.subdivision + 1U));
+    for (const DistanceBrick& brick : world.field_bricks.rows<DistanceBrick>(field.bricks)) {
+      findings.require(brick.first_node == kNoRow ||
+                           (brick_nodes <= world.field_nodes.size() &&
+                            brick.first_node <= world.field_nodes.size() - brick_nodes),
+                       "fields", row, "the fine nodes of a brick are not there");
+    }
+  }
+}
+
+void check_surface(const World& world, const OwnedRows& owned, std::uint32_t tool,
+                   Findings& findings) {
+  for (const SurfaceSample& sample : world.samples.rows<SurfaceSample>(owned.samples)) {
+    for (const std::uint32_t neighbour : sample.neighbours) {
+      findings.require(neighbour == kNoRow || neighbour < owned.samples.count, "tools", tool,
+                       "the neighbour of a surface sample is not there");
+    }
+  }
+  std::uint32_t ball_row = 0;
+  for (const SurfaceBall& ball : world.balls.rows<SurfaceBall>(owned.balls)) {
+    // A link that does not lead on would make the walk through the tree endless.
+    findings.require(ball.skip > ball_row && ball.skip <= owned.balls.count, "tools", tool,
+                     "a link of its sphere tree leads nowhere");
+    findings.require(ball.sample == kNoRow || ball.sample < owned.samples.count, "tools", tool,
+                     "the sample of a surface ball is not there");
+    ++ball_row;
+  }
+}
+
+void check_owned_rows(const World& world, std::string_view table, const OwnedRows& owned,
+                      std::uint32_t row, Findings& findings) {
+  findings.require(inside(owned.parts, world.parts.size()), table, row, "its parts are not there");
+  findings.require(inside(owned.samples, world.samples.size()), table, row,
+                   "its samples are not there");
+  findings.require(inside(owned.balls, world.balls.size()), table, row, "its balls are not there");
+  findings.require(inside(owned.anchors, world.anchors.size()), table, row,
+                   "its anchors are not there");
+}
+
+void check_owners(const World& world, Findings& findings) {
+  for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
+    check_owned_rows(world, "bodies", world.bodies.at<OwnedRows>(row), row, findings);
+    findings.require(inside(world.bodies.at<FixedRegion>(row).volumes, world.fixed_volumes.size()),
+                     "bodies", row, "its fixed volumes are not there");
+  }
+  for (std::uint32_t row = 0; row < world.tools.size(); ++row) {
+    check_owned_rows(world, "tools", world.tools.at<OwnedRows>(row), row, findings);
+    if (findings.first.empty()) {
+      check_surface(world, world.tools.at<OwnedRows>(row), row, findings);
+    }
+  }
+  for (std::uint32_t row = 0; row < world.regions.size(); ++row) {
+    const RegionIdentity& region = world.regions.at<RegionIdentity>(row);
+    findings.require(region.body < world.bodies.size(), "regions", row, "its body is not there");
+    findings.require(region.tool < world.tools.size(), "regions", row, "its tool is not there");
+    findings.require(inside(region.cells, world.cells.size()), "regions", row,
+                     "its cells are not there");
+  }
+}
+
+Entity handle(const BodyTable& table, std::uint32_t row) {
+  return table.at<Entity>(row);
+}
+Entity handle(const ToolTable& table, std::uint32_t row) {
+  return table.at<Entity>(row);
+}
+Entity handle(const RegionTable& table, std::uint32_t row) {
+  return table.at<RegionIdentity>(row).self;
+}
+
+// Every slot is either free and in the list of free slots once, or names the row that names it.
+template <class AnyTable>
+void check_handles(const AnyTable& table, const EntityPool& pool, std::string_view name,
+                   Findings& findings) {
+  for (std::uint32_t row = 0; row < table.size(); ++row) {
+    findings.require(pool.row(handle(table, row)) == row, name, row, "its handle is stale");
+  }
+  std::uint32_t alive = 0;
+  for (const EntityPool::Slot& slot : pool.slots()) {
+    alive += slot.generation % 2;
+  }
+  findings.require(alive == table.size(), name, table.size(), "a handle names no row");
+  std::uint32_t free = 0;
+  std::uint32_t slot = pool.first_free();
+  while (slot < pool.capacity() && pool.slots()[slot].generation % 2 == 0 &&
+         free < pool.capacity()) {
+    slot = pool.slots()[slot].row;
+    ++free;
+  }
+  findings.require(slot == UINT32_MAX && free + alive == pool.capacity(), name, 0,
+                   "the list of free handles is broken");
+}
+
+}  // namespace
+
+Result<Done> check_world(const World& world) {
+  Findings findings;
+  check_sizes(world, findings);
+  if (findings.first.empty()) {
+    check_fields(world, findings);
+    check_owners(world, findings);
+    check_handles(world.bodies, world.body_handles, "bodies", findings);
+    check_handles(world.tools, world.tool_handles, "tools", findings);
+    check_handles(world.regions, world.region_handles, "regions", findings);
+  }
+  if (!findings.first.empty()) {
+    return Error{findings.first};
+  }
+  return Done{};
+}
+
+}  // namespace torsion

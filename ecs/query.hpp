@@ -2,23 +2,25 @@
 
 #include <tuple>
 #include <type_traits>
+#include <utility>
 
 namespace torsion {
 namespace detail {
 
+template <class C, class AnyTable>
+auto column_of(AnyTable& table) {
+  if constexpr (std::is_const_v<C>) {
+    return std::as_const(table).template column<std::remove_const_t<C>>();
+  } else {
+    static_assert(!std::is_const_v<AnyTable>, "a const world has only const components");
+    return table.template column<C>();
+  }
+}
+
 template <class... Cs, class AnyTable, class F>
 void visit_table(AnyTable& table, F& f) {
-  using Bare = std::remove_const_t<AnyTable>;
-  if constexpr ((Bare::template has<Cs> && ...)) {
-    f([&table]() {
-      using C = Cs;
-      if constexpr (std::is_const_v<C>) {
-        return std::as_const(table).template column<std::remove_const_t<C>>();
-      } else {
-        static_assert(!std::is_const_v<AnyTable>, "ask a const world for const components");
-        return table.template column<C>();
-      }
-    }()...);
+  if constexpr ((std::remove_const_t<AnyTable>::template has<Cs> && ...)) {
+    f(column_of<Cs>(table)...);
   }
 }
 

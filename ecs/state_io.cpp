@@ -28,7 +28,7 @@ constexpr std::array<char, 8> kMagic = {'T', 'O', 'R', 'S', 'T', 'A', 'T', 'E'};
 constexpr std::uint32_t kVersion = 1;
 // Room beyond the rows that a file may ask for, bytes: the capacities are the one number in it that
 // its own length does not bound. A world of 64 bodies needs under 40 MiB.
-constexpr std::uint64_t kLargestSpareRoom = std::uint64_t{1} << 30U;
+constexpr std::uint64_t kLargestSpareRoom = std::uint64_t{1} << 28U;
 
 template <class T>
 void describe(std::string& text) {

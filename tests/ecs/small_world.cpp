@@ -17,6 +17,48 @@ void fill(AnyTable& table, unsigned& state) {
   });
 }
 
+// One mesh with a field of 2 x 2 x 2 coarse cells, of which one is divided once, and two exact
+// shapes.
+void mend_shapes(World& world) {
+  for (std::uint32_t row = 0; row < world.parts.size(); ++row) {
+    world.parts.at<ShapePart>(row).kind = ShapeKind::kSphere;
+  }
+  world.parts.at<ShapePart>(1).kind = ShapeKind::kMesh;
+  world.parts.at<ShapePart>(1).field = 0;
+  DistanceField& field = world.fields.at<DistanceField>(0);
+  field.cells = glm::uvec3(2);
+  field.subdivision = 2;
+  field.coarse_nodes = {0, 27};
+  field.bricks = {0, 8};
+  for (DistanceBrick& brick : world.field_bricks.column<DistanceBrick>()) {
+    brick.first_node = kNoRow;
+  }
+  world.field_bricks.at<DistanceBrick>(3).first_node = 27;
+}
+
+// Two tools with 10 samples in a chain and 20 balls each, two bodies with 3 anchors each.
+void mend_owners(World& world) {
+  for (std::uint32_t row = 0; row < world.samples.size(); ++row) {
+    for (std::uint32_t& neighbour : world.samples.at<SurfaceSample>(row).neighbours) {
+      neighbour = kNoRow;
+    }
+    world.samples.at<SurfaceSample>(row).neighbours[0] = (row + 1) % 10;
+  }
+  for (std::uint32_t row = 0; row < world.balls.size(); ++row) {
+    world.balls.at<SurfaceBall>(row).skip = row % 20 + 1;
+    world.balls.at<SurfaceBall>(row).sample = row % 2 == 0 ? kNoRow : row % 20 / 2;
+  }
+  for (std::uint32_t row = 0; row < 2; ++row) {
+    world.tools.at<OwnedRows>(row) = {{row, 1}, {row * 10, 10}, {row * 20, 20}, {}};
+    world.bodies.at<OwnedRows>(row) = {{row + 1, 1}, {}, {}, {row * 3, 3}};
+    world.bodies.at<FixedRegion>(row).volumes = {row, 1};
+    RegionIdentity& region = world.regions.at<RegionIdentity>(row);
+    region.body = row;
+    region.tool = 1 - row;
+    region.cells = {row * 16, 16};
+  }
+}
+
 }  // namespace
 
 World small_world(unsigned seed) {
@@ -26,7 +68,7 @@ World small_world(unsigned seed) {
   capacities.tools = 2;
   capacities.parts = 3;
   capacities.fields = 1;
-  capacities.field_nodes = 27;
+  capacities.field_nodes = 54;
   capacities.field_bricks = 8;
   capacities.fixed_volumes = 2;
   capacities.samples = 20;
@@ -39,7 +81,7 @@ World small_world(unsigned seed) {
 
   world.parts.append(3);
   world.fields.append(1);
-  world.field_nodes.append(27);
+  world.field_nodes.append(54);
   world.field_bricks.append(8);
   world.fixed_volumes.append(2);
   world.samples.append(20);
@@ -53,6 +95,9 @@ World small_world(unsigned seed) {
 
   unsigned state = seed;
   std::apply([&state](auto&... tables) { (fill(tables, state), ...); }, world.tables());
+  world.settings.at<Settings>(0) = settings;
+  mend_shapes(world);
+  mend_owners(world);
   for (std::uint32_t row = 0; row < 2; ++row) {
     world.bodies.at<Entity>(row) = world.body_handles.create(row).value();
     world.tools.at<Entity>(row) = world.tool_handles.create(row).value();

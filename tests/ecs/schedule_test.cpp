@@ -1,0 +1,76 @@
+#include "ecs/schedule.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/allocation_guard.hpp"
+
+namespace torsion {
+namespace {
+
+struct Log {
+  std::string calls;
+  bool has_springs = false;
+};
+
+const std::vector<System<Log>> kSystems = {
+    {"push", "pushes", "always", nullptr, [](Log& log) { log.calls += 'p'; }, 1},
+    {"spring", "springs", "a spring", [](const Log& log) { return log.has_springs; },
+     [](Log& log) { log.calls += 's'; }, 1},
+    {"measure", "measures", "always", nullptr, [](Log& log) { log.calls += 'm'; }, 3},
+};
+
+TEST(ScheduleTest, SystemsRunInOrderAtTheirOwnRates) {
+  Log log{"", true};
+  Schedule<Log> schedule(kSystems, log);
+  for (std::uint64_t step = 0; step < 4; ++step) {
+    schedule.run(log, step);
+    log.calls += ' ';
+  }
+  EXPECT_EQ(log.calls, "psm ps ps psm ");
+}
+
+TEST(ScheduleTest, WhatNothingNeedsNeverRuns) {
+  Log log;
+  Schedule<Log> schedule(kSystems, log);
+  log.has_springs = true;  // too late: decided once, at load
+  schedule.run(log, 1);
+  EXPECT_EQ(log.calls, "p");
+  EXPECT_FALSE(schedule.is_on("spring"));
+  EXPECT_TRUE(schedule.is_on("push"));
+  EXPECT_FALSE(schedule.is_on("no such system"));
+}
+
+TEST(ScheduleTest, TimesEachSystem) {
+  Log log;
+  const std::vector<System<Log>> sleeper = {
+      {"sleep", "", "", nullptr,
+       [](Log&) { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }, 1}};
+  Schedule<Log> schedule(sleeper, log);
+  schedule.run(log, 0);
+  schedule.run(log, 1);
+  const auto& timing = schedule.rows()[0].timing;
+  EXPECT_EQ(timing.runs, 2U);
+  EXPECT_GE(timing.total_s, 0.004);  // a sleep never ends early
+  EXPECT_GE(timing.longest_s, 0.002);
+  EXPECT_LE(timing.longest_s, timing.total_s);
+}
+
+TEST(ScheduleTest, RunAllocatesNothing) {
+  Log log;
+  log.calls.reserve(1000);
+  Schedule<Log> schedule(kSystems, log);
+  const test::AllocationGuard guard;
+  for (std::uint64_t step = 0; step < 100; ++step) {
+    schedule.run(log, step);
+  }
+  EXPECT_EQ(guard.allocations(), 0U);
+  EXPECT_EQ(std::ranges::count(log.calls, 'm'), 34);
+}
+
+}  // namespace
+}  // namespace torsion

@@ -16,8 +16,8 @@ void* volatile kept = nullptr;
 TEST(AllocationGuardTest, CountsNewAndDelete) {
   const AllocationGuard guard;
   kept = ::operator new(100);
-  EXPECT_EQ(guard.allocations(), 1U);
   ::operator delete(kept);
+  EXPECT_EQ(guard.allocations(), 1U);
   EXPECT_EQ(guard.releases(), 1U);
 }
 
@@ -37,11 +37,19 @@ TEST(AllocationGuardTest, CountsTheCFamily) {
   std::free(kept);
   kept = std::calloc(3, 5);
   std::free(kept);
+  EXPECT_EQ(guard.allocations(), 3U);
+  EXPECT_EQ(guard.releases(), 3U);
+}
+
+#ifndef __SANITIZE_THREAD__  // ThreadSanitizer tells its listeners nothing of aligned_alloc
+TEST(AllocationGuardTest, CountsAlignedAlloc) {
+  const AllocationGuard guard;
   kept = std::aligned_alloc(64, 64);
   std::free(kept);
-  EXPECT_EQ(guard.allocations(), 4U);
-  EXPECT_EQ(guard.releases(), 4U);
+  EXPECT_EQ(guard.allocations(), 1U);
+  EXPECT_EQ(guard.releases(), 1U);
 }
+#endif
 
 TEST(AllocationGuardTest, CountsNothingWhenNothingIsTaken) {
   std::vector<int> numbers(1000);

@@ -1,12 +1,13 @@
 #pragma once
 
-// Every component of the simulation: one plain struct is one column of one table (ecs/world.hpp lists the tables).
-// Units are SI: m, kg, s, N, N m, rad, Pa. A frame is named with every vector:
+// Every component of the simulation: one plain struct is one column of one table (ecs/world.hpp
+// lists the tables). Units are SI: m, kg, s, N, N m, rad, Pa. A frame is named with every vector:
 //   world  the scene's frame, +Y up
-//   body   the elastic node's frame without its scale; a body does not move, so this is a fixed shift and turn of world
-//   tool   the tool node's frame without its scale
-//   grid   a region's tangent frame: x along tangent_x, y along tangent_y, z along the outward normal
-// "Written by" names the one system (file systems/NAME.cpp) that writes the column; "load" means it is constant.
+//   body   the elastic node's frame without its scale; a body does not move, so this is a fixed
+//   shift and turn of world tool   the tool node's frame without its scale grid   a region's
+//   tangent frame: x along tangent_x, y along tangent_y, z along the outward normal
+// "Written by" names the one system (file systems/NAME.cpp) that writes the column; "load" means it
+// is constant.
 
 #include <cstdint>
 
@@ -20,45 +21,49 @@
 
 namespace torsion {
 
-inline constexpr std::uint32_t kMaxRegionsPerBody = 16;  // also the number of twist columns a vertex can have
-inline constexpr std::uint32_t kNoRow = UINT32_MAX;       // "no row"
+inline constexpr std::uint32_t kMaxRegionsPerBody =
+    16;  // also the number of twist columns a vertex can have
+inline constexpr std::uint32_t kNoRow = UINT32_MAX;  // "no row"
 
-// ---------------------------------------------------------------------------------------------- shared by tables
+// ----------------------------------------------------------------------------------------------
+// shared by tables
 
 /// A rigid placement: x_outer = rotation * x_inner + position.
 struct Pose {
-  glm::dvec3 position{0.0};                    // m, outer frame
-  glm::dquat rotation{1.0, 0.0, 0.0, 0.0};     // unit quaternion, inner to outer
+  glm::dvec3 position{0.0};                 // m, outer frame
+  glm::dquat rotation{1.0, 0.0, 0.0, 0.0};  // unit quaternion, inner to outer
 };
 
-/// A force and the torque that goes with it; the reference point and the frame are said where it is used.
+/// A force and the torque that goes with it; the reference point and the frame are said where it is
+/// used.
 struct Wrench {
   glm::dvec3 force{0.0};   // N
   glm::dvec3 torque{0.0};  // N m
 };
 
-// ------------------------------------------------------------------------------------------------------- shapes
+// -------------------------------------------------------------------------------------------------------
+// shapes
 
 enum class ShapeKind : std::uint32_t { kSphere, kEllipsoid, kBox, kCylinder, kCapsule, kMesh };
 
 /// One closed solid of a tool or body; a tool or body is the union of its parts. Written by: load.
 /// Cylinder and capsule have their axis along y; a capsule's half_extent.y includes its caps.
 struct ShapePart {
-  Pose pose;                        // part frame in the owner's frame (tool or body)
-  glm::dvec3 half_extent{0.0};      // m, part frame; a sphere uses .x
+  Pose pose;                    // part frame in the owner's frame (tool or body)
+  glm::dvec3 half_extent{0.0};  // m, part frame; a sphere uses .x
   ShapeKind kind = ShapeKind::kSphere;
-  std::uint32_t field = kNoRow;      // row in `fields` when kind is kMesh
+  std::uint32_t field = kNoRow;  // row in `fields` when kind is kMesh
 };
 
-/// A two-level grid of signed distances to a closed mesh: coarse nodes everywhere, bricks of fine nodes near the
-/// surface (systems/distance_field.hpp says how it is read). Written by: load.
+/// A two-level grid of signed distances to a closed mesh: coarse nodes everywhere, bricks of fine
+/// nodes near the surface (systems/distance_field.hpp says how it is read). Written by: load.
 struct DistanceField {
-  glm::dvec3 origin{0.0};           // m, part frame, the lowest node
-  double spacing = 0.0;             // m, between coarse nodes
-  glm::uvec3 cells{0};              // coarse cells along each axis; nodes are one more
-  std::uint32_t subdivision = 1;    // fine cells along one edge of a coarse cell
-  Range coarse_nodes;               // rows in `field_nodes`, x fastest
-  Range bricks;                     // rows in `field_bricks`, one for each coarse cell, x fastest
+  glm::dvec3 origin{0.0};         // m, part frame, the lowest node
+  double spacing = 0.0;           // m, between coarse nodes
+  glm::uvec3 cells{0};            // coarse cells along each axis; nodes are one more
+  std::uint32_t subdivision = 1;  // fine cells along one edge of a coarse cell
+  Range coarse_nodes;             // rows in `field_nodes`, x fastest
+  Range bricks;                   // rows in `field_bricks`, one for each coarse cell, x fastest
 };
 
 /// Gradient and signed distance at one grid node (negative inside). Written by: load.
@@ -66,37 +71,43 @@ struct DistanceNode {
   glm::vec4 gradient_and_distance{0.0F};  // xyz: unitless, part frame; w: m
 };
 
-/// First row in `field_nodes` of a coarse cell's (subdivision + 1)^3 fine nodes, or kNoRow. Written by: load.
+/// First row in `field_nodes` of a coarse cell's (subdivision + 1)^3 fine nodes, or kNoRow. Written
+/// by: load.
 struct DistanceBrick {
   std::uint32_t first_node = kNoRow;
 };
 
-/// A node of the sphere tree over a tool's surface: everything of the surface below it lies in this ball.
-/// Written by: load.
+/// A node of the sphere tree over a tool's surface: everything of the surface below it lies in this
+/// ball. Written by: load.
 struct SurfaceBall {
-  glm::dvec3 center{0.0};           // m, tool frame
-  double radius = 0.0;              // m
-  std::uint32_t skip = 0;           // row, relative to the tool's first ball, to go to when this ball is far away
-  std::uint32_t sample = kNoRow;     // row, relative to the tool's first sample, for a leaf; kNoRow inside the tree
+  glm::dvec3 center{0.0};  // m, tool frame
+  double radius = 0.0;     // m
+  std::uint32_t skip =
+      0;  // row, relative to the tool's first ball, to go to when this ball is far away
+  std::uint32_t sample =
+      kNoRow;  // row, relative to the tool's first sample, for a leaf; kNoRow inside the tree
 };
 
 inline constexpr std::uint32_t kSampleNeighbours = 8;
 
-/// A point of a tool's surface. Its neighbours are rows relative to the tool's first sample. Written by: load.
+/// A point of a tool's surface. Its neighbours are rows relative to the tool's first sample.
+/// Written by: load.
 struct SurfaceSample {
-  glm::dvec3 position{0.0};                              // m, tool frame
-  double spacing = 0.0;                                  // m, to the farthest of its neighbours
-  std::uint32_t neighbours[kSampleNeighbours] = {};      // kNoRow where there are fewer
+  glm::dvec3 position{0.0};                          // m, tool frame
+  double spacing = 0.0;                              // m, to the farthest of its neighbours
+  std::uint32_t neighbours[kSampleNeighbours] = {};  // kNoRow where there are fewer
 };
 
-// ------------------------------------------------------------------------------------------------------- bodies
+// -------------------------------------------------------------------------------------------------------
+// bodies
 
 /// Linear elastic, isotropic. Written by: load.
 struct Elasticity {
   double youngs_modulus = 3e6;  // E, Pa
   double poisson_ratio = 0.5;   // nu
   double density = 1100.0;      // rho, kg/m^3
-  [[nodiscard]] double shear_modulus() const {  // G = E / (2 (1 + nu)), equation (3) of the paper, Pa
+  [[nodiscard]] double shear_modulus()
+      const {  // G = E / (2 (1 + nu)), equation (3) of the paper, Pa
     return youngs_modulus / (2.0 * (1.0 + poisson_ratio));
   }
   [[nodiscard]] double contact_modulus() const {  // E* = E / (1 - nu^2) against a rigid tool, Pa
@@ -116,17 +127,19 @@ enum class FixedKind : std::uint32_t { kPoint, kFace, kVolumes };
 struct FixedRegion {
   FixedKind kind = FixedKind::kPoint;
   std::uint32_t padding = 0;
-  glm::dvec3 point{0.0};    // m, body: q_f of the paper; the centroid of a face or of the fixed volumes
-  glm::dvec3 normal{0.0};   // body, unit, into the body; only for kFace
-  Range volumes;            // rows in `fixed_volumes`; kPoint and kFace have none
+  glm::dvec3 point{
+      0.0};  // m, body: q_f of the paper; the centroid of a face or of the fixed volumes
+  glm::dvec3 normal{0.0};  // body, unit, into the body; only for kFace
+  Range volumes;           // rows in `fixed_volumes`; kPoint and kFace have none
 };
 
 enum class VolumeKind : std::uint32_t { kBox, kSphere };
 
-/// A unit box (side 2) or unit sphere (radius 1) whose image fixes what of the body lies in it. Written by: load.
+/// A unit box (side 2) or unit sphere (radius 1) whose image fixes what of the body lies in it.
+/// Written by: load.
 struct FixedVolume {
-  glm::dmat3 to_unit{1.0};      // unit = to_unit * (x_body - center)
-  glm::dvec3 center{0.0};       // m, body
+  glm::dmat3 to_unit{1.0};  // unit = to_unit * (x_body - center)
+  glm::dvec3 center{0.0};   // m, body
   VolumeKind kind = VolumeKind::kBox;
   std::uint32_t padding = 0;
 };
@@ -138,16 +151,16 @@ enum class BodyModel : std::uint32_t { kAuto, kNone, kSkeleton };
 struct BodyModels {
   ContactModel contact = ContactModel::kAuto;
   BodyModel body = BodyModel::kAuto;
-  double tolerance = 0.05;          // relative error in the torque that kAuto may make
-  double region_threshold = 0.0;    // r_th, m; 0: from the sampling
+  double tolerance = 0.05;        // relative error in the torque that kAuto may make
+  double region_threshold = 0.0;  // r_th, m; 0: from the sampling
 };
 
 /// Which rows of other tables belong to a tool or body. Written by: load.
 struct OwnedRows {
-  Range parts;      // in `parts`
-  Range samples;    // in `samples`; tools only
-  Range balls;      // in `balls`; tools only
-  Range anchors;    // in `anchors`; bodies only
+  Range parts;    // in `parts`
+  Range samples;  // in `samples`; tools only
+  Range balls;    // in `balls`; tools only
+  Range anchors;  // in `anchors`; bodies only
 };
 
 /// Axis-aligned box of the rest shape in the owner's frame. Written by: load.
@@ -156,7 +169,8 @@ struct Bounds {
   glm::dvec3 highest{0.0};  // m
 };
 
-// -------------------------------------------------------------------------------------------------------- tools
+// --------------------------------------------------------------------------------------------------------
+// tools
 
 /// The tool node's frame in the world, now and one step ago. Written by: couple_tools.
 struct ToolPose {
@@ -166,153 +180,170 @@ struct ToolPose {
 
 /// Motion over the step, of the mass centre. Written by: couple_tools.
 struct ToolMotion {
-  glm::dvec3 velocity{0.0};            // m/s, world
-  glm::dvec3 angular_velocity{0.0};    // rad/s, world
-  glm::dvec3 mass_center{0.0};         // m, world
-  glm::dvec3 axis{0.0};                // world, unit once the tool has turned: the rotation axis with a short memory
-  double axis_turn = 0.0;              // rad, how much turning that memory holds
+  glm::dvec3 velocity{0.0};          // m/s, world
+  glm::dvec3 angular_velocity{0.0};  // rad/s, world
+  glm::dvec3 mass_center{0.0};       // m, world
+  glm::dvec3 axis{
+      0.0};  // world, unit once the tool has turned: the rotation axis with a short memory
+  double axis_turn = 0.0;  // rad, how much turning that memory holds
 };
 
 /// Written by: load.
 struct MassProperties {
-  double mass = 1.0;                // kg
-  glm::dvec3 center{0.0};           // m, tool: mass centre
-  glm::dmat3 inertia{0.0};          // kg m^2 about the mass centre, tool axes
+  double mass = 1.0;        // kg
+  glm::dvec3 center{0.0};   // m, tool: mass centre
+  glm::dmat3 inertia{0.0};  // kg m^2 about the mass centre, tool axes
 };
 
-/// The product: what the bodies exert on the tool, about its mass centre, world frame. Written by: sum_wrenches.
+enum class WrenchState : std::uint32_t { kLive, kFalling, kRising };
+
+/// The product: what the bodies exert on the tool, about its mass centre, world frame. Written by:
+/// sum_wrenches.
 struct ToolWrench {
-  Wrench total;
-  double work = 0.0;                // J, done by the tool's holder so far
-  double fade = 1.0;                // share of the computed wrench that is let out; falls to 0 on a fault
+  Wrench total;        // as let out
+  Wrench held;         // what was let out when a fault began; fades from there
+  double work = 0.0;   // J, done by the tool's holder so far
+  double share = 1.0;  // of `held` (falling) or of the computed wrench (rising) that is let out
+  WrenchState state = WrenchState::kLive;
+  std::uint32_t padding = 0;
 };
 
-// ------------------------------------------------------------------------------------------------------ regions
-// Rows are in the order of formation. A region of a step continues the one of the last step that it overlaps most.
+// ------------------------------------------------------------------------------------------------------
+// regions Rows are in the order of formation. A region of a step continues the one of the last step
+// that it overlaps most.
 
 /// Written by: group_regions.
 struct RegionIdentity {
   Entity self;
-  std::uint32_t body = 0;           // row in `bodies`
-  std::uint32_t tool = 0;           // row in `tools`
-  std::uint64_t order = 0;          // 0, 1, 2, ... in the order of formation, never used twice
-  Range cells;                      // its rows in `cells`: grid_side x grid_side, x fastest
+  std::uint32_t body = 0;   // row in `bodies`
+  std::uint32_t tool = 0;   // row in `tools`
+  std::uint64_t order = 0;  // 0, 1, 2, ... in the order of formation, never used twice
+  Range cells;              // its rows in `cells`: grid_side x grid_side, x fastest
 };
 
-/// The grid's placement. Its x and y axes keep their direction as well as the turning normal lets them.
-/// Written by: group_regions.
+/// The grid's placement. Its x and y axes keep their direction as well as the turning normal lets
+/// them. Written by: group_regions and region_grids.
 struct RegionFrame {
-  glm::dvec3 origin{0.0};           // m, body: on the rest surface, centre of the grid
+  glm::dvec3 origin{0.0};               // m, body: on the rest surface, centre of the grid
   glm::dvec3 tangent_x{1.0, 0.0, 0.0};  // body, unit
   glm::dvec3 tangent_y{0.0, 1.0, 0.0};  // body, unit
   glm::dvec3 normal{0.0, 0.0, 1.0};     // body, unit, out of the body: tangent_x x tangent_y
-  glm::dvec2 half_size{0.0};        // m: the grid covers origin +- half_size
+  glm::dvec2 half_size{0.0};            // m: the grid covers origin +- half_size
 };
 
-/// Written by: group_regions.
+/// Written by: region_grids.
 struct RegionGeometry {
-  glm::dvec3 equivalent_point{0.0};  // m, body: p_eq, the pressure centre
+  glm::dvec3 equivalent_point{0.0};  // m, body: p_eq, the pressure centre, on the tool's surface
   double area = 0.0;                 // m^2
   double radius = 0.0;               // m: a = sqrt(area / pi)
   double mean_depth = 0.0;           // m: x, the overlap's mean over the area
   double largest_depth = 0.0;        // m
+  glm::dvec3 mean_normal{0.0};       // body, unit: of the rest surface, mean over the area
 };
 
 /// Motion of the tool over the body at the region. Written by: region_motion.
 struct RegionMotion {
-  glm::dvec2 slide{0.0};            // m, grid: tangential motion of the tool at p_eq in this step
-  double spin = 0.0;                // rad: turn about the normal in this step
-  double turn = 0.0;                // rad: phi, the sum of spin since the region formed
-  double axis_share = 0.0;          // 1: the rotation axis goes through the region; 0: it misses it
-  double lever = 0.0;               // m: l of the paper, distance to the fixed point along the axis, at least a
+  glm::dvec2 pivot{0.0};  // m, grid: where the axis goes through the region; p_eq when it misses it
+  glm::dvec2 slide{0.0};  // m, grid: tangential motion of the tool at the pivot in this step
+  glm::dvec3 axis{0.0};   // body, unit; zero before the tool has turned
+  double spin = 0.0;      // rad: turn about the normal in this step
+  double turn = 0.0;      // rad: phi, the sum of spin since the region formed
+  double axis_share = 0.0;  // 1: the rotation axis goes through the region; 0: it misses it
+  double lever = 0.0;  // m: l of the paper, distance to the fixed point along the axis, at least a
 };
 
 /// Written by: normal_forces.
 struct RegionNormal {
-  double force = 0.0;               // N: F_n without rotation, along the outward normal on the tool
-  double stiffness = 0.0;           // N/m: dF/dx
+  double force = 0.0;      // N: F_n without rotation, along the outward normal on the tool
+  double stiffness = 0.0;  // N/m: dF/dx
 };
 
 /// Written by: friction_forces.
 struct RegionFriction {
-  glm::dvec2 force{0.0};            // N, grid, on the tool
-  double couple = 0.0;              // N m, about the normal through p_eq, on the tool
-  double kinetic_share = 0.0;       // 0: threshold mu_s and elastic traction; 1: mu_d along the slip
-  double stick_radius = 0.0;        // m: r_m, at most a
-  double stick_turn = 0.0;          // rad: phi at r_m that the body's surface follows (phi_m)
+  glm::dvec2 force{0.0};       // N, grid, on the tool
+  double couple = 0.0;         // N m, about the normal through p_eq, on the tool
+  double kinetic_share = 0.0;  // 0: threshold mu_s and elastic traction; 1: mu_d along the slip
+  double stick_radius = 0.0;   // m: r_m, at most a
+  double stick_turn = 0.0;     // rad: phi at r_m that the body's surface follows (phi_m)
 };
 
 /// Written by: region_wrenches.
 struct RegionWrench {
-  Wrench on_tool;                   // world, about the tool's mass centre, as let out
-  Wrench step_change;               // world: what a merge or split would have made jump, still fading
-  double step_change_share = 0.0;   // 1 at the event, 0 when faded
+  Wrench on_tool;            // world, about the tool's mass centre, as let out
+  Wrench event_change;       // world: what birth, merge or split would have made jump; fades out
+  double event_share = 0.0;  // of event_change still let out: 1 at the event, 0 when faded
+  std::uint32_t event_now =
+      0;  // 1: on_tool holds what this region takes over; group_regions sets it
+  std::uint32_t padding = 0;
 };
 
-// -------------------------------------------------------------------------------------------------------- cells
+// --------------------------------------------------------------------------------------------------------
+// cells
 
-/// One cell of a region's grid. Written by: group_regions.
+/// One cell of a region's grid. Written by: region_grids.
 struct CellGeometry {
-  double height = 0.0;              // m, grid: z of the tool's surface under the cell's centre
-  double depth = 0.0;               // m: overlap along the normal, <= 0 outside the contact
-  double coverage = 0.0;            // share of the cell's area that is in contact, 0 to 1
+  double height = 0.0;    // m, grid: z of the tool's surface under the cell's centre
+  double depth = 0.0;     // m: overlap along the normal, <= 0 outside the contact
+  double coverage = 0.0;  // share of the cell's area that is in contact, 0 to 1
 };
 
 /// Written by: friction_forces.
 struct CellTraction {
-  glm::dvec2 traction{0.0};         // Pa, grid, on the tool, per covered area
-  double pressure = 0.0;            // Pa
-  std::uint32_t sticks = 0;         // 1: sticks, 0: slips or carries nothing
+  glm::dvec2 traction{0.0};    // Pa, grid, on the tool, per covered area
+  double pressure = 0.0;       // Pa
+  double kinetic_share = 0.0;  // 0: threshold mu_s; 1: mu_d, after slipping a slip length
+  std::uint32_t sticks = 0;    // 1: sticks, 0: slips or carries nothing
   std::uint32_t padding = 0;
 };
 
-// ------------------------------------------------------------------------------------------------------ anchors
+// ------------------------------------------------------------------------------------------------------
+// anchors
 
 /// A point of the body's rest surface at which the body model gives displacement. Written by: load.
 struct AnchorRest {
-  glm::dvec3 position{0.0};         // m, body
+  glm::dvec3 position{0.0};  // m, body
 };
 
 /// Sum over the body's regions. Written by: the body model (systems/body_models/).
 struct AnchorMotion {
-  glm::dvec3 displacement{0.0};     // m, body
+  glm::dvec3 displacement{0.0};  // m, body
 };
 
 inline constexpr std::uint32_t kBeamStations = 16;
 
-/// Sections of the straight beam from an anchor to the fixed point, root first: cut perpendicular to the beam.
-/// Written by: load.
+/// Sections of the straight beam from an anchor to the fixed point, root first: cut perpendicular
+/// to the beam. Written by: load.
 struct BeamSection {
-  double area = 0.0;                // A, m^2
-  double bending_xx = 0.0;          // I about the first transverse axis, m^4
-  double bending_yy = 0.0;          // I about the second transverse axis, m^4
-  double bending_xy = 0.0;          // product of inertia, m^4
-  double torsion_constant = 0.0;    // J of Saint-Venant, m^4
-  double polar = 0.0;               // polar second moment, m^4
+  double area = 0.0;              // A, m^2
+  double bending_xx = 0.0;        // I about the first transverse axis, m^4
+  double bending_yy = 0.0;        // I about the second transverse axis, m^4
+  double bending_xy = 0.0;        // product of inertia, m^4
+  double torsion_constant = 0.0;  // J of Saint-Venant, m^4
+  double polar = 0.0;             // polar second moment, m^4
 };
 
-// ------------------------------------------------------------------------------------------- the frame's tables
-// Rows that the GPU reads as they are: float, 16-byte rows or single floats.
+// ------------------------------------------------------------------------------------------- the
+// frame's tables Rows that the GPU reads as they are: float, 16-byte rows or single floats.
 
 /// Written by: load.
 struct VertexRest {
-  glm::vec4 position{0.0F};         // m, body; w = 1 if the vertex is fixed, else 0
+  glm::vec4 position{0.0F};  // m, body; w = 1 if the vertex is fixed, else 0
 };
 
 /// Written by: load.
 struct VertexNormal {
-  glm::vec4 normal{0.0F};           // body, unit; w unused, 0
+  glm::vec4 normal{0.0F};  // body, unit; w unused, 0
 };
 
 /// Written by: surface_field.
 struct VertexDisplacement {
-  glm::vec4 displacement{0.0F};     // m, body; w = normal contact pressure, Pa, for the heat map
+  glm::vec4 displacement{0.0F};  // m, body; w = normal contact pressure, Pa, for the heat map
 };
 
-/// Twist about one region's axis. Rows of a body: region-major, kMaxRegionsPerBody blocks of its vertex count.
-/// Written by: surface_field.
+/// Twist about one region's axis. Rows of a body: region-major, kMaxRegionsPerBody blocks of its
+/// vertex count. Written by: surface_field.
 struct TwistAngle {
-  float angle = 0.0F;               // rad
+  float angle = 0.0F;  // rad
 };
 
 /// Three vertex rows, relative to the body's first vertex. Written by: load.
@@ -322,15 +353,15 @@ struct Triangle {
 
 /// The axis about which a body's region slot turns vertices. Written by: surface_field.
 struct TwistAxis {
-  glm::vec4 point{0.0F};            // m, body; w unused, 0
-  glm::vec4 direction{0.0F};        // body, unit; w unused, 0
+  glm::vec4 point{0.0F};      // m, body; w unused, 0
+  glm::vec4 direction{0.0F};  // body, unit; w unused, 0
 };
 
 /// One drawn thing: a body, or a tool. Written by: load.
 struct DrawRange {
-  Range vertices;                   // in the vertex table of its kind
-  Range triangles;                  // likewise
-  glm::vec4 color{0.8F};            // linear RGB, alpha
+  Range vertices;         // in the vertex table of its kind
+  Range triangles;        // likewise
+  glm::vec4 color{0.8F};  // linear RGB, alpha
 };
 
 }  // namespace torsion

@@ -8,7 +8,8 @@
 
 namespace torsion {
 
-/// How large the tables of a world are. Set at load; a full table sets a fault that names the limit to raise.
+/// How large the tables of a world are. Set at load; a full table sets a fault that names the limit
+/// to raise.
 struct Capacities {
   std::uint32_t bodies = 0;
   std::uint32_t tools = 0;
@@ -23,41 +24,46 @@ struct Capacities {
   std::uint32_t regions = 0;
 };
 
-/// What can go wrong in a step. The step still ends; the tools' wrenches fade to zero while a fault lasts.
+/// What can go wrong in a step. The step still ends; the tools' wrenches fade to zero while a fault
+/// lasts.
 enum class Fault : std::uint32_t {
-  kPoseNotFinite = 1U << 0U,       // the device's pose has a NaN or infinity; the last good pose is kept
-  kPoseJumped = 1U << 1U,          // the tool moved or turned further in one step than a hand can
-  kTooDeep = 1U << 2U,             // the overlap is beyond half the body's size
-  kRegionsFull = 1U << 3U,         // more than kMaxRegionsPerBody regions on a body, or the regions table is full
-  kResultNotFinite = 1U << 4U,     // a wrench came out as NaN or infinity
+  kPoseNotFinite = 1U << 0U,  // the device's pose has a NaN or infinity; the last good pose is kept
+  kPoseJumped = 1U << 1U,     // the tool moved or turned further in one step than a hand can
+  kTooDeep = 1U << 2U,        // the overlap is beyond half the body's size
+  kRegionsFull =
+      1U << 3U,  // more than kMaxRegionsPerBody regions on a body, or the regions table is full
+  kResultNotFinite = 1U << 4U,  // a wrench came out as NaN or infinity
 };
 
 /// One row: the clock and the state of the run. Written by: the step itself.
 struct Clock {
-  double time = 0.0;               // s, at the end of the last step
-  double dt = 1e-3;                // s
-  std::uint64_t step = 0;
+  double time = 0.0;  // s: the last step took the poses of this time; step k takes those of k dt
+  double dt = 1e-3;   // s
+  std::uint64_t step = 0;  // of the next step
   std::uint64_t regions_formed = 0;
-  std::uint32_t faults = 0;        // Fault bits of the last step
-  std::uint32_t faults_ever = 0;   // Fault bits of all steps
+  std::uint32_t faults = 0;       // Fault bits of the last step
+  std::uint32_t faults_ever = 0;  // Fault bits of all steps
 };
 
 /// One row: what the user may set. Written by: load.
 struct Settings {
-  std::uint32_t grid_side = 16;    // cells along one side of a region's grid; 16 gives about 200 in a round contact
+  std::uint32_t grid_side =
+      16;  // cells along one side of a region's grid; 16 gives about 200 in a round contact
   std::uint32_t padding = 0;
 };
 
 // Parallel columns of each table. What a column means is said at its struct in ecs/components.hpp.
 using BodyTable =
     Table<Entity, Pose, Elasticity, Friction, FixedRegion, BodyModels, OwnedRows, Bounds>;
-using ToolTable = Table<Entity, ToolPose, ToolMotion, MassProperties, ToolWrench, OwnedRows, Bounds>;
-using RegionTable = Table<RegionIdentity, RegionFrame, RegionGeometry, RegionMotion, RegionNormal, RegionFriction,
-                          RegionWrench>;
+using ToolTable =
+    Table<Entity, ToolPose, ToolMotion, MassProperties, ToolWrench, OwnedRows, Bounds>;
+using RegionTable = Table<RegionIdentity, RegionFrame, RegionGeometry, RegionMotion, RegionNormal,
+                          RegionFriction, RegionWrench>;
 using CellTable = Table<CellGeometry, CellTraction>;
 using AnchorTable = Table<AnchorRest, AnchorMotion>;
 
-/// The physics world: everything that one step knows. A step is a pure function of it and of the input poses.
+/// The physics world: everything that one step knows. A step is a pure function of it and of the
+/// input poses.
 struct World {
   // constant after load
   Table<Settings> settings;
@@ -68,13 +74,13 @@ struct World {
   Table<FixedVolume> fixed_volumes;
   Table<SurfaceSample> samples;
   Table<SurfaceBall> balls;
-  Table<BeamSection> sections;     // kBeamStations rows an anchor, in the order of `anchors`
+  Table<BeamSection> sections;  // kBeamStations rows an anchor, in the order of `anchors`
   // written by the step
   Table<Clock> clock;
   BodyTable bodies;
   ToolTable tools;
   RegionTable regions;
-  CellTable cells;                 // blocks of grid_side^2 rows, one for each row that `regions` can hold
+  CellTable cells;  // blocks of grid_side^2 rows, one for each row that `regions` can hold
   AnchorTable anchors;
   // handles
   EntityPool body_handles;
@@ -85,12 +91,12 @@ struct World {
   void reserve(const Capacities& capacities, const Settings& chosen);
 
   [[nodiscard]] auto tables() {
-    return std::tie(settings, parts, fields, field_nodes, field_bricks, fixed_volumes, samples, balls, sections, clock,
-                    bodies, tools, regions, cells, anchors);
+    return std::tie(settings, parts, fields, field_nodes, field_bricks, fixed_volumes, samples,
+                    balls, sections, clock, bodies, tools, regions, cells, anchors);
   }
   [[nodiscard]] auto tables() const {
-    return std::tie(settings, parts, fields, field_nodes, field_bricks, fixed_volumes, samples, balls, sections, clock,
-                    bodies, tools, regions, cells, anchors);
+    return std::tie(settings, parts, fields, field_nodes, field_bricks, fixed_volumes, samples,
+                    balls, sections, clock, bodies, tools, regions, cells, anchors);
   }
   [[nodiscard]] auto pools() { return std::tie(body_handles, tool_handles, region_handles); }
   [[nodiscard]] auto pools() const { return std::tie(body_handles, tool_handles, region_handles); }

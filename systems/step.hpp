@@ -3,8 +3,8 @@
 #include <memory>
 #include <span>
 
-#include "ecs/scene_description.hpp"
 #include "ecs/result.hpp"
+#include "ecs/scene_description.hpp"
 #include "ecs/schedule.hpp"
 #include "ecs/world.hpp"
 
@@ -38,17 +38,19 @@ struct Simulation {
 struct PrepareOptions {
   ContactModel contact_model = ContactModel::kAuto;
   BodyModel body_model = BodyModel::kAuto;
-  double rate = 1000.0;              // Hz
+  double rate = 1000.0;  // Hz
   Settings settings;
-  bool use_cache = true;             // distance fields and beam sections from the user's cache folder
+  bool use_cache = true;  // distance fields and beam sections from the user's cache folder
 };
 
-/// Load-time work: distance fields, surface samples, anchors, beam sections; then all tables, filled.
-/// Bodies and tools get the rows that they have in `scene`. Fails with a message that names the node.
+/// Load-time work: distance fields, surface samples, anchors, beam sections; then all tables,
+/// filled. Bodies and tools get the rows that they have in `scene`. Fails with a message that names
+/// the node.
 Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options);
 
-/// One step of world.clock's dt: reads one pose a tool, writes every table that changes. Never throws, never
-/// allocates; what went wrong is in Clock::faults. @pre tool_poses.size() == tools
+/// One step of world.clock's dt: reads one pose a tool (that of the time clock.step * dt), writes
+/// every table that changes. Never throws, never allocates; what went wrong is in Clock::faults.
+/// @pre tool_poses.size() == tools
 void step(Simulation& simulation, std::span<const Pose> tool_poses);
 
 }  // namespace torsion

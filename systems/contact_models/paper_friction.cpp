@@ -1,0 +1,266 @@
+#include <algorithm>
+#include <cmath>
+
+#include "systems/contact_models/paper.hpp"
+#include "systems/frames.hpp"
+
+namespace torsion {
+namespace {
+
+// A cell that slips comes down from mu_s to mu_d over this share of its elastic deflection: short
+// enough to be the paper's switch (4) -> (5) within the accuracy of 200 cells, long enough that the
+// force does not jump.
+constexpr double kSlipLength = 0.05;
+
+/// What the cells of one region share in one step. Tractions are per area, on the tool, in the
+/// grid's plane.
+struct BrushState {
+  double pressure = 0.0;               // Pa: F_n / A, uniform (f_max / n of the paper)
+  double shear_modulus = 0.0;          // G, Pa
+  double translation_stiffness = 0.0;  // Pa/m: 8 G a / (2 - nu) spread over the area (physics B4)
+  double slip_displacement = 0.0;  // m: elastic deflection at which the translating region slips
+  Friction friction;
+  glm::dvec2 pivot{0.0};  // m, grid
+  glm::dvec2 slide{0.0};  // m, grid, this step
+  double spin = 0.0;      // rad, this step
+  double lever_origin =
+      0.0;  // m: l at the grid's origin; l_i = |lever_origin + lever_slope . (x, y, z)|
+  glm::dvec3 lever_slope{0.0};
+  double least_lever = 0.0;  // m: a
+  double kinetic_share = 0.0;
+};
+
+/// Projected distance to what is fixed as a linear function over the grid (the paper's l_i, physics
+/// C2 point 4).
+void set_levers(const FixedRegion& fixed, const RegionFrame& frame, const RegionMotion& motion,
+                double radius, BrushState& brush) {
+  glm::dvec3 direction = glm::dot(motion.axis, motion.axis) > 0.0 ? motion.axis : frame.normal;
+  if (fixed.kind == FixedKind::kFace) {
+    direction = fixed.normal / std::max(std::abs(glm::dot(direction, fixed.normal)), 0.1);
+  }
+  brush.lever_origin = glm::dot(frame.origin - fixed.point, direction);
+  brush.lever_slope = body_to_grid_direction(frame, direction);
+  brush.least_lever = radius;
+}
+
+BrushState brush_of(const World& world, std::uint32_t region) {
+  const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
+  const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+  const RegionMotion& motion = world.regions.at<RegionMotion>(region);
+  const Elasticity& elasticity = world.bodies.at<Elasticity>(body);
+  const double normal_force = world.regions.at<RegionNormal>(region).force;
+  BrushState brush;
+  brush.friction = world.bodies.at<Friction>(body);
+  brush.shear_modulus = elasticity.shear_modulus();
+  brush.pressure = geometry.area > 0.0 ? normal_force / geometry.area : 0.0;
+  const double stiffness =
+      8.0 * brush.shear_modulus * geometry.radius / (2.0 - elasticity.poisson_ratio);
+  brush.translation_stiffness = geometry.area > 0.0 ? stiffness / geometry.area : 0.0;
+  brush.slip_displacement =
+      stiffness > 0.0 ? brush.friction.dynamic_friction * normal_force / stiffness : 0.0;
+  brush.pivot = motion.pivot;
+  brush.slide = motion.slide;
+  brush.spin = motion.spin;
+  brush.kinetic_share = world.regions.at<RegionFriction>(region).kinetic_share;
+  set_levers(world.bodies.at<FixedRegion>(body), world.regions.at<RegionFrame>(region), motion,
+             geometry.radius, brush);
+  return brush;
+}
+
+/// Approaches 1 as `path` is travelled, with the length scale `scale`; a zero scale is reached at
+/// once.
+double travelled(double path, double scale) {
+  return scale > 0.0 ? 1.0 - std::exp(-path / scale) : 1.0;
+}
+
+/// One cell's outcome that the region needs.
+struct CellSlip {
+  glm::dvec2 plastic{0.0};  // m: translation that the elastic limit cut off
+  double moved = 0.0;       // m: the cell's own motion over the body
+  double twist = 0.0;       // rad: elastic turn that its traction stands for
+};
+
+/// The kinetic branch: the traction turns against the cell's own motion within the slip
+/// displacement.
+glm::dvec2 turn_against(glm::dvec2 traction, const glm::dvec2& motion, double moved, double limit,
+                        double scale) {
+  if (moved > 0.0) {
+    traction += (-limit * motion / moved - traction) * travelled(moved, scale);
+  }
+  const double size = glm::length(traction);
+  return size > limit ? traction * (limit / size) : traction;
+}
+
+/// The return map of one cell (physics C2 points 5 and 6): elastic trial, capped at the friction
+/// limit; with the region sliding, towards the limit against the cell's own motion.
+CellSlip update_cell(const BrushState& brush, const glm::dvec2& arm, double lever,
+                     CellTraction& cell) {
+  const glm::dvec2 turned = brush.spin * glm::dvec2(-arm.y, arm.x);
+  const glm::dvec2 motion = brush.slide + turned;
+  const double twist_stiffness =
+      brush.shear_modulus / lever;  // Pa/m: equation (2), tau = G r phi / l
+  const glm::dvec2 before = cell.traction;
+  const glm::dvec2 trial =
+      before - brush.translation_stiffness * brush.slide - twist_stiffness * turned;
+  const double trial_size = glm::length(trial);
+
+  const double kinetic = std::max(cell.kinetic_share, brush.kinetic_share);
+  const double limit = brush.pressure * ((1.0 - kinetic) * brush.friction.static_friction +
+                                         kinetic * brush.friction.dynamic_friction);
+  const bool slips = trial_size > limit;
+  const glm::dvec2 elastic = slips ? trial * (limit / trial_size) : trial;
+
+  const double moved = glm::length(motion);
+  cell.traction = elastic;
+  if (brush.kinetic_share > 0.0) {
+    const glm::dvec2 sliding = turn_against(before, motion, moved, limit, brush.slip_displacement);
+    cell.traction += brush.kinetic_share * (sliding - elastic);
+  }
+  cell.pressure = brush.pressure;
+  cell.sticks = !slips && brush.kinetic_share < 0.5 ? 1U : 0U;
+
+  // mu_s comes down to mu_d as the cell slips, and is back once it has been loaded the other way as
+  // far.
+  const double scale = brush.pressure * brush.friction.static_friction;
+  if (slips) {
+    cell.kinetic_share +=
+        (1.0 - cell.kinetic_share) * travelled(trial_size - limit, kSlipLength * scale);
+  } else if (cell.kinetic_share > 0.0) {
+    cell.kinetic_share *= 1.0 - travelled(glm::length(elastic - before), scale);
+  }
+  CellSlip slip;
+  slip.moved = moved;
+  if (brush.translation_stiffness > 0.0) {
+    slip.plastic = (trial - elastic) / -brush.translation_stiffness;
+  }
+  const double arm_squared = glm::dot(arm, arm);
+  if (arm_squared > 0.0) {
+    slip.twist =
+        -(arm.x * cell.traction.y - arm.y * cell.traction.x) / (twist_stiffness * arm_squared);
+  }
+  return slip;
+}
+
+/// Sums over a region's covered cells.
+struct CellSums {
+  double area = 0.0;
+  double stuck_area = 0.0;
+  glm::dvec2 force{0.0};
+  double couple = 0.0;      // N m about the normal through p_eq
+  glm::dvec2 plastic{0.0};  // m, mean after division by area
+  double moved = 0.0;       // m, largest
+  double twist = 0.0;       // rad, mean over the stuck area after division
+};
+
+CellSums update_cells(World& world, std::uint32_t region, const BrushState& brush) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+  const Range rows = world.regions.at<RegionIdentity>(region).cells;
+  const auto cells = world.cells.rows<CellGeometry>(rows);
+  const auto tractions = world.cells.rows<CellTraction>(rows);
+  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  const double cell_size = cell_area(frame, side);
+  const glm::dvec2 center(body_to_grid(frame, geometry.equivalent_point));
+  CellSums sums;
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < side; ++j) {
+    for (std::uint32_t i = 0; i < side; ++i, ++cell) {
+      if (cells[cell].coverage <= 0.0) {
+        tractions[cell] = CellTraction{};
+        continue;
+      }
+      const glm::dvec2 place = cell_center(frame, side, i, j);
+      const double lever =
+          std::max(std::abs(brush.lever_origin +
+                            glm::dot(brush.lever_slope, glm::dvec3(place, cells[cell].height))),
+                   brush.least_lever);
+      const CellSlip slip = update_cell(brush, place - brush.pivot, lever, tractions[cell]);
+      const double area = cells[cell].coverage * cell_size;
+      const glm::dvec2 force = area * tractions[cell].traction;
+      const glm::dvec2 arm = place - center;
+      sums.area += area;
+      sums.force += force;
+      sums.couple += arm.x * force.y - arm.y * force.x;
+      sums.plastic += area * slip.plastic;
+      sums.moved = std::max(sums.moved, slip.moved);
+      if (tractions[cell].sticks != 0) {
+        sums.stuck_area += area;
+        sums.twist += area * slip.twist;
+      }
+    }
+  }
+  if (sums.area > 0.0) {
+    sums.plastic /= sums.area;
+  }
+  if (sums.stuck_area > 0.0) {
+    sums.twist /= sums.stuck_area;
+  }
+  return sums;
+}
+
+/// How far the region has gone over to sliding: by the path it slid, back by the path it moved
+/// elastically. With a second region on the same pair every motion of the region that the axis goes
+/// through counts as sliding (14).
+double next_kinetic_share(const World& world, std::uint32_t region, const BrushState& brush,
+                          const CellSums& sums) {
+  const RegionIdentity& self = world.regions.at<RegionIdentity>(region);
+  const auto shares_pair = [&self](const RegionIdentity& other) {
+    return other.body == self.body && other.tool == self.tool && !(other.self == self.self);
+  };
+  const bool several = std::ranges::any_of(world.regions.column<RegionIdentity>(), shares_pair);
+  const double slid = glm::length(sums.plastic);
+  const double elastic = glm::length(brush.slide - sums.plastic);
+  const double forced =
+      several ? world.regions.at<RegionMotion>(region).axis_share * sums.moved : 0.0;
+  double share = brush.kinetic_share;
+  share += (1.0 - share) * travelled(std::max(slid, forced), brush.slip_displacement);
+  if (forced == 0.0 && brush.slip_displacement > 0.0) {
+    share *= std::exp(-elastic / brush.slip_displacement);
+  }
+  return share;
+}
+
+/// r_m and phi_m of (6), (11)-(13): inside r_m the surface turns with the tool by phi_m; outside,
+/// the limit traction stands for a turn that falls as 1/r.
+void set_stick_radius(const BrushState& brush, const CellSums& sums, const RegionGeometry& geometry,
+                      const RegionMotion& motion, RegionFriction& friction) {
+  const double kinetic = friction.kinetic_share;
+  const double limit = brush.pressure * ((1.0 - kinetic) * brush.friction.static_friction +
+                                         kinetic * brush.friction.dynamic_friction);
+  const double limit_arc =
+      limit * motion.lever / brush.shear_modulus;  // m: r phi that the limit stands for
+  if (sums.stuck_area > 0.0) {
+    const double twist = std::abs(sums.twist);
+    friction.stick_turn = sums.twist;
+    friction.stick_radius =
+        twist * geometry.radius > limit_arc ? limit_arc / twist : geometry.radius;
+    return;
+  }
+  const double largest = 2.0 / 3.0 * limit * geometry.area * geometry.radius;
+  const double used = largest > 0.0 ? std::clamp(-friction.couple / largest, -1.0, 1.0) : 0.0;
+  friction.stick_radius = geometry.radius;
+  friction.stick_turn = geometry.radius > 0.0 ? used * limit_arc / geometry.radius : 0.0;
+}
+
+}  // namespace
+
+void paper_friction_forces(StepContext& context) {
+  World& world = context.world;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    if (world.bodies.at<BodyModels>(world.regions.at<RegionIdentity>(region).body).contact !=
+        ContactModel::kPaper) {
+      continue;
+    }
+    const BrushState brush = brush_of(world, region);
+    const CellSums sums = update_cells(world, region, brush);
+    const RegionMotion& motion = world.regions.at<RegionMotion>(region);
+    RegionFriction& friction = world.regions.at<RegionFriction>(region);
+    friction.force = sums.force;
+    // An axis that misses the region leaves T = r x F alone (1).
+    friction.couple = motion.axis_share * sums.couple;
+    friction.kinetic_share = next_kinetic_share(world, region, brush, sums);
+    set_stick_radius(brush, sums, world.regions.at<RegionGeometry>(region), motion, friction);
+  }
+}
+
+}  // namespace torsion

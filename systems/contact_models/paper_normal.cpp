@@ -1,0 +1,64 @@
+#include <algorithm>
+#include <cmath>
+
+#include "systems/body_models/skeleton.hpp"
+#include "systems/contact_models/paper.hpp"
+#include "systems/fault.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kDeepest =
+    0.5;  // of the body's smallest side: beyond it no small-strain law means anything
+
+double deepest_allowed(const Bounds& bounds) {
+  const glm::dvec3 size = bounds.highest - bounds.lowest;
+  return kDeepest * std::min({size.x, size.y, size.z});
+}
+
+}  // namespace
+
+PaperNormalLaw paper_normal_law(double contact_modulus, double radius, double axial_stiffness,
+                                double length) {
+  PaperNormalLaw law;
+  if (radius <= 0.0) {
+    return law;
+  }
+  const double punch = 2.0 * contact_modulus * radius;  // Boussinesq's flat punch (physics B3)
+  if (axial_stiffness <= 0.0) {
+    law.linear = punch;
+    return law;
+  }
+  law.linear = punch * axial_stiffness / (punch + axial_stiffness);
+  law.cubic = 4.0 / 3.0 * axial_stiffness / (length * length);
+  return law;
+}
+
+void paper_normal_forces(StepContext& context) {
+  World& world = context.world;
+  Clock& clock = world.clock.at<Clock>(0);
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
+    if (world.bodies.at<BodyModels>(body).contact != ContactModel::kPaper) {
+      continue;
+    }
+    const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+    const Elasticity& elasticity = world.bodies.at<Elasticity>(body);
+    BeamSummary beam;
+    if (world.bodies.at<BodyModels>(body).body == BodyModel::kSkeleton) {
+      beam = beam_summary(world, body, geometry.equivalent_point);
+    }
+    const double deepest = deepest_allowed(world.bodies.at<Bounds>(body));
+    if (geometry.largest_depth > deepest) {
+      raise(clock, Fault::kTooDeep);
+    }
+    const double depth = std::min(geometry.mean_depth, deepest);
+    const PaperNormalLaw law = paper_normal_law(elasticity.contact_modulus(), geometry.radius,
+                                                beam.axial_stiffness, beam.length);
+    RegionNormal& normal = world.regions.at<RegionNormal>(region);
+    normal.force = law.linear * depth + law.cubic * depth * depth * depth;
+    normal.stiffness = law.linear + 3.0 * law.cubic * depth * depth;
+  }
+}
+
+}  // namespace torsion

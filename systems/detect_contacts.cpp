@@ -1,0 +1,166 @@
+#include "systems/detect_contacts.hpp"
+
+#include <algorithm>
+
+#include "systems/frames.hpp"
+#include "systems/group_points.hpp"
+#include "systems/scratch.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr int kDescentSteps = 24;
+constexpr double kSmallestStep =
+    1e-3;  // of the sample spacing: finer does not change the depth by a micrometre
+
+/// One tool over one body while it is searched.
+struct Search {
+  const World& world;
+  Scratch& scratch;
+  Range body_parts;
+  OwnedRows tool;
+  Pose tool_in_body;
+};
+
+/// Walks the tool's tree of balls: keeps the samples whose ball reaches into the body. The distance
+/// is at least |distance| in every part, so a ball farther away than its radius holds no contact.
+void find_candidates(Search& search) {
+  const auto balls = search.world.balls.rows<SurfaceBall>(search.tool.balls);
+  const auto samples = search.world.samples.rows<SurfaceSample>(search.tool.samples);
+  Scratch& scratch = search.scratch;
+  scratch.candidates.clear();
+  scratch.stamp += 1;
+  for (std::uint32_t row = 0; row < balls.size();) {
+    const SurfaceBall& ball = balls[row];
+    const bool leaf = ball.sample != kNoRow;
+    const glm::dvec3 center =
+        to_outer(search.tool_in_body, leaf ? samples[ball.sample].position : ball.center);
+    const double distance = signed_distance(search.world, search.body_parts, center).value;
+    if (leaf) {
+      if (distance <= ball.radius) {
+        const std::uint32_t sample = search.tool.samples.first + ball.sample;
+        scratch.sample_distance[sample] = distance;
+        scratch.sample_stamp[sample] = scratch.stamp;
+        scratch.candidates.push_back({sample, distance});
+      }
+      row += 1;
+    } else {
+      row = distance > ball.radius ? ball.skip : row + 1;
+    }
+  }
+}
+
+/// Lowest among its neighbours; between equals the first. A neighbour that was not reached is
+/// farther away.
+bool is_local_minimum(const Search& search, const Candidate& candidate) {
+  const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(candidate.sample);
+  for (const std::uint32_t neighbour : sample.neighbours) {
+    const std::uint32_t row = search.tool.samples.first + neighbour;
+    if (neighbour == kNoRow || search.scratch.sample_stamp[row] != search.scratch.stamp) {
+      continue;
+    }
+    const double distance = search.scratch.sample_distance[row];
+    if (distance < candidate.distance ||
+        (distance == candidate.distance && row < candidate.sample)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Slides a point on the tool's surface towards the body, with step halving.
+/// @return the point, m, body, and its distance to the body
+ContactPoint descend(const Search& search, const Candidate& start) {
+  const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(start.sample);
+  const Pose& pose = search.tool_in_body;
+  glm::dvec3 point = sample.position;  // tool frame
+  Distance to_body = signed_distance(search.world, search.body_parts, to_outer(pose, point));
+  double step = 0.5 * sample.spacing;
+  for (int iteration = 0; iteration < kDescentSteps && step > kSmallestStep * sample.spacing;
+       ++iteration) {
+    const glm::dvec3 normal = signed_distance(search.world, search.tool.parts, point).gradient;
+    const glm::dvec3 uphill = glm::conjugate(pose.rotation) * to_body.gradient;
+    const glm::dvec3 along = uphill - normal * glm::dot(uphill, normal);
+    const double slope = glm::length(along);
+    if (slope < 1e-9) {
+      break;
+    }
+    glm::dvec3 trial = point - along * (step / slope);
+    const Distance off_surface = signed_distance(search.world, search.tool.parts, trial);
+    trial -= off_surface.gradient * off_surface.value;
+    const Distance trial_distance =
+        signed_distance(search.world, search.body_parts, to_outer(pose, trial));
+    if (trial_distance.value < to_body.value) {
+      point = trial;
+      to_body = trial_distance;
+    } else {
+      step *= 0.5;
+    }
+  }
+  return {to_outer(pose, point), -to_body.value, 0};
+}
+
+void add_point(Scratch& scratch, const ContactPoint& point) {
+  if (scratch.points.size() < scratch.points.capacity()) {
+    scratch.points.push_back(point);
+  }
+}
+
+void find_points(Search& search) {
+  find_candidates(search);
+  Scratch& scratch = search.scratch;
+  for (const Candidate& candidate : scratch.candidates) {
+    if (candidate.distance < 0.0) {
+      const glm::dvec3& position =
+          search.world.samples.at<SurfaceSample>(candidate.sample).position;
+      add_point(scratch, {to_outer(search.tool_in_body, position), -candidate.distance, 0});
+    } else if (is_local_minimum(search, candidate)) {
+      const ContactPoint lowest = descend(search, candidate);
+      if (lowest.depth > 0.0) {
+        add_point(scratch, lowest);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void detect_contacts(StepContext& context) {
+  const World& world = context.world;
+  Scratch& scratch = context.scratch;
+  scratch.points.clear();
+  scratch.pairs.clear();
+  for (std::uint32_t tool = 0; tool < world.tools.size(); ++tool) {
+    for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
+      const auto first = static_cast<std::uint32_t>(scratch.points.size());
+      Search search{world, scratch, world.bodies.at<OwnedRows>(body).parts,
+                    world.tools.at<OwnedRows>(tool),
+                    relative(world.bodies.at<Pose>(body), world.tools.at<ToolPose>(tool).now)};
+      find_points(search);
+      scratch.pairs.push_back(
+          {tool, body, {first, static_cast<std::uint32_t>(scratch.points.size()) - first}, 0});
+    }
+  }
+}
+
+void group_contact_points(StepContext& context) {
+  Scratch& scratch = context.scratch;
+  for (ContactPair& pair : scratch.pairs) {
+    const std::span<ContactPoint> points(scratch.points.data() + pair.points.first,
+                                         pair.points.count);
+    scratch.cluster_points.clear();
+    for (const ContactPoint& point : points) {
+      scratch.cluster_points.push_back(point.position);
+    }
+    const std::span<std::uint32_t> order(scratch.order);
+    const std::span<std::uint32_t> groups = order.subspan(order.size() / 2);
+    const double threshold = context.world.bodies.at<BodyModels>(pair.body).region_threshold;
+    pair.clusters = group_points(scratch.cluster_points, threshold, order.first(order.size() / 2),
+                                 scratch.parent, groups);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i].cluster = groups[i];
+    }
+  }
+}
+
+}  // namespace torsion

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "systems/step.hpp"
+
+namespace torsion {
+
+/// Finds the points of every tool's surface that lie inside a body's rest shape (section II.B of
+/// the paper): samples found through the tool's tree of balls, and, between samples, the deepest
+/// points that a descent along the surface reaches, so that a contact is seen when it begins and
+/// not when it has grown to a sample. Fills Scratch::pairs and Scratch::points. The cost grows with
+/// the samples near the body, not with the meshes.
+void detect_contacts(StepContext& context);
+
+/// For each pair, numbers the groups of points closer than r_th: the paper's contact regions of
+/// this step.
+void group_contact_points(StepContext& context);
+
+}  // namespace torsion

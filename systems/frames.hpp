@@ -1,0 +1,59 @@
+#pragma once
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "ecs/components.hpp"
+
+namespace torsion {
+
+/// x_outer of a point given in the frame of `pose`.
+inline glm::dvec3 to_outer(const Pose& pose, const glm::dvec3& point) {
+  return pose.rotation * point + pose.position;
+}
+
+/// x_inner of a point given in the frame in which `pose` is expressed.
+inline glm::dvec3 to_inner(const Pose& pose, const glm::dvec3& point) {
+  return glm::conjugate(pose.rotation) * (point - pose.position);
+}
+
+/// The pose of `inner` seen from `outer`, both given in one common frame.
+inline Pose relative(const Pose& outer, const Pose& inner) {
+  return {to_inner(outer, inner.position), glm::conjugate(outer.rotation) * inner.rotation};
+}
+
+/// Grid (x, y, z) to body.
+inline glm::dvec3 grid_to_body(const RegionFrame& frame, const glm::dvec3& point) {
+  return frame.origin + frame.tangent_x * point.x + frame.tangent_y * point.y +
+         frame.normal * point.z;
+}
+
+/// A direction of the grid's tangent plane in the body frame.
+inline glm::dvec3 tangent_to_body(const RegionFrame& frame, const glm::dvec2& direction) {
+  return frame.tangent_x * direction.x + frame.tangent_y * direction.y;
+}
+
+/// Components of a body-frame direction in the grid frame.
+inline glm::dvec3 body_to_grid_direction(const RegionFrame& frame, const glm::dvec3& direction) {
+  return {glm::dot(direction, frame.tangent_x), glm::dot(direction, frame.tangent_y),
+          glm::dot(direction, frame.normal)};
+}
+
+inline glm::dvec3 body_to_grid(const RegionFrame& frame, const glm::dvec3& point) {
+  return body_to_grid_direction(frame, point - frame.origin);
+}
+
+/// Centre of grid cell (i, j) of side x side cells, m, grid, z = 0.
+inline glm::dvec2 cell_center(const RegionFrame& frame, std::uint32_t side, std::uint32_t i,
+                              std::uint32_t j) {
+  const double step = 2.0 / static_cast<double>(side);
+  return {frame.half_size.x * ((static_cast<double>(i) + 0.5) * step - 1.0),
+          frame.half_size.y * ((static_cast<double>(j) + 0.5) * step - 1.0)};
+}
+
+inline double cell_area(const RegionFrame& frame, std::uint32_t side) {
+  return 4.0 * frame.half_size.x * frame.half_size.y / static_cast<double>(side * side);
+}
+
+}  // namespace torsion

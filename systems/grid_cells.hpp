@@ -1,0 +1,47 @@
+#pragma once
+
+#include <span>
+
+#include "systems/scratch.hpp"
+#include "systems/step.hpp"
+
+namespace torsion {
+
+/// One region's cells and what finding them needs of the tables.
+struct Grid {
+  World& world;
+  Scratch& scratch;
+  RegionIdentity identity;
+  RegionFrame& frame;
+  std::uint32_t side;
+  std::span<CellGeometry> cells;
+};
+
+inline Grid grid_of(StepContext& context, std::uint32_t region) {
+  World& world = context.world;
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  return {world,
+          context.scratch,
+          identity,
+          world.regions.at<RegionFrame>(region),
+          world.settings.at<Settings>(0).grid_side,
+          world.cells.rows<CellGeometry>(identity.cells)};
+}
+
+inline glm::dvec2 cell_half_size(const Grid& grid) {
+  return grid.frame.half_size / static_cast<double>(grid.side);
+}
+
+inline std::span<const ContactPoint> points_of(const Scratch& scratch,
+                                               const RegionPoints& contact) {
+  return {scratch.points.data() + contact.points.first, contact.points.count};
+}
+
+/// Finds, for every cell of the grid, the tool's surface along the normal, how deep it lies under
+/// the body's rest surface, and the share of the cell that is in contact. Cells that are not joined
+/// to the region's own contact points belong to a neighbour and get coverage 0. Leaves the body's
+/// distances at the cells' points in Scratch::cell_distances, and how much the depth changes across
+/// each cell in Scratch::cell_depth_changes [m].
+void find_cells(const Grid& grid, const RegionPoints& contact);
+
+}  // namespace torsion

@@ -1,0 +1,82 @@
+#include "systems/group_points.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include <glm/geometric.hpp>
+
+#include "ecs/assert.hpp"
+
+namespace torsion {
+namespace {
+
+std::uint32_t root_of(std::span<std::uint32_t> parent, std::uint32_t point) {
+  while (parent[point] != point) {
+    parent[point] = parent[parent[point]];
+    point = parent[point];
+  }
+  return point;
+}
+
+/// The smaller row becomes the root, so that the outcome does not depend on the order of the links.
+void link(std::span<std::uint32_t> parent, std::uint32_t a, std::uint32_t b) {
+  const std::uint32_t root_a = root_of(parent, a);
+  const std::uint32_t root_b = root_of(parent, b);
+  parent[std::max(root_a, root_b)] = std::min(root_a, root_b);
+}
+
+int longest_axis(std::span<const glm::dvec3> points) {
+  glm::dvec3 lowest = points[0];
+  glm::dvec3 highest = points[0];
+  for (const glm::dvec3& point : points) {
+    lowest = glm::min(lowest, point);
+    highest = glm::max(highest, point);
+  }
+  const glm::dvec3 size = highest - lowest;
+  if (size.x >= size.y && size.x >= size.z) {
+    return 0;
+  }
+  return size.y >= size.z ? 1 : 2;
+}
+
+}  // namespace
+
+std::uint32_t group_points(std::span<const glm::dvec3> points, double threshold,
+                           std::span<std::uint32_t> order, std::span<std::uint32_t> parent,
+                           std::span<std::uint32_t> groups) {
+  const auto count = static_cast<std::uint32_t>(points.size());
+  if (count == 0) {
+    return 0;
+  }
+  TORSION_ASSERT(order.size() >= count && parent.size() >= count && groups.size() >= count);
+  const auto sorted = order.first(count);
+  std::iota(sorted.begin(), sorted.end(), 0U);
+  std::iota(parent.begin(), parent.begin() + count, 0U);
+
+  // Sweep along the longest axis: only points within `threshold` along it can be linked.
+  const int axis = longest_axis(points);
+  std::ranges::sort(sorted, [&](std::uint32_t a, std::uint32_t b) {
+    return points[a][axis] < points[b][axis] || (points[a][axis] == points[b][axis] && a < b);
+  });
+  for (std::uint32_t first = 0; first < count; ++first) {
+    const glm::dvec3& point = points[sorted[first]];
+    for (std::uint32_t second = first + 1; second < count; ++second) {
+      const glm::dvec3 gap = points[sorted[second]] - point;
+      if (gap[axis] >= threshold) {
+        break;
+      }
+      if (glm::dot(gap, gap) < threshold * threshold) {
+        link(parent, sorted[first], sorted[second]);
+      }
+    }
+  }
+
+  std::uint32_t group_count = 0;
+  for (std::uint32_t point = 0; point < count; ++point) {
+    const std::uint32_t root = root_of(parent, point);
+    groups[point] = root == point ? group_count++ : groups[root];
+  }
+  return group_count;
+}
+
+}  // namespace torsion

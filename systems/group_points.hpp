@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <glm/vec3.hpp>
+
+namespace torsion {
+
+/// Single-linkage groups (section II.A of the paper): two points share a group if a chain of points
+/// leads from one to the other with every link shorter than `threshold`. Groups are numbered in the
+/// order of their first point.
+/// @param points     (n) m
+/// @param threshold  r_th, m, > 0
+/// @param order, parent  (at least n) scratch
+/// @param groups     (n) out: group of each point
+/// @return number of groups
+/// O(n log n) plus the pairs closer than `threshold` along the longest axis. Allocates nothing.
+std::uint32_t group_points(std::span<const glm::dvec3> points, double threshold,
+                           std::span<std::uint32_t> order, std::span<std::uint32_t> parent,
+                           std::span<std::uint32_t> groups);
+
+}  // namespace torsion

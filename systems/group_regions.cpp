@@ -1,0 +1,192 @@
+#include "systems/group_regions.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/fault.hpp"
+#include "systems/frames.hpp"
+#include "systems/region_grid.hpp"
+#include "systems/scratch.hpp"
+
+namespace torsion {
+namespace {
+
+/// The contact points of one pair, by cluster.
+struct PairPoints {
+  std::span<const ContactPoint> points;
+  std::uint32_t clusters;
+};
+
+/// Share of a point that lies over a region: 1 on its covered cells, falling off over two cells
+/// around them, so that a small region that slid further than its size since the last step is still
+/// recognised.
+double overlap_with(const World& world, std::uint32_t region, const glm::dvec3& point) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const glm::dvec3 in_grid = body_to_grid(frame, point);
+  const double x = std::max(0.0, std::abs(in_grid.x) / frame.half_size.x - 1.0);
+  const double y = std::max(0.0, std::abs(in_grid.y) / frame.half_size.y - 1.0);
+  const double outside = std::max(x, y);
+  if (outside > 0.0) {
+    return outside < 2.0 ? 1e-3 * (2.0 - outside) : 0.0;
+  }
+  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  const auto cell_of = [side](double position, double half) {
+    const double scaled = (position / half + 1.0) * 0.5 * static_cast<double>(side);
+    return std::min(static_cast<std::uint32_t>(std::max(scaled, 0.0)), side - 1);
+  };
+  const std::uint32_t cell =
+      cell_of(in_grid.y, frame.half_size.y) * side + cell_of(in_grid.x, frame.half_size.x);
+  const Range cells = world.regions.at<RegionIdentity>(region).cells;
+  return world.cells.at<CellGeometry>(cells.first + cell).coverage > 0.0 ? 1.0 : 1e-2;
+}
+
+bool of_pair(const RegionIdentity& region, const ContactPair& pair) {
+  return region.tool == pair.tool && region.body == pair.body;
+}
+
+/// Ends a region and lets `heir`, if any, take over what it exerted.
+void end_region(World& world, std::uint32_t region, std::uint32_t heir) {
+  if (heir != kNoRow) {
+    RegionWrench& wrench = world.regions.at<RegionWrench>(heir);
+    const RegionWrench& ended = world.regions.at<RegionWrench>(region);
+    wrench.on_tool.force += ended.on_tool.force;
+    wrench.on_tool.torque += ended.on_tool.torque;
+    wrench.event_now = 1;
+  }
+}
+
+/// A block of cells that no region uses. There are as many blocks as rows, so one is free when a
+/// row is.
+Range free_cells(const World& world) {
+  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  const std::uint32_t count = side * side;
+  for (std::uint32_t block = 0; block < world.regions.capacity(); ++block) {
+    const Range cells{block * count, count};
+    const auto uses = [&](const RegionIdentity& region) {
+      return region.cells == cells;
+    };
+    if (std::ranges::none_of(world.regions.column<RegionIdentity>(), uses)) {
+      return cells;
+    }
+  }
+  return {};
+}
+
+std::uint32_t regions_on(const World& world, std::uint32_t body) {
+  return static_cast<std::uint32_t>(
+      std::ranges::count(world.regions.column<RegionIdentity>(), body, &RegionIdentity::body));
+}
+
+void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t cluster) {
+  World& world = context.world;
+  Clock& clock = world.clock.at<Clock>(0);
+  const std::uint32_t row = world.regions.size();
+  const bool full =
+      regions_on(world, pair.body) >= kMaxRegionsPerBody || row == world.regions.capacity();
+  if (full) {
+    raise(clock, Fault::kRegionsFull);
+    return;
+  }
+  const Range cells = free_cells(world);
+  const std::optional<Entity> handle = world.region_handles.create(row);
+  TORSION_ASSERT(handle.has_value() && world.regions.append().has_value());
+  world.regions.at<RegionIdentity>(row) = {*handle, pair.body, pair.tool, clock.regions_formed,
+                                           cells};
+  clock.regions_formed += 1;
+  std::ranges::fill(world.cells.rows<CellGeometry>(cells), CellGeometry{});
+  std::ranges::fill(world.cells.rows<CellTraction>(cells), CellTraction{});
+  place_new_grid(context, row, {pair.points, cluster});
+  world.regions.at<RegionWrench>(row).event_now =
+      1;  // on_tool is zero: what it exerts at birth fades in
+}
+
+/// Fills scratch.owners: which region each cluster continues.
+void match_clusters(const World& world, Scratch& scratch, const ContactPair& pair,
+                    std::span<const ContactPoint> points) {
+  scratch.owners.assign(pair.clusters, ClusterOwner{});
+  const auto regions = world.regions.column<RegionIdentity>();
+  for (std::uint32_t region = 0; region < regions.size(); ++region) {
+    if (!of_pair(regions[region], pair)) {
+      continue;
+    }
+    // The cluster that this region overlaps most; the oldest region comes first and keeps what it
+    // takes.
+    scratch.overlaps.assign(pair.clusters, 0.0);
+    for (const ContactPoint& point : points) {
+      scratch.overlaps[point.cluster] += overlap_with(world, region, point.position);
+    }
+    const auto best = std::ranges::max_element(scratch.overlaps);
+    if (best == scratch.overlaps.end() || *best <= 0.0) {
+      continue;
+    }
+    ClusterOwner& owner = scratch.owners[static_cast<std::size_t>(best - scratch.overlaps.begin())];
+    if (owner.region == kNoRow) {
+      owner = {region, *best};
+    }
+  }
+}
+
+/// Where the region's contact went: the region that now owns the cluster over its old place, or
+/// kNoRow.
+std::uint32_t heir_of(const World& world, const Scratch& scratch, std::uint32_t region,
+                      std::span<const ContactPoint> points) {
+  for (const ContactPoint& point : points) {
+    if (overlap_with(world, region, point.position) >= 1.0) {
+      return scratch.owners[point.cluster].region;
+    }
+  }
+  return kNoRow;
+}
+
+bool owns_cluster(const Scratch& scratch, std::uint32_t region) {
+  return std::ranges::any_of(
+      scratch.owners, [region](const ClusterOwner& owner) { return owner.region == region; });
+}
+
+/// A cluster without an owner that lies over a living region was split off it.
+void note_splits(World& world, const Scratch& scratch, std::span<const ContactPoint> points) {
+  for (const ContactPoint& point : points) {
+    if (scratch.owners[point.cluster].region != kNoRow) {
+      continue;
+    }
+    for (const ClusterOwner& owner : scratch.owners) {
+      if (owner.region != kNoRow && overlap_with(world, owner.region, point.position) >= 1.0) {
+        world.regions.at<RegionWrench>(owner.region).event_now = 1;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void group_regions(StepContext& context) {
+  World& world = context.world;
+  Scratch& scratch = context.scratch;
+  for (RegionWrench& wrench : world.regions.column<RegionWrench>()) {
+    wrench.event_now = 0;
+  }
+  for (const ContactPair& pair : scratch.pairs) {
+    const std::span<const ContactPoint> points(scratch.points.data() + pair.points.first,
+                                               pair.points.count);
+    match_clusters(world, scratch, pair, points);
+    note_splits(world, scratch, points);
+    const auto regions = world.regions.column<RegionIdentity>();
+    for (std::uint32_t region = 0; region < regions.size(); ++region) {
+      if (of_pair(regions[region], pair) && !owns_cluster(scratch, region)) {
+        end_region(world, region, heir_of(world, scratch, region, points));
+        scratch.region_commands.destroy(regions[region].self);
+      }
+    }
+    for (std::uint32_t cluster = 0; cluster < pair.clusters; ++cluster) {
+      const std::uint32_t owner = scratch.owners[cluster].region;
+      if (owner != kNoRow) {
+        follow_contact(context, owner, {pair.points, cluster});
+      } else {
+        begin_region(context, pair, cluster);
+      }
+    }
+    scratch.region_commands.apply(world.regions, world.region_handles);
+  }
+}
+
+}  // namespace torsion

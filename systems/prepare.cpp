@@ -1,0 +1,226 @@
+#include <algorithm>
+#include <numeric>
+
+#include "systems/distance_field_build.hpp"
+#include "systems/frames.hpp"
+#include "systems/prepare_anchors.hpp"
+#include "systems/sample_surface.hpp"
+#include "systems/scratch.hpp"
+#include "systems/step.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr std::uint32_t kSamplesPerTool = 2000;
+// r_th over the mean distance to a sample's farthest neighbour: neighbours over one contact are
+// always linked, and two contacts a few samples apart are not.
+constexpr double kThresholdOverSpacing = 1.2;
+
+/// Everything that is computed before the tables' sizes are known.
+struct Built {
+  std::vector<BuiltField> fields;        // in the order of mesh parts: bodies', then tools'
+  std::vector<SampledSurface> surfaces;  // one for each tool
+};
+
+SurfaceMesh in_part_frame(const PartDescription& part) {
+  SurfaceMesh mesh = part.surface;
+  for (glm::dvec3& position : mesh.positions) {
+    position = to_inner(part.shape.pose, position);
+  }
+  return mesh;
+}
+
+Result<Done> build_fields(std::span<const PartDescription> parts, bool use_cache,
+                          std::vector<BuiltField>& fields) {
+  for (const PartDescription& part : parts) {
+    if (part.shape.kind != ShapeKind::kMesh) {
+      continue;
+    }
+    const SurfaceMesh mesh = in_part_frame(part);
+    Result<BuiltField> field =
+        use_cache ? load_or_build_distance_field(mesh) : build_distance_field(mesh);
+    if (!field) {
+      return Error{"node '" + part.node + "': " + field.error().text};
+    }
+    fields.push_back(std::move(field).value());
+  }
+  return Done{};
+}
+
+Result<Built> build(const SceneDescription& scene, const PrepareOptions& options) {
+  Built built;
+  for (const BodyDescription& body : scene.bodies) {
+    const Result<Done> done = build_fields(body.parts, options.use_cache, built.fields);
+    if (!done) {
+      return done.error();
+    }
+  }
+  for (const ToolDescription& tool : scene.tools) {
+    const Result<Done> done = build_fields(tool.parts, options.use_cache, built.fields);
+    if (!done) {
+      return done.error();
+    }
+    built.surfaces.push_back(sample_surface(tool.parts, kSamplesPerTool));
+  }
+  return built;
+}
+
+Capacities capacities_of(const SceneDescription& scene, const Built& built) {
+  Capacities needed;
+  needed.bodies = static_cast<std::uint32_t>(scene.bodies.size());
+  needed.tools = static_cast<std::uint32_t>(scene.tools.size());
+  for (const BodyDescription& body : scene.bodies) {
+    needed.parts += static_cast<std::uint32_t>(body.parts.size());
+    needed.fixed_volumes += static_cast<std::uint32_t>(body.fixed_volumes.size());
+  }
+  for (const ToolDescription& tool : scene.tools) {
+    needed.parts += static_cast<std::uint32_t>(tool.parts.size());
+  }
+  needed.fields = static_cast<std::uint32_t>(built.fields.size());
+  for (const BuiltField& field : built.fields) {
+    needed.field_nodes += static_cast<std::uint32_t>(field.nodes.size());
+    needed.field_bricks += static_cast<std::uint32_t>(field.bricks.size());
+  }
+  for (const SampledSurface& surface : built.surfaces) {
+    needed.samples += static_cast<std::uint32_t>(surface.samples.size());
+    needed.balls += static_cast<std::uint32_t>(surface.balls.size());
+  }
+  needed.anchors = needed.bodies * kAnchorsPerBody;
+  needed.regions = needed.bodies * kMaxRegionsPerBody;
+  return needed;
+}
+
+/// Appends `rows` to a table; the capacity was counted before, so they fit.
+template <class T, class AnyTable>
+Range append_rows(AnyTable& table, std::span<const T> rows) {
+  const std::optional<Range> range = table.append(static_cast<std::uint32_t>(rows.size()));
+  TORSION_ASSERT(range.has_value());
+  std::ranges::copy(rows, table.template rows<T>(*range).begin());
+  return *range;
+}
+
+std::uint32_t append_field(World& world, const BuiltField& built) {
+  DistanceField field = built.header;
+  const Range nodes = append_rows<DistanceNode>(world.field_nodes, built.nodes);
+  const Range bricks = append_rows<DistanceBrick>(world.field_bricks, built.bricks);
+  for (DistanceBrick& brick : world.field_bricks.rows<DistanceBrick>(bricks)) {
+    brick.first_node += brick.first_node == kNoRow ? 0 : nodes.first;
+  }
+  field.coarse_nodes.first += nodes.first;
+  field.bricks = bricks;
+  return append_rows<DistanceField>(world.fields, {&field, 1}).first;
+}
+
+/// @param next_field  which of the built fields the next mesh part uses; in and out
+Range append_parts(World& world, std::span<const PartDescription> parts, const Built& built,
+                   std::size_t& next_field) {
+  const Range range{world.parts.size(), static_cast<std::uint32_t>(parts.size())};
+  for (const PartDescription& part : parts) {
+    ShapePart shape = part.shape;
+    shape.field =
+        shape.kind == ShapeKind::kMesh ? append_field(world, built.fields[next_field++]) : kNoRow;
+    append_rows<ShapePart>(world.parts, {&shape, 1});
+  }
+  return range;
+}
+
+Bounds bounds_of(std::span<const PartDescription> parts) {
+  Bounds bounds{glm::dvec3(1e300), glm::dvec3(-1e300)};
+  for (const PartDescription& part : parts) {
+    for (const glm::dvec3& position : part.surface.positions) {
+      bounds.lowest = glm::min(bounds.lowest, position);
+      bounds.highest = glm::max(bounds.highest, position);
+    }
+  }
+  return bounds;
+}
+
+/// What `auto` means while there is one contact model, and what the caller insists on.
+BodyModels choose_models(const BodyDescription& body, const PrepareOptions& options) {
+  BodyModels models = body.models;
+  models.contact =
+      options.contact_model != ContactModel::kAuto ? options.contact_model : models.contact;
+  models.body = options.body_model != BodyModel::kAuto ? options.body_model : models.body;
+  models.contact = models.contact == ContactModel::kAuto ? ContactModel::kPaper : models.contact;
+  models.body = models.body == BodyModel::kAuto ? BodyModel::kSkeleton : models.body;
+  return models;
+}
+
+double default_threshold(const World& world) {
+  const auto samples = world.samples.column<SurfaceSample>();
+  const double sum =
+      std::transform_reduce(samples.begin(), samples.end(), 0.0, std::plus<>{},
+                            [](const SurfaceSample& sample) { return sample.spacing; });
+  return samples.empty() ? 0.0 : kThresholdOverSpacing * sum / static_cast<double>(samples.size());
+}
+
+void append_tool(World& world, const ToolDescription& tool, const SampledSurface& surface,
+                 const Built& built, std::size_t& next_field) {
+  OwnedRows owned;
+  owned.parts = append_parts(world, tool.parts, built, next_field);
+  owned.samples = append_rows<SurfaceSample>(world.samples, surface.samples);
+  owned.balls = append_rows<SurfaceBall>(world.balls, surface.balls);
+  const std::uint32_t row = world.tools.append()->first;
+  world.tools.at<Entity>(row) = *world.tool_handles.create(row);
+  world.tools.at<ToolPose>(row) = ToolPose{};
+  world.tools.at<ToolMotion>(row) = ToolMotion{};
+  world.tools.at<MassProperties>(row) = tool.mass;
+  world.tools.at<ToolWrench>(row) = ToolWrench{};
+  world.tools.at<OwnedRows>(row) = owned;
+  world.tools.at<Bounds>(row) = bounds_of(tool.parts);
+}
+
+void append_body(World& world, const BodyDescription& body, const PrepareOptions& options,
+                 const Built& built, std::size_t& next_field) {
+  OwnedRows owned;
+  owned.parts = append_parts(world, body.parts, built, next_field);
+  FixedRegion fixed = body.fixed;
+  fixed.volumes = append_rows<FixedVolume>(world.fixed_volumes, body.fixed_volumes);
+  BodyModels models = choose_models(body, options);
+  if (models.body == BodyModel::kSkeleton) {
+    const PreparedAnchors prepared = prepare_anchors(body, world, owned.parts, fixed.volumes);
+    models.body = prepared.anchors.empty() ? BodyModel::kNone : models.body;
+    owned.anchors = append_rows<AnchorRest>(world.anchors, prepared.anchors);
+    append_rows<BeamSection>(world.sections, prepared.sections);
+  }
+  const std::uint32_t row = world.bodies.append()->first;
+  world.bodies.at<Entity>(row) = *world.body_handles.create(row);
+  world.bodies.at<Pose>(row) = body.pose;
+  world.bodies.at<Elasticity>(row) = body.elasticity;
+  world.bodies.at<Friction>(row) = body.friction;
+  world.bodies.at<FixedRegion>(row) = fixed;
+  world.bodies.at<BodyModels>(row) = models;
+  world.bodies.at<OwnedRows>(row) = owned;
+  world.bodies.at<Bounds>(row) = bounds_of(body.parts);
+}
+
+}  // namespace
+
+Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options) {
+  const Result<Built> built = build(scene, options);
+  if (!built) {
+    return built.error();
+  }
+  Simulation simulation;
+  World& world = simulation.world;
+  world.reserve(capacities_of(scene, built.value()), options.settings);
+  world.clock.at<Clock>(0).dt = 1.0 / options.rate;
+  std::size_t next_field = 0;
+  for (const BodyDescription& body : scene.bodies) {
+    append_body(world, body, options, built.value(), next_field);
+  }
+  for (std::size_t tool = 0; tool < scene.tools.size(); ++tool) {
+    append_tool(world, scene.tools[tool], built.value().surfaces[tool], built.value(), next_field);
+  }
+  for (BodyModels& models : world.bodies.column<BodyModels>()) {
+    models.region_threshold =
+        models.region_threshold > 0.0 ? models.region_threshold : default_threshold(world);
+  }
+  TORSION_ASSERT(world.cells.append(world.cells.capacity()).has_value());
+  simulation.scratch->reserve(world);
+  simulation.schedule =
+      Schedule<StepContext>(step_systems(), StepContext{world, {}, *simulation.scratch});
+  return simulation;
+}
+
+}  // namespace torsion

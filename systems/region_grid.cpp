@@ -1,0 +1,224 @@
+#include "systems/region_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "systems/frames.hpp"
+#include "systems/grid_cells.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr int kMostPasses = 10;  // of one grid in one step: a new region finds its size by doubling
+constexpr double kMargin = 1.12;        // of the grid around the contact: about one cell of 16
+constexpr double kSmallestFill = 0.45;  // of the grid by the contact, else the grid is made smaller
+constexpr double kSteepest =
+    0.25;  // smallest cosine between the surface's normal and the grid's that is divided by
+constexpr double kSmallestHalf = 1e-9;  // m
+
+/// A box in the grid's plane; empty while lowest > highest.
+struct PlaneBox {
+  glm::dvec2 lowest{1e300};
+  glm::dvec2 highest{-1e300};
+  void include(const glm::dvec2& low, const glm::dvec2& high) {
+    lowest = glm::min(lowest, low);
+    highest = glm::max(highest, high);
+  }
+  [[nodiscard]] bool empty() const { return lowest.x > highest.x; }
+};
+
+/// The contact as the last pass found it: covered cells, cut where their coverage says that the
+/// edge runs.
+PlaneBox covered_box(const Grid& grid) {
+  PlaneBox box;
+  const glm::dvec2 half = cell_half_size(grid);
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    for (std::uint32_t i = 0; i < grid.side; ++i) {
+      const double coverage = grid.cells[j * grid.side + i].coverage;
+      if (coverage > 0.0) {
+        const glm::dvec2 center = cell_center(grid.frame, grid.side, i, j);
+        const glm::dvec2 reach = half * (2.0 * coverage - 1.0);
+        box.include(center - reach, center + reach);
+        box.include(center, center);
+      }
+    }
+  }
+  return box;
+}
+
+/// Puts the grid around `box` (of its own plane) and its origin back on the body's rest surface.
+void fit(const Grid& grid, const PlaneBox& box) {
+  RegionFrame& frame = grid.frame;
+  const glm::dvec2 center = 0.5 * (box.lowest + box.highest);
+  const glm::dvec2 half = 0.5 * (box.highest - box.lowest);
+  // A sliver is given a tenth of its length in width, so that no cell degenerates.
+  const double least = std::max(0.1 * std::max(half.x, half.y), kSmallestHalf);
+  frame.half_size = kMargin * glm::max(half, glm::dvec2(least));
+  frame.origin += tangent_to_body(frame, center);
+  const Distance surface = signed_distance(
+      grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts, frame.origin);
+  frame.origin -= frame.normal *
+                  (surface.value / std::max(glm::dot(surface.gradient, frame.normal), kSteepest));
+}
+
+/// Turns the frame so that its normal is `normal` and its x axis turns as little as it can.
+void turn_to(RegionFrame& frame, const glm::dvec3& normal) {
+  frame.normal = normal;
+  const glm::dvec3 x = frame.tangent_x - normal * glm::dot(frame.tangent_x, normal);
+  if (glm::dot(x, x) > 1e-6) {
+    frame.tangent_x = glm::normalize(x);
+  } else {
+    frame.tangent_x = glm::normalize(frame.tangent_y - normal * glm::dot(frame.tangent_y, normal));
+  }
+  frame.tangent_y = glm::cross(normal, frame.tangent_x);
+}
+
+/// True when the contact reaches the grid's edge, so that some of it may lie outside.
+bool reaches_edge(const Grid& grid, const PlaneBox& box) {
+  const glm::dvec2 inner = grid.frame.half_size - cell_half_size(grid);
+  return box.lowest.x < -inner.x || box.lowest.y < -inner.y || box.highest.x > inner.x ||
+         box.highest.y > inner.y;
+}
+
+bool fills_too_little(const Grid& grid, const PlaneBox& box) {
+  const glm::dvec2 fill = (box.highest - box.lowest) / (2.0 * grid.frame.half_size);
+  return std::max(fill.x, fill.y) < kSmallestFill;
+}
+
+void restart_heights(const Grid& grid, double depth) {
+  for (CellGeometry& cell : grid.cells) {
+    cell.height = -depth;
+  }
+}
+
+/// Passes over the grid until it holds the whole contact and little else.
+void find_contact(const Grid& grid, const RegionPoints& contact, double start_depth) {
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    find_cells(grid, contact);
+    PlaneBox box = covered_box(grid);
+    if (box.empty()) {
+      return;
+    }
+    if (reaches_edge(grid, box)) {
+      box.lowest -= 0.5 * grid.frame.half_size;
+      box.highest += 0.5 * grid.frame.half_size;
+    } else if (!fills_too_little(grid, box)) {
+      return;
+    }
+    fit(grid, box);
+    restart_heights(grid, start_depth);
+  }
+}
+
+/// Overlap per area of a cell, averaged over its covered share: where the contact's edge runs
+/// through the cell, the depth rises linearly from it.
+double covered_depth(const CellGeometry& cell, double change_across) {
+  return cell.coverage < 1.0 ? 0.5 * cell.coverage * change_across : cell.depth;
+}
+
+/// Area, depths, pressure centre and mean normal from the cells.
+RegionGeometry summarize(const Grid& grid) {
+  RegionGeometry geometry;
+  geometry.equivalent_point = grid.frame.origin;
+  geometry.mean_normal = grid.frame.normal;
+  const double area = cell_area(grid.frame, grid.side);
+  double volume = 0.0;
+  glm::dvec3 first_moment(0.0);
+  glm::dvec3 normal(0.0);
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
+      const CellGeometry& row = grid.cells[cell];
+      if (row.coverage <= 0.0) {
+        continue;
+      }
+      const double share = row.coverage * area;
+      geometry.area += share;
+      volume += share * covered_depth(row, grid.scratch.cell_depth_changes[cell]);
+      geometry.largest_depth = std::max(geometry.largest_depth, row.depth);
+      first_moment += share * glm::dvec3(cell_center(grid.frame, grid.side, i, j), row.height);
+      normal += share * grid.scratch.cell_distances[cell].gradient;
+    }
+  }
+  if (geometry.area > 0.0) {
+    geometry.equivalent_point = grid_to_body(grid.frame, first_moment / geometry.area);
+    geometry.mean_depth = volume / geometry.area;
+    geometry.radius = std::sqrt(geometry.area / std::numbers::pi);
+  }
+  if (glm::length(normal) > 0.1 * geometry.area && geometry.area > 0.0) {
+    geometry.mean_normal = glm::normalize(normal);
+  }
+  return geometry;
+}
+
+double deepest_point(std::span<const ContactPoint> points, std::uint32_t cluster,
+                     glm::dvec3& position) {
+  double depth = 0.0;
+  for (const ContactPoint& point : points) {
+    if (point.cluster == cluster && point.depth > depth) {
+      depth = point.depth;
+      position = point.position;
+    }
+  }
+  return depth;
+}
+
+void include_points(const Grid& grid, const RegionPoints& contact, PlaneBox& box) {
+  for (const ContactPoint& point : points_of(grid.scratch, contact)) {
+    if (point.cluster == contact.cluster) {
+      const glm::dvec2 in_grid(body_to_grid(grid.frame, point.position));
+      box.include(in_grid, in_grid);
+    }
+  }
+}
+
+/// The region's contact in this step, findable by its block of cells, which stays when rows move.
+RegionPoints& contact_of(StepContext& context, const RegionIdentity& region) {
+  return context.scratch.region_points[region.cells.first / region.cells.count];
+}
+
+}  // namespace
+
+void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
+  const Grid grid = grid_of(context, region);
+  contact_of(context, grid.identity) = contact;
+  glm::dvec3 deepest(0.0);
+  const double depth = deepest_point(points_of(grid.scratch, contact), contact.cluster, deepest);
+  const Distance surface = signed_distance(
+      grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts, deepest);
+  RegionFrame& frame = grid.frame;
+  frame = RegionFrame{};
+  frame.origin = deepest;
+  turn_to(frame, glm::normalize(surface.gradient));
+  PlaneBox box;
+  const glm::dvec2 start(2.0 * depth);
+  box.include(-start, start);
+  include_points(grid, contact, box);
+  fit(grid, box);
+  restart_heights(grid, depth);
+}
+
+void follow_contact(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
+  const Grid grid = grid_of(context, region);
+  contact_of(context, grid.identity) = contact;
+  PlaneBox box = covered_box(grid);
+  include_points(grid, contact, box);
+  if (!box.empty()) {
+    fit(grid, box);
+  }
+  turn_to(grid.frame, context.world.regions.at<RegionGeometry>(region).mean_normal);
+}
+
+void region_grids(StepContext& context) {
+  for (std::uint32_t region = 0; region < context.world.regions.size(); ++region) {
+    const Grid grid = grid_of(context, region);
+    const RegionPoints& contact = contact_of(context, grid.identity);
+    glm::dvec3 deepest(0.0);
+    const double depth = deepest_point(points_of(grid.scratch, contact), contact.cluster, deepest);
+    find_contact(grid, contact, depth);
+    context.world.regions.at<RegionGeometry>(region) = summarize(grid);
+  }
+}
+
+}  // namespace torsion

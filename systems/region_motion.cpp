@@ -1,0 +1,93 @@
+#include "systems/region_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/frames.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kBlendBand = 0.1;  // of the disc's radius: where "through" becomes "past"
+constexpr double kGrazing =
+    1e-3;  // |cos| of axis and normal below which the axis lies in the tangent plane
+
+double smooth_step(double x) {
+  const double t = std::clamp(x, 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+/// Distance from `point` to the fixed point, projected on the axis; to the fixed face along the
+/// axis where a face is fixed. At least `least`.
+double lever_to_fixed(const FixedRegion& fixed, const glm::dvec3& point, const glm::dvec3& axis,
+                      double least) {
+  const glm::dvec3 away = point - fixed.point;
+  if (fixed.kind == FixedKind::kFace) {
+    const double slope = std::max(std::abs(glm::dot(axis, fixed.normal)), 0.1);
+    return std::max(std::abs(glm::dot(away, fixed.normal)) / slope, least);
+  }
+  return std::max(std::abs(glm::dot(away, axis)), least);
+}
+
+/// The tool's motion seen from the body's axes.
+struct MotionInBody {
+  glm::dvec3 center;            // m: mass centre
+  glm::dvec3 velocity;          // m/s
+  glm::dvec3 angular_velocity;  // rad/s
+  glm::dvec3 axis;              // unit or zero
+};
+
+MotionInBody motion_in_body(const World& world, const RegionIdentity& region) {
+  const Pose& body = world.bodies.at<Pose>(region.body);
+  const ToolMotion& motion = world.tools.at<ToolMotion>(region.tool);
+  const glm::dquat to_body = glm::conjugate(body.rotation);
+  return {to_inner(body, motion.mass_center), to_body * motion.velocity,
+          to_body * motion.angular_velocity, to_body * motion.axis};
+}
+
+/// Where the axis meets the plane through p_eq, and how much of it counts as going through the
+/// region.
+void aim_axis(const MotionInBody& tool, const RegionFrame& frame, const RegionGeometry& geometry,
+              RegionMotion& motion) {
+  const glm::dvec3 center = body_to_grid(frame, geometry.equivalent_point);
+  motion.pivot = glm::dvec2(center);
+  motion.axis_share = 0.0;
+  const double slope = glm::dot(tool.axis, frame.normal);
+  if (std::abs(slope) < kGrazing || geometry.radius <= 0.0) {
+    return;
+  }
+  const double along = glm::dot(geometry.equivalent_point - tool.center, frame.normal) / slope;
+  const glm::dvec2 meets(body_to_grid(frame, tool.center + tool.axis * along));
+  const double miss = glm::length(meets - motion.pivot);
+  motion.axis_share = smooth_step((geometry.radius - miss) / (kBlendBand * geometry.radius));
+  motion.pivot += motion.axis_share * (meets - motion.pivot);
+}
+
+}  // namespace
+
+void region_motion(StepContext& context) {
+  World& world = context.world;
+  const double dt = world.clock.at<Clock>(0).dt;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+    const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+    const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+    RegionMotion& motion = world.regions.at<RegionMotion>(region);
+    const MotionInBody tool = motion_in_body(world, identity);
+    motion.axis = tool.axis;
+    aim_axis(tool, frame, geometry, motion);
+    const glm::dvec3 height(0.0, 0.0, body_to_grid(frame, geometry.equivalent_point).z);
+    const glm::dvec3 pivot = grid_to_body(frame, glm::dvec3(motion.pivot, 0.0) + height);
+    const glm::dvec3 velocity =
+        tool.velocity + glm::cross(tool.angular_velocity, pivot - tool.center);
+    motion.slide = glm::dvec2(body_to_grid_direction(frame, velocity)) * dt;
+    motion.spin = glm::dot(tool.angular_velocity, frame.normal) * dt;
+    motion.turn += motion.spin;
+    const bool has_axis = glm::dot(tool.axis, tool.axis) > 0.0;
+    motion.lever =
+        lever_to_fixed(world.bodies.at<FixedRegion>(identity.body), geometry.equivalent_point,
+                       has_axis ? tool.axis : frame.normal, geometry.radius);
+  }
+}
+
+}  // namespace torsion

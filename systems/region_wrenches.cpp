@@ -1,0 +1,120 @@
+#include "systems/region_wrenches.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/fault.hpp"
+#include "systems/frames.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kEventFade =
+    0.01;  // s: shorter is felt as a click, longer drags an old force along
+constexpr double kFaultFall = 0.01;  // s: from the last good wrench to zero
+constexpr double kFaultRise =
+    0.05;  // s: back again; slower, so that a flickering fault does not rattle the hand
+
+Wrench operator+(const Wrench& a, const Wrench& b) {
+  return {a.force + b.force, a.torque + b.torque};
+}
+Wrench operator-(const Wrench& a, const Wrench& b) {
+  return {a.force - b.force, a.torque - b.torque};
+}
+Wrench operator*(const Wrench& a, double share) {
+  return {a.force * share, a.torque * share};
+}
+
+bool finite(const Wrench& wrench) {
+  const glm::dvec3 sum = wrench.force + wrench.torque;
+  return std::isfinite(sum.x + sum.y + sum.z);
+}
+
+Wrench computed_wrench(const World& world, std::uint32_t region) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const RegionFriction& friction = world.regions.at<RegionFriction>(region);
+  const Pose& body = world.bodies.at<Pose>(identity.body);
+  const glm::dvec3 force = frame.normal * world.regions.at<RegionNormal>(region).force +
+                           tangent_to_body(frame, friction.force);
+  const glm::dvec3 point =
+      to_outer(body, world.regions.at<RegionGeometry>(region).equivalent_point);
+  const glm::dvec3 arm = point - world.tools.at<ToolMotion>(identity.tool).mass_center;
+  const glm::dvec3 force_in_world = body.rotation * force;
+  return {force_in_world,
+          glm::cross(arm, force_in_world) + body.rotation * (frame.normal * friction.couple)};
+}
+
+/// What the computed wrench of a tool becomes, given whether this step had a fault.
+void let_out(ToolWrench& wrench, const Wrench& computed, bool faulty, double dt) {
+  if (faulty && wrench.state != WrenchState::kFalling) {
+    wrench.state = WrenchState::kFalling;
+    wrench.held = wrench.total;
+    wrench.share = 1.0;
+  }
+  switch (wrench.state) {
+    case WrenchState::kLive:
+      wrench.total = computed;
+      return;
+    case WrenchState::kFalling:
+      wrench.share = std::max(0.0, wrench.share - dt / kFaultFall);
+      wrench.total = wrench.held * wrench.share;
+      if (wrench.share == 0.0 && !faulty) {
+        wrench.state = WrenchState::kRising;
+      }
+      return;
+    case WrenchState::kRising:
+      wrench.share = std::min(1.0, wrench.share + dt / kFaultRise);
+      wrench.total = computed * wrench.share;
+      if (wrench.share == 1.0) {
+        wrench.state = WrenchState::kLive;
+      }
+      return;
+  }
+}
+
+}  // namespace
+
+void region_wrenches(StepContext& context) {
+  World& world = context.world;
+  const double dt = world.clock.at<Clock>(0).dt;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    const Wrench computed = computed_wrench(world, region);
+    RegionWrench& wrench = world.regions.at<RegionWrench>(region);
+    if (wrench.event_now != 0) {
+      wrench.event_change = wrench.on_tool - computed;
+      wrench.event_share = 1.0;
+    } else {
+      wrench.event_share = std::max(0.0, wrench.event_share - dt / kEventFade);
+    }
+    wrench.on_tool = computed + wrench.event_change * wrench.event_share;
+  }
+}
+
+void sum_wrenches(StepContext& context) {
+  World& world = context.world;
+  Clock& clock = world.clock.at<Clock>(0);
+  for (std::uint32_t tool = 0; tool < world.tools.size(); ++tool) {
+    Wrench computed;
+    for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+      if (world.regions.at<RegionIdentity>(region).tool == tool) {
+        computed = computed + world.regions.at<RegionWrench>(region).on_tool;
+      }
+    }
+    if (!finite(computed)) {
+      raise(clock, Fault::kResultNotFinite);
+      computed = Wrench{};
+    }
+    ToolWrench& wrench = world.tools.at<ToolWrench>(tool);
+    const Wrench before = wrench.total;
+    let_out(wrench, computed, clock.faults != 0, clock.dt);
+    // The holder balances the contact: its work is minus the contact's, by the trapezoidal rule.
+    const ToolMotion& motion = world.tools.at<ToolMotion>(tool);
+    const Wrench mean = (before + wrench.total) * 0.5;
+    wrench.work -=
+        (glm::dot(mean.force, motion.velocity) + glm::dot(mean.torque, motion.angular_velocity)) *
+        clock.dt;
+  }
+}
+
+}  // namespace torsion

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "systems/step.hpp"
+
+namespace torsion {
+
+/// Force and torque of every region on its tool, about the tool's mass centre, in the world: T =
+/// (p_eq - c) x F plus the friction couple about the normal (equation (1) with the sign of
+/// docs/models.md). What a birth, merge or split would make jump is let out over kEventFade seconds
+/// instead.
+void region_wrenches(StepContext& context);
+
+/// Adds the regions' wrenches on every tool, and the work of the tool's holder. After a fault what
+/// is let out falls from the last good wrench to zero and, once the fault is over, rises again; a
+/// wrench that is not finite never gets out.
+void sum_wrenches(StepContext& context);
+
+}  // namespace torsion

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "ecs/commands.hpp"
+#include "ecs/components.hpp"
+#include "ecs/world.hpp"
+#include "systems/distance.hpp"
+
+namespace torsion {
+
+/// A point of a tool's surface inside a body.
+struct ContactPoint {
+  glm::dvec3 position{0.0};   // m, body
+  double depth = 0.0;         // m, > 0
+  std::uint32_t cluster = 0;  // which group of points of its pair it belongs to: 0, 1, ...
+};
+
+/// The contact points of one tool on one body.
+struct ContactPair {
+  std::uint32_t tool = 0;
+  std::uint32_t body = 0;
+  Range points;  // in Scratch::points
+  std::uint32_t clusters = 0;
+};
+
+/// A candidate sample while one pair is searched.
+struct Candidate {
+  std::uint32_t sample = 0;  // row in World::samples
+  double distance = 0.0;     // m, to the body; negative inside
+};
+
+/// A region that continues, begins or ends in this step, for group_regions.
+struct ClusterOwner {
+  std::uint32_t region =
+      kNoRow;  // row in `regions`; kNoRow: nobody continues it, a new region forms
+  double overlap = 0.0;
+};
+
+/// Which of a pair's clusters a region continues in this step.
+struct RegionPoints {
+  Range points;  // in Scratch::points: all of the pair
+  std::uint32_t cluster = kNoRow;
+};
+
+/// Memory that the systems of one step share. Reserved at load; nothing in it outlives a step, so
+/// that a saved world replays without it.
+struct Scratch {
+  // detect_contacts
+  std::vector<double>
+      sample_distance;  // (samples) distance to the current body; valid where stamped
+  std::vector<std::uint32_t> sample_stamp;  // (samples)
+  std::uint32_t stamp = 0;
+  std::vector<Candidate> candidates;
+  std::vector<ContactPoint> points;
+  std::vector<ContactPair> pairs;
+  // group_points
+  std::vector<std::uint32_t> order;
+  std::vector<std::uint32_t> parent;
+  std::vector<glm::dvec3> cluster_points;
+  // group_regions
+  std::vector<ClusterOwner> owners;  // (kMaxRegionsPerBody) of one pair's clusters
+  std::vector<double> overlaps;      // (regions of the pair x clusters)
+  Commands<RegionTable> region_commands;
+  std::vector<RegionPoints>
+      region_points;  // (regions) by block of cells, which does not move when rows do
+  // region_grids
+  std::vector<glm::dvec3> cell_points;   // (cells of one region)
+  std::vector<Distance> cell_distances;  // (cells of one region)
+  std::vector<glm::dvec3>
+      cell_normals;  // (cells of one region) gradient of the tool's distance, grid
+  std::vector<double> cell_depth_changes;  // (cells of one region) m, across the cell
+  std::vector<std::uint32_t> cell_queue;   // (cells of one region)
+  std::vector<std::uint8_t> cell_marks;    // (cells of one region)
+
+  /// Takes all memory that a step of `world` can need.
+  void reserve(const World& world);
+};
+
+}  // namespace torsion

@@ -1,0 +1,90 @@
+#include "systems/step.hpp"
+
+#include <algorithm>
+
+#include "systems/body_models/skeleton.hpp"
+#include "systems/contact_models/paper.hpp"
+#include "systems/couple_tools.hpp"
+#include "systems/detect_contacts.hpp"
+#include "systems/group_regions.hpp"
+#include "systems/region_grid.hpp"
+#include "systems/region_motion.hpp"
+#include "systems/region_wrenches.hpp"
+#include "systems/scratch.hpp"
+
+namespace torsion {
+namespace {
+
+bool any_tool_and_body(const StepContext& context) {
+  return !context.world.tools.empty() && !context.world.bodies.empty();
+}
+
+template <ContactModel Model>
+bool any_contact_model(const StepContext& context) {
+  return any_tool_and_body(context) &&
+         std::ranges::any_of(context.world.bodies.column<BodyModels>(),
+                             [](const BodyModels& models) { return models.contact == Model; });
+}
+
+bool any_skeleton(const StepContext& context) {
+  return any_tool_and_body(context) &&
+         std::ranges::any_of(
+             context.world.bodies.column<BodyModels>(),
+             [](const BodyModels& models) { return models.body == BodyModel::kSkeleton; });
+}
+
+bool any_friction(const StepContext& context) {
+  return any_tool_and_body(context) &&
+         std::ranges::any_of(context.world.bodies.column<Friction>(), [](const Friction& friction) {
+           return friction.static_friction > 0.0;
+         });
+}
+
+bool any_paper_friction(const StepContext& context) {
+  return any_friction(context) && any_contact_model<ContactModel::kPaper>(context);
+}
+
+}  // namespace
+
+std::vector<System<StepContext>> step_systems() {
+  // The paper's Fig. 4, top to bottom.
+  return {
+      {"couple_tools", "takes the tools' poses and their motion", "a tool", nullptr, couple_tools},
+      {"detect_contacts", "finds the tool's surface points inside a body", "a tool and a body",
+       any_tool_and_body, detect_contacts},
+      {"group_contact_points", "groups contact points closer than r_th", "a tool and a body",
+       any_tool_and_body, group_contact_points},
+      {"group_regions", "keeps the identity of contact regions", "a tool and a body",
+       any_tool_and_body, group_regions},
+      {"region_grids", "finds depth and area cell by cell", "a tool and a body", any_tool_and_body,
+       region_grids},
+      {"paper_normal_forces", "normal force f = k1 x + k3 x^3", "a body with contact model paper",
+       any_contact_model<ContactModel::kPaper>, paper_normal_forces},
+      {"region_motion", "slide, spin and axis of every region", "a body with friction",
+       any_friction, region_motion},
+      {"paper_friction_forces", "friction and contact torque, equations (2)-(9), (14)",
+       "a body with contact model paper and friction", any_paper_friction, paper_friction_forces},
+      {"region_wrenches", "force and torque of every region, equation (1)", "a tool and a body",
+       any_tool_and_body, region_wrenches},
+      {"skeleton", "beam skeleton: displacement of the anchors", "a body with body model skeleton",
+       any_skeleton, skeleton},
+      {"sum_wrenches", "the wrench on every tool, faults, work", "a tool", nullptr, sum_wrenches},
+  };
+}
+
+Simulation::Simulation() : scratch(std::make_unique<Scratch>()) {}
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+void step(Simulation& simulation, std::span<const Pose> tool_poses) {
+  TORSION_ASSERT(tool_poses.size() == simulation.world.tools.size());
+  StepContext context{simulation.world, tool_poses, *simulation.scratch};
+  simulation.schedule.run(context, simulation.world.clock.at<Clock>(0).step);
+  Clock& clock = simulation.world.clock.at<Clock>(0);
+  clock.faults_ever |= clock.faults;
+  clock.time = static_cast<double>(clock.step) * clock.dt;
+  clock.step += 1;
+}
+
+}  // namespace torsion

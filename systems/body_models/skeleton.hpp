@@ -9,7 +9,8 @@
 
 namespace torsion {
 
-/// Elastic sums along the straight main beam from a body's fixed point q_f (root) to a point of its surface.
+/// Elastic sums along the straight main beam from a body's fixed point q_f (root) to a point of its
+/// surface.
 struct BeamSummary {
   double length = 0.0;              // L, m: at least a thousandth of the body's size
   double axial_stiffness = 0.0;     // 1 / integral of ds / (E A), N/m; E A / L for a prism
@@ -18,16 +19,17 @@ struct BeamSummary {
   double torsion_compliance = 0.0;  // integral of ds / (G J), J Saint-Venant's constant, rad/(N m)
 };
 
-/// The main beam to `point`, its sections interpolated between the beams of the nearest anchors. Continuous in
-/// `point`. O(anchors). A body without anchors gives its length and zeros.
+/// The main beam to `point`, its sections interpolated between the beams of the nearest anchors.
+/// Continuous in `point`. O(anchors). A body without anchors gives its length and zeros.
 /// @param body   row in world.bodies
 /// @param point  m, body frame, on the rest surface (p_eq)
 BeamSummary beam_summary(const World& world, std::uint32_t body, const glm::dvec3& point);
 
-/// Displacements of the anchors of each body whose body model is kSkeleton, summed over its regions in their order
-/// of formation: bending, shear, stretch and sideways contraction of a Timoshenko beam from q_f to p_eq.
-/// Torsion about the beam is left out: the twist angles of the drawn vertices carry it (systems/surface_field.hpp).
-/// Writes AnchorMotion; zero for bodies with another model. Source: docs/models.md, "Body model skeleton".
+/// Displacements of the anchors of each body whose body model is kSkeleton, summed over its regions
+/// in their order of formation: bending, shear, stretch and sideways contraction of a Timoshenko
+/// beam from q_f to p_eq. Torsion about the beam is left out: the twist angles of the drawn
+/// vertices carry it (systems/surface_field.hpp). Writes AnchorMotion; zero for bodies with another
+/// model. Source: docs/models.md, "Body model skeleton".
 void skeleton(StepContext& context);
 
 }  // namespace torsion

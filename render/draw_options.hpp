@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+
+namespace torsion {
+
+/// What the body's colour shows.
+enum class HeatMap : std::uint32_t {
+  kNone,      // the material's own colour
+  kTwist,     // twist angle, summed over the regions, signed; the scale goes from -heat_limit to
+              // +heat_limit, rad
+  kPressure,  // normal contact pressure; the scale goes from 0 to heat_limit, Pa
+};
+
+/// What one picture shows.
+struct DrawOptions {
+  HeatMap heat_map = HeatMap::kNone;
+  double heat_limit = 1.0;        // rad or Pa at the end of the colour scale, > 0
+  bool grid = true;               // material lines, fixed to the body at rest
+  bool ground = true;             // a floor under the bodies that takes the shadow
+  bool transparent_tools = true;  // the contact shows through the tool
+  bool arrows = true;             // force and torque on each tool
+  double full_force = 0.0;   // N that the longest arrow stands for; 0: the largest drawn so far
+  double full_torque = 0.0;  // N m that the longest arc stands for; 0: the largest drawn so far
+};
+
+}  // namespace torsion

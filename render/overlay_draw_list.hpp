@@ -1,0 +1,34 @@
+#pragma once
+
+// What the overlay's maker (render/overlay.hpp) hands to the renderer: triangles in pixels over the
+// finished picture.
+
+#include <cstdint>
+#include <vector>
+
+namespace torsion {
+
+/// One corner. The colour's alpha times the atlas's alpha at (u, v) is how much of it covers the
+/// picture.
+struct OverlayVertex {
+  float x = 0.0F;          // pixels from the left edge
+  float y = 0.0F;          // pixels from the top edge
+  float u = 0.0F;          // 0 to 1 over the atlas, from the left
+  float v = 0.0F;          // 0 to 1 over the atlas, from the top
+  std::uint32_t rgba = 0;  // sRGB bytes, R lowest (Dear ImGui's IM_COL32), alpha not premultiplied
+};
+
+/// Glyphs and one solid patch as coverage, 0 to 255; rows from the top.
+struct OverlayAtlas {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<std::uint8_t> alpha;  // width * height
+};
+
+/// Triangles, drawn in order, blended one over the other.
+struct OverlayDrawList {
+  std::vector<OverlayVertex> vertices;
+  std::vector<std::uint32_t> indices;  // three for each triangle
+};
+
+}  // namespace torsion

@@ -1,0 +1,17 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+
+#include "frame.glsl"
+
+layout(location = 0) in vec3 world_normal;
+layout(location = 1) in vec3 vertex_color;
+
+layout(location = 0) out vec4 color;
+
+// Lit like the rest but never in shadow, since an arrow is not a thing of the scene.
+void main() {
+  vec3 normal = normalize(world_normal);
+  vec3 ambient = mix(frame.ground_light.rgb, frame.sky_light.rgb, 0.5 + 0.5 * normal.y);
+  vec3 light = ambient + frame.key_light.rgb * max(dot(normal, frame.to_key_light.xyz), 0.0);
+  color = vec4(vertex_color * light, 1.0);
+}

@@ -1,0 +1,23 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+
+#include "frame.glsl"
+
+layout(location = 0) in vec4 position;  // m, body; w what the heat map shows
+layout(location = 1) in vec4 normal;    // body
+layout(location = 2) in vec4 rest;      // m, body; w 1 where fixed
+
+layout(location = 0) out vec3 world_position;
+layout(location = 1) out vec3 world_normal;
+layout(location = 2) out vec4 rest_position;
+layout(location = 3) out float heat;
+layout(location = 4) out vec3 in_shadow_map;
+
+void main() {
+  world_position = point_to_world(position.xyz);
+  world_normal = direction_to_world(normal.xyz);
+  rest_position = rest;
+  heat = position.w;
+  in_shadow_map = (frame.shadow_from_world * vec4(world_position, 1.0)).xyz;
+  gl_Position = frame.clip_from_world * vec4(world_position, 1.0);
+}

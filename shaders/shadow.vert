@@ -1,0 +1,12 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+
+#include "frame.glsl"
+
+layout(location = 0) in vec4 position;  // m, body or tool
+
+void main() {
+  // Shadow map coordinates are 0 to 1, clip coordinates -1 to 1.
+  vec3 at = (frame.shadow_from_world * vec4(point_to_world(position.xyz), 1.0)).xyz;
+  gl_Position = vec4(2.0 * at.xy - 1.0, at.z, 1.0);
+}

@@ -1,0 +1,23 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+
+#include "frame.glsl"
+
+layout(location = 0) in vec4 position;  // m, tool
+layout(location = 1) in vec4 normal;    // tool
+
+layout(location = 0) out vec3 world_position;
+layout(location = 1) out vec3 world_normal;
+layout(location = 2) out vec3 tool_position;
+layout(location = 3) out vec3 in_shadow_map;
+
+// tool_depth and tool draw the same triangles; both must come out at the same depth to the last bit.
+invariant gl_Position;
+
+void main() {
+  world_position = point_to_world(position.xyz);
+  world_normal = direction_to_world(normal.xyz);
+  tool_position = position.xyz;
+  in_shadow_map = (frame.shadow_from_world * vec4(world_position, 1.0)).xyz;
+  gl_Position = frame.clip_from_world * vec4(world_position, 1.0);
+}

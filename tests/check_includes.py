@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""Fails when a file includes what its folder may not: docs/architecture.md says which arrows there are.
+
+usage: check_includes.py [--self-test]
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+# Folder -> folders of the project that it may include besides itself.
+ALLOWED = {
+    "ecs": set(),
+    "systems": {"ecs"},
+    "scenes": {"ecs"},
+    "device": {"ecs"},
+    "render": {"ecs", "shaders"},
+    "shaders": set(),
+    "app": {"ecs", "systems", "scenes", "device", "render"},
+    "tests": {"ecs", "systems", "scenes", "device", "render", "shaders", "app"},
+}
+# Libraries that only one folder may touch: an include's beginning -> that folder (tests may, too).
+OWNED_LIBRARIES = {
+    "vulkan/": "render",
+    "GLFW/": "render",
+    "tiny_gltf": "scenes",
+    "libusb": "device",
+    "CLI/": "app",
+}
+SUFFIXES = {".cpp", ".hpp", ".h", ".comp", ".vert", ".frag", ".glsl"}
+INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
+
+
+def problems_of(path, text):
+    """The forbidden includes of one file: a list of 'path:line: what'."""
+    folder = pathlib.PurePosixPath(path).parts[0]
+    if folder not in ALLOWED:
+        return [f"{path}:1: folder {folder}/ has no rule in tests/check_includes.py"]
+    found = []
+    for number, line in enumerate(text.splitlines(), start=1):
+        match = INCLUDE.match(line)
+        if not match:
+            continue
+        quote, target = match.groups()
+        place = f"{path}:{number}: "
+        for library, owner in OWNED_LIBRARIES.items():
+            if target.startswith(library) and folder not in (owner, "tests"):
+                found.append(f"{place}only {owner}/ may include <{target}>")
+        first = pathlib.PurePosixPath(target).parts[0]
+        if first in ALLOWED and first != folder and first not in ALLOWED[folder]:
+            found.append(f"{place}{folder}/ may not include {first}/ ({target})")
+        elif quote == '"' and "/" not in target and folder != "shaders" and not target.endswith(".glsl"):
+            # Headers made by the build are the exception, and they have a folder, too.
+            found.append(f'{place}write "folder/file.hpp", not "{target}"')
+        elif ".." in pathlib.PurePosixPath(target).parts:
+            found.append(f'{place}write "folder/file.hpp", not "{target}"')
+    return found
+
+
+def self_test():
+    cases = [
+        ("ecs/a.hpp", '#include "ecs/b.hpp"', 0),
+        ("ecs/a.hpp", "#include <vector>", 0),
+        ("ecs/a.hpp", '#include "systems/step.hpp"', 1),
+        ("systems/a.cpp", '#include "ecs/world.hpp"', 0),
+        ("systems/a.cpp", '#include "render/frame.hpp"', 1),
+        ("systems/a.cpp", "  #  include <vulkan/vulkan.hpp>", 1),
+        ("scenes/a.cpp", "#include <tiny_gltf.h>", 0),
+        ("app/a.cpp", "#include <tiny_gltf.h>", 1),
+        ("app/a.cpp", '#include "systems/step.hpp"\n#include "render/frame.hpp"', 0),
+        ("render/a.cpp", '#include "systems/step.hpp"\n#include "app/run.hpp"', 2),
+        ("render/a.cpp", '#include "../ecs/world.hpp"', 1),
+        ("device/a.cpp", '#include "device.hpp"', 1),
+        ("tests/app/a_test.cpp", '#include "app/run.hpp"', 0),
+        ("app/a.cpp", '#include "tests/support/image_compare.hpp"', 1),
+        ("tools/a.cpp", "", 1),
+        ("ecs/a.hpp", '// #include "systems/step.hpp"', 0),
+    ]
+    wrong = [case for case in cases if len(problems_of(case[0], case[1])) != case[2]]
+    for path, text, expected in wrong:
+        print(f"self-test: {path}: {text!r}: expected {expected}, got {problems_of(path, text)}")
+    return 1 if wrong else 0
+
+
+def main():
+    if sys.argv[1:] == ["--self-test"]:
+        return self_test()
+    root = pathlib.Path(__file__).resolve().parent.parent
+    listed = subprocess.run(["git", "ls-files"], cwd=root, check=True, capture_output=True, text=True)
+    files = [line for line in listed.stdout.splitlines() if pathlib.PurePosixPath(line).suffix in SUFFIXES]
+    found = []
+    for file in files:
+        if (root / file).is_file():
+            found += problems_of(file, (root / file).read_text(encoding="utf-8"))
+    print("\n".join(found) if found else f"{len(files)} files, no forbidden include")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,199 @@
+#include "tests/systems/body_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "systems/beam_sections.hpp"
+#include "systems/body_models/skeleton.hpp"
+#include "systems/prepare_anchors.hpp"
+#include "systems/scratch.hpp"
+#include "systems/step.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Appends a grid of (cells x cells) quads that f maps to the surface; outward if f's tangents are
+/// counter-clockwise.
+template <class F>
+void append_patch(std::uint32_t cells_u, std::uint32_t cells_v, const F& f, SurfaceMesh& mesh) {
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (std::uint32_t j = 0; j <= cells_v; ++j) {
+    for (std::uint32_t i = 0; i <= cells_u; ++i) {
+      mesh.positions.push_back(
+          f(static_cast<double>(i) / cells_u, static_cast<double>(j) / cells_v));
+    }
+  }
+  for (std::uint32_t j = 0; j < cells_v; ++j) {
+    for (std::uint32_t i = 0; i < cells_u; ++i) {
+      const std::uint32_t a = first + j * (cells_u + 1) + i;
+      const std::uint32_t b = a + cells_u + 1;
+      mesh.triangles.emplace_back(a, a + 1, b + 1);
+      mesh.triangles.emplace_back(a, b + 1, b);
+    }
+  }
+}
+
+glm::dvec3 box_point(int face, double u, double v) {
+  const double x = 2.0 * u - 1.0;
+  const double y = 2.0 * v - 1.0;
+  switch (face) {
+    case 0:
+      return {x, y, 1.0};
+    case 1:
+      return {-x, y, -1.0};
+    case 2:
+      return {1.0, y, -x};
+    case 3:
+      return {-1.0, y, x};
+    case 4:
+      return {x, 1.0, -y};
+    default:
+      return {x, -1.0, y};
+  }
+}
+
+}  // namespace
+
+SurfaceMesh shape_surface(ShapeKind kind, const glm::dvec3& half_extent, std::uint32_t cells) {
+  SurfaceMesh mesh;
+  if (kind == ShapeKind::kBox) {
+    for (int face = 0; face < 6; ++face) {
+      append_patch(
+          cells, cells, [&](double u, double v) { return half_extent * box_point(face, u, v); },
+          mesh);
+    }
+  } else if (kind == ShapeKind::kCylinder) {
+    const auto around = [&](double u, double radius, double y) {
+      const double angle = -2.0 * kPi * u;
+      return glm::dvec3(half_extent.x * radius * std::cos(angle), half_extent.y * y,
+                        half_extent.x * radius * std::sin(angle));
+    };
+    append_patch(
+        4 * cells, cells, [&](double u, double v) { return around(u, 1.0, 2.0 * v - 1.0); }, mesh);
+    append_patch(
+        4 * cells, cells, [&](double u, double v) { return around(u, 1.0 - v, 1.0); }, mesh);
+    append_patch(
+        4 * cells, cells, [&](double u, double v) { return around(u, v, -1.0); }, mesh);
+  } else {
+    append_patch(
+        4 * cells, 2 * cells,
+        [&](double u, double v) {
+          const double angle = -2.0 * kPi * u;
+          const double polar = kPi * (1.0 - v);
+          return half_extent * glm::dvec3(std::sin(polar) * std::cos(angle), std::cos(polar),
+                                          std::sin(polar) * std::sin(angle));
+        },
+        mesh);
+  }
+  return mesh;
+}
+
+BodyDescription exact_body(ShapeKind kind, const glm::dvec3& half_extent, FixedKind fixed,
+                           std::uint32_t cells) {
+  BodyDescription body;
+  body.node = "body";
+  body.fixed.kind = fixed;
+  body.fixed.point = glm::dvec3(0.0, -half_extent.y, 0.0);
+  body.fixed.normal = fixed == FixedKind::kFace ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0);
+  body.models.body = BodyModel::kSkeleton;
+  body.models.contact = ContactModel::kPaper;
+  PartDescription part;
+  part.node = "body";
+  part.shape.kind = kind;
+  part.shape.half_extent = half_extent;
+  part.surface = shape_surface(kind, half_extent, cells);
+  for (const glm::dvec3& position : part.surface.positions) {
+    body.draw.positions.emplace_back(position);
+    body.draw.normals.emplace_back(glm::vec3(0.0F, 1.0F, 0.0F));
+    const bool lowest = position.y < -half_extent.y * (1.0 - 1e-9);
+    const bool middle = glm::length(glm::dvec2(position.x, position.z)) < 1e-9;
+    body.draw.fixed.push_back(lowest && (fixed == FixedKind::kFace || middle));
+  }
+  body.draw.triangles = part.surface.triangles;
+  body.parts.push_back(std::move(part));
+  return body;
+}
+
+World body_world(const BodyDescription& body) {
+  World world;
+  Capacities capacities;
+  capacities.bodies = 1;
+  capacities.tools = 1;
+  capacities.parts = 2;
+  capacities.fixed_volumes = static_cast<std::uint32_t>(body.fixed_volumes.size());
+  capacities.anchors = kAnchorsPerBody;
+  capacities.regions = kMaxRegionsPerBody;
+  world.reserve(capacities, Settings{});
+
+  OwnedRows owned;
+  owned.parts = *world.parts.append();
+  world.parts.at<ShapePart>(0) = body.parts.front().shape;
+  FixedRegion fixed = body.fixed;
+  fixed.volumes =
+      *world.fixed_volumes.append(static_cast<std::uint32_t>(body.fixed_volumes.size()));
+  std::ranges::copy(body.fixed_volumes,
+                    world.fixed_volumes.rows<FixedVolume>(fixed.volumes).begin());
+  const PreparedAnchors prepared = prepare_anchors(body, world, owned.parts, fixed.volumes);
+  owned.anchors = *world.anchors.append(static_cast<std::uint32_t>(prepared.anchors.size()));
+  std::ranges::copy(prepared.anchors, world.anchors.column<AnchorRest>().begin());
+  world.sections.append(static_cast<std::uint32_t>(prepared.sections.size()));
+  std::ranges::copy(prepared.sections, world.sections.column<BeamSection>().begin());
+
+  world.bodies.append();
+  world.bodies.at<Entity>(0) = *world.body_handles.create(0);
+  world.bodies.at<Pose>(0) = body.pose;
+  world.bodies.at<Elasticity>(0) = body.elasticity;
+  world.bodies.at<Friction>(0) = body.friction;
+  world.bodies.at<FixedRegion>(0) = fixed;
+  world.bodies.at<BodyModels>(0) = body.models;
+  world.bodies.at<OwnedRows>(0) = owned;
+  const glm::dvec3 half = body.parts.front().shape.half_extent;
+  world.bodies.at<Bounds>(0) = {-half, half};
+
+  const Range tool_part = *world.parts.append();
+  world.parts.at<ShapePart>(tool_part.first).kind = ShapeKind::kSphere;
+  world.parts.at<ShapePart>(tool_part.first).half_extent = glm::dvec3(0.05);
+  world.parts.at<ShapePart>(tool_part.first).pose = Pose{};
+  world.tools.append();
+  world.tools.at<ToolPose>(0) = ToolPose{};
+  world.tools.at<ToolPose>(0).now.position = glm::dvec3(0.0, 10.0, 0.0);
+  world.tools.at<ToolWrench>(0) = ToolWrench{};
+  world.tools.at<OwnedRows>(0).parts = tool_part;
+  world.tools.at<Bounds>(0) = {glm::dvec3(-0.05), glm::dvec3(0.05)};
+  return world;
+}
+
+std::uint32_t add_region(World& world, const RegionOnBody& region) {
+  const std::uint32_t row = world.regions.append()->first;
+  world.regions.at<RegionIdentity>(row) =
+      RegionIdentity{*world.region_handles.create(row), 0, 0, row, Range{}};
+  const TransverseAxes axes = transverse_axes(region.normal, glm::dvec3(0.0, 1.0, 0.0));
+  RegionFrame& frame = world.regions.at<RegionFrame>(row);
+  frame =
+      RegionFrame{region.point, axes.first, axes.second, region.normal, glm::dvec2(region.radius)};
+  RegionGeometry& geometry = world.regions.at<RegionGeometry>(row);
+  geometry = RegionGeometry{};
+  geometry.equivalent_point = region.point;
+  geometry.radius = region.radius;
+  geometry.area = kPi * region.radius * region.radius;
+  geometry.mean_depth = 0.5 * region.depth;
+  geometry.largest_depth = region.depth;
+  world.regions.at<RegionNormal>(row).force = -glm::dot(region.force_on_body, region.normal);
+  world.regions.at<RegionFriction>(row).force = -glm::dvec2(
+      glm::dot(region.force_on_body, axes.first), glm::dot(region.force_on_body, axes.second));
+  world.regions.at<RegionFriction>(row).couple = -region.couple_on_body;
+  return row;
+}
+
+void run_skeleton(World& world) {
+  Scratch scratch;
+  const std::vector<Pose> poses(world.tools.size());
+  StepContext context{world, poses, scratch};
+  skeleton(context);
+}
+
+}  // namespace torsion

@@ -97,11 +97,19 @@ void fill_coarse_nodes(const MeshDistance& mesh, std::uint32_t threads, BuiltFie
 /// the cell or come within kBand of it.
 void choose_bricks(const MeshDistance& mesh, std::uint32_t threads, BuiltField& field) {
   const DistanceField& grid = field.header;
-  const double reach = (0.5 * std::sqrt(3.0) + kBand) * grid.spacing;
+  const double half_diagonal = 0.5 * std::sqrt(3.0) * grid.spacing;
+  const double reach = half_diagonal + kBand * grid.spacing;
+  const glm::uvec3 nodes = grid.cells + 1U;
   field.bricks.assign(std::size_t{grid.cells.x} * grid.cells.y * grid.cells.z, DistanceBrick{});
   for_each_row(grid.cells.y * grid.cells.z, threads, [&](std::uint32_t row) {
     RowWalk walk(mesh);
     for (std::uint32_t x = 0; x < grid.cells.x; ++x) {
+      const std::size_t corner =
+          (std::size_t{row / grid.cells.y} * nodes.y + row % grid.cells.y) * nodes.x + x;
+      const float at_corner = field.nodes[corner].gradient_and_distance.w;
+      if (std::abs(static_cast<double>(at_corner)) > reach + half_diagonal * (1.0 + 1e-6)) {
+        continue;
+      }
       const glm::dvec3 step(x + 0.5, row % grid.cells.y + 0.5, row / grid.cells.y + 0.5);
       const DistanceNode center = walk.node_at(grid.origin + grid.spacing * step);
       if (std::abs(static_cast<double>(center.gradient_and_distance.w)) <= reach) {
@@ -243,7 +251,8 @@ std::optional<BuiltField> field_from_bytes(std::span<const std::byte> bytes) {
         return brick.first_node == kNoRow ||
                brick.first_node + side * side * side <= field.nodes.size();
       });
-  const std::uint64_t coarse = (header.cells.x + std::uint64_t{1}) * (header.cells.y + std::uint64_t{1}) *
+  const std::uint64_t coarse = (header.cells.x + std::uint64_t{1}) *
+                               (header.cells.y + std::uint64_t{1}) *
                                (header.cells.z + std::uint64_t{1});
   if (!in_range || header.coarse_nodes != Range{0, static_cast<std::uint32_t>(coarse)} ||
       coarse > field.nodes.size()) {

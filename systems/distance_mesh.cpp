@@ -12,8 +12,10 @@
 #include <glm/geometric.hpp>
 
 #include "ecs/assert.hpp"
+#include "systems/distance_shapes.hpp"
 
 namespace torsion {
+
 namespace {
 
 /// What of a triangle is closest to a point: 0 to 2 a corner, 3 to 5 the edge from corner k-3 to
@@ -22,11 +24,15 @@ using Feature = std::uint32_t;
 constexpr Feature kFirstEdge = 3;
 constexpr Feature kFace = 6;
 
-struct Corners {
+/// Two cache lines: the first is enough to turn down most triangles.
+struct alignas(64) Corners {
+  glm::dvec3 middle;
+  glm::dvec3 normal;  // unit, or zero for a triangle without area
+  double reach;       // m, from `middle` to the farthest corner
+  double padding;
   glm::dvec3 a;
   glm::dvec3 b;
   glm::dvec3 c;
-  glm::dvec3 normal;  // unit, or zero for a triangle without area
 };
 
 struct FeaturePoint {
@@ -94,8 +100,13 @@ struct Query {
 /// the tree's order.
 bool try_triangle(Query& query, std::uint32_t triangle) {
   const Corners& corners = query.corners[triangle];
-  const double height = glm::dot(corners.normal, query.point - corners.a);
-  if (height * height > query.best_squared) {
+  // The triangle lies in its plane, within `reach` of its middle.
+  const glm::dvec3 from_middle = query.point - corners.middle;
+  const double height = glm::dot(corners.normal, from_middle);
+  const double across =
+      std::sqrt(larger(glm::dot(from_middle, from_middle) - height * height, 0.0));
+  const double beyond = larger(across - corners.reach, 0.0);
+  if (height * height + beyond * beyond > query.best_squared * (1.0 + 1e-9)) {
     return false;
   }
   const FeaturePoint found = closest_on_triangle(corners, query.point);
@@ -171,8 +182,14 @@ void MeshDistance::Tree::set_corners(const SurfaceMesh& mesh) {
   glm::dvec3 highest = lowest;
   corners.reserve(triangles.size());
   for (const glm::uvec3& triangle : triangles) {
-    Corners t{mesh.positions[triangle.x], mesh.positions[triangle.y], mesh.positions[triangle.z],
-              glm::dvec3(0.0)};
+    Corners t{};
+    t.a = mesh.positions[triangle.x];
+    t.b = mesh.positions[triangle.y];
+    t.c = mesh.positions[triangle.z];
+    t.middle = (t.a + t.b + t.c) / 3.0;
+    t.reach = std::max({glm::distance(t.middle, t.a), glm::distance(t.middle, t.b),
+                        glm::distance(t.middle, t.c)}) *
+              (1.0 + 1e-9);
     const glm::dvec3 normal = glm::cross(t.b - t.a, t.c - t.a);
     const double length = std::sqrt(glm::dot(normal, normal));
     t.normal = length > 0.0 ? normal / length : normal;

@@ -20,7 +20,7 @@ void surface_field(const World& world, const Snapshot& snapshot, FrameWorld& fra
 
 /// The CPU twin of shaders/deform.comp: positions [m, body] of `body`'s vertices from the columns
 /// of `frame`.
-/// @param positions  (vertices of the body) out
+/// @param positions  (vertices of the body) out: xyz m, w the sum of the twist angles, rad
 void deform_vertices(const FrameWorld& frame, std::uint32_t body, std::span<glm::vec4> positions);
 
 }  // namespace torsion

@@ -1,0 +1,99 @@
+#include "systems/anchor_interpolation.hpp"
+
+#include <cmath>
+
+#include <Eigen/Dense>
+#include <glm/geometric.hpp>
+
+namespace torsion {
+
+std::vector<InterpolationRow> invert_interpolation(std::span<const glm::dvec3> centers) {
+  constexpr std::size_t kFewest = 5;
+  if (centers.size() < kFewest) {
+    return {};
+  }
+  const auto count = static_cast<Eigen::Index>(centers.size());
+  const Eigen::Index side = count + 4;
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(side, side);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const glm::dvec3& center = centers[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 0; j < count; ++j) {
+      matrix(i, j) = glm::distance(center, centers[static_cast<std::size_t>(j)]);
+    }
+    const Eigen::Vector4d affine(1.0, center.x, center.y, center.z);
+    matrix.block<1, 4>(i, count) = affine.transpose();
+    matrix.block<4, 1>(count, i) = affine;
+  }
+  // Complete orthogonal: centers that lie in one plane leave part of the affine field open; it is
+  // set to zero.
+  const Eigen::MatrixXd inverse = matrix.completeOrthogonalDecomposition().pseudoInverse();
+  std::vector<InterpolationRow> rows;
+  rows.reserve(static_cast<std::size_t>(side * side));
+  for (Eigen::Index i = 0; i < side; ++i) {
+    for (Eigen::Index j = 0; j < side; ++j) {
+      rows.push_back({inverse(i, j)});
+    }
+  }
+  return rows;
+}
+
+void solve_interpolation(std::span<const InterpolationRow> inverse,
+                         std::span<const glm::dvec3> centers, std::span<const glm::dvec3> values,
+                         InterpolationWeights& weights) {
+  const std::size_t count = centers.size();
+  const std::size_t side = count + 4;
+  weights.centers.resize(count);
+  const auto row_times_values = [&](std::size_t row) {
+    glm::dvec3 sum(0.0);
+    for (std::size_t j = 0; j < count; ++j) {
+      sum += values[j] * inverse[row * side + j].value;
+    }
+    return sum;
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    weights.centers[i] = {glm::vec3(centers[i]), glm::vec3(row_times_values(i))};
+  }
+  weights.constant = row_times_values(count);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    weights.slope[axis] = row_times_values(count + 1 + axis);
+  }
+}
+
+glm::dvec3 interpolate(const InterpolationWeights& weights, const glm::dvec3& point) {
+  glm::dvec3 value = weights.constant + weights.slope[0] * point.x + weights.slope[1] * point.y +
+                     weights.slope[2] * point.z;
+  for (const InterpolationWeights::Center& center : weights.centers) {
+    value += glm::dvec3(center.weight) * glm::distance(point, glm::dvec3(center.position));
+  }
+  return value;
+}
+
+void interpolate_block(const InterpolationWeights& weights, PointBlock& block) {
+  const glm::vec3 constant(weights.constant);
+  const glm::vec3 along_x(weights.slope[0]);
+  const glm::vec3 along_y(weights.slope[1]);
+  const glm::vec3 along_z(weights.slope[2]);
+  for (std::size_t i = 0; i < kPointBlock; ++i) {
+    block.ux[i] =
+        constant.x + along_x.x * block.x[i] + along_y.x * block.y[i] + along_z.x * block.z[i];
+    block.uy[i] =
+        constant.y + along_x.y * block.x[i] + along_y.y * block.y[i] + along_z.y * block.z[i];
+    block.uz[i] =
+        constant.z + along_x.z * block.x[i] + along_y.z * block.y[i] + along_z.z * block.z[i];
+  }
+  for (const InterpolationWeights::Center& center : weights.centers) {
+    const glm::vec3 p = center.position;
+    const glm::vec3 w = center.weight;
+    for (std::size_t i = 0; i < kPointBlock; ++i) {
+      const float dx = block.x[i] - p.x;
+      const float dy = block.y[i] - p.y;
+      const float dz = block.z[i] - p.z;
+      const float distance = std::sqrt(dx * dx + dy * dy + dz * dz);
+      block.ux[i] += w.x * distance;
+      block.uy[i] += w.y * distance;
+      block.uz[i] += w.z * distance;
+    }
+  }
+}
+
+}  // namespace torsion

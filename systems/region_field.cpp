@@ -1,0 +1,186 @@
+#include "systems/region_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "systems/body_models/main_beam.hpp"
+#include "systems/frames.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+double smooth_step(double x) {
+  const double t = std::clamp(x, 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+/// Height over the fixed region, one at `contact`: over a fixed face measured from the face, else
+/// along `direction` from q_f. Where the contact is less than `least` high the heights fade to zero
+/// instead of changing sign at once.
+HeightShare height_share(const FixedRegion& fixed, const glm::dvec3& contact,
+                         const glm::dvec3& direction, double least) {
+  const glm::dvec3 along = fixed.kind == FixedKind::kFace ? fixed.normal : direction;
+  const double height = glm::dot(contact - fixed.point, along);
+  const double square = std::max(height * height, least * least);
+  return {fixed.point, square > 0.0 ? along * (height / square) : glm::dvec3(0.0)};
+}
+
+/// Turn at the contact by the torque of a region that the tool's axis misses: T l / (G J), (10). J
+/// is the polar second moment about that axis of the body's section, Saint-Venant's constant about
+/// the section's own middle; it is the harmonic mean along the main beam.
+double turn_past_region(const World& world, std::uint32_t body, const glm::dvec3& contact,
+                        const glm::dvec3& axis, const glm::dvec3& on_axis, double torque) {
+  const MainBeam beam = main_beam(world, body, contact);
+  if (!beam.has_sections) {
+    return 0.0;
+  }
+  const Bounds& bounds = world.bodies.at<Bounds>(body);
+  const glm::dvec3 offset = 0.5 * (bounds.lowest + bounds.highest) - on_axis;
+  const glm::dvec3 arm = offset - axis * glm::dot(offset, axis);
+  double compliance = 0.0;  // 1/m^4, mean of 1/J
+  for (const BeamSection& section : beam.sections) {
+    compliance += 1.0 / (section.torsion_constant + section.area * glm::dot(arm, arm));
+  }
+  compliance /= static_cast<double>(kBeamStations);
+  const double lever = std::abs(glm::dot(contact - world.bodies.at<FixedRegion>(body).point, axis));
+  return torque * lever * compliance / world.bodies.at<Elasticity>(body).shear_modulus();
+}
+
+/// Profile outside and inside of a contact of radius 1 with displacement 1 at the centre (physics
+/// of the elastic half-space: Johnson, Contact Mechanics, 1985, chapters 3 and 4).
+double hertz_profile(double r) {
+  if (r <= 1.0) {
+    return 1.0 - 0.5 * r * r;
+  }
+  return ((2.0 - r * r) * std::asin(1.0 / r) + std::sqrt(r * r - 1.0)) / kPi;
+}
+
+double punch_profile(double r) {
+  return r <= 1.0 ? 1.0 : 2.0 / kPi * std::asin(1.0 / r);
+}
+
+}  // namespace
+
+double HeightShare::at(const glm::dvec3& point) const {
+  return std::clamp(glm::dot(point - origin, slope), 0.0, 1.0);
+}
+
+double RegionTwist::angle(const glm::dvec3& rest) const {
+  double turn = 0.0;
+  if (through > 0.0 && stick_turn != 0.0) {
+    const glm::dvec3 offset = rest - point;
+    const glm::dvec3 arm = offset - direction * glm::dot(offset, direction);
+    const double distance = glm::length(arm);
+    const double share = distance > stick_radius ? stick_radius / distance : 1.0;
+    turn += through * stick_turn * share * through_height.at(rest);
+  }
+  if (past_turn != 0.0) {
+    turn += past_turn * past_height.at(rest);
+  }
+  return turn;
+}
+
+RegionTwist region_twist(const World& world, const Snapshot& snapshot, std::uint32_t region) {
+  const RegionIdentity& identity = snapshot.regions.at<RegionIdentity>(region);
+  const RegionFrame& frame = snapshot.regions.at<RegionFrame>(region);
+  const RegionGeometry& geometry = snapshot.regions.at<RegionGeometry>(region);
+  const RegionMotion& motion = snapshot.regions.at<RegionMotion>(region);
+  const RegionFriction& friction = snapshot.regions.at<RegionFriction>(region);
+  const FixedRegion& fixed = world.bodies.at<FixedRegion>(identity.body);
+  const glm::dvec3 contact = geometry.equivalent_point;
+
+  RegionTwist twist;
+  twist.through = motion.axis_share;
+  twist.stick_turn = friction.stick_turn;
+  twist.stick_radius = std::max(friction.stick_radius, 1e-3 * geometry.radius);
+  twist.through_height = height_share(fixed, contact, frame.normal, geometry.radius);
+  const double height = body_to_grid(frame, contact).z;
+  const glm::dvec3 pivot = grid_to_body(frame, glm::dvec3(motion.pivot, height));
+  twist.point = pivot;
+  twist.direction = frame.normal;
+  const double past = 1.0 - motion.axis_share;
+  if (past > 0.0 && glm::dot(motion.axis, motion.axis) > 0.0) {
+    const Pose& pose = world.bodies.at<Pose>(identity.body);
+    const ToolMotion& tool = snapshot.tools.at<ToolMotion>(identity.tool);
+    const glm::dvec3 torque =
+        glm::conjugate(pose.rotation) * snapshot.regions.at<RegionWrench>(region).on_tool.torque;
+    // The sense of the axis is free: it is chosen along the normal, so that both branches turn
+    // alike.
+    const glm::dvec3 axis = glm::dot(motion.axis, frame.normal) < 0.0 ? -motion.axis : motion.axis;
+    const glm::dvec3 center = to_inner(pose, tool.mass_center);
+    // A turn of less than a hundredth of a radian has hardly an axis yet: it grows in.
+    constexpr double kFirstTurn = 0.01;
+    const double known = tool.axis_turn / (tool.axis_turn + kFirstTurn);
+    twist.past_turn =
+        past * known *
+        turn_past_region(world, identity.body, contact, axis, center, -glm::dot(torque, axis));
+    twist.past_height = height_share(fixed, contact, axis, geometry.radius);
+    twist.point = pivot * motion.axis_share + center * past;
+    const glm::dvec3 blended = frame.normal * motion.axis_share + axis * past;
+    twist.direction = blended / glm::length(blended);
+  }
+  twist.axis.point = glm::vec4(glm::vec3(twist.point), 0.0F);
+  twist.axis.direction = glm::vec4(glm::normalize(glm::vec3(twist.direction)), 0.0F);
+  return twist;
+}
+
+/// Distance from the contact's centre over its radius. The surface near the contact need not be
+/// flat: heights of less than half a radius do not count.
+double RegionDent::reach(const glm::dvec3& point) const {
+  const glm::dvec3 offset = point - center;
+  const double height = glm::dot(offset, normal);
+  const double counted = std::max(std::abs(height) - 0.5 * radius, 0.0);
+  const double lateral = std::max(glm::dot(offset, offset) - height * height, 0.0);
+  return std::sqrt(lateral + counted * counted) / radius;
+}
+
+glm::dvec3 RegionDent::displacement(const glm::dvec3& point) const {
+  if (radius <= 0.0) {
+    return glm::dvec3(0.0);
+  }
+  const double r = reach(point);
+  const double punch = punch_profile(r);
+  const double pressed = depth * (flatness * punch + (1.0 - flatness) * hertz_profile(r));
+  return drag * punch - normal * pressed;
+}
+
+double RegionDent::far_share(const glm::dvec3& point) const {
+  return radius <= 0.0 ? 0.0 : smooth_step((reach(point) - 2.0) / 3.0);
+}
+
+RegionDent region_dent(const World& world, const Snapshot& snapshot, std::uint32_t region,
+                       const glm::dvec3& moved) {
+  const RegionIdentity& identity = snapshot.regions.at<RegionIdentity>(region);
+  const RegionFrame& frame = snapshot.regions.at<RegionFrame>(region);
+  const RegionGeometry& geometry = snapshot.regions.at<RegionGeometry>(region);
+  const RegionFriction& friction = snapshot.regions.at<RegionFriction>(region);
+  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
+  RegionDent dent;
+  if (geometry.radius <= 0.0 || geometry.largest_depth <= 0.0) {
+    return dent;
+  }
+  // A paraboloid overlaps by half its depth in the mean and carries pressure on half the overlap's
+  // area (Hertz); a flat end overlaps by its full depth everywhere and carries pressure on all of
+  // it.
+  const double fullness = std::clamp(geometry.mean_depth / geometry.largest_depth, 0.5, 1.0);
+  dent.flatness = 2.0 * fullness - 1.0;
+  dent.radius = geometry.radius * std::sqrt(fullness);
+  dent.center = geometry.equivalent_point;
+  dent.normal = frame.normal;
+  dent.depth = std::max(geometry.largest_depth + glm::dot(moved, frame.normal), 0.0);
+  // Tangential compliance of a disc (2 - nu) / (8 G a); the force on the body is minus that on the
+  // tool.
+  const double compliance =
+      (2.0 - elasticity.poisson_ratio) / (8.0 * elasticity.shear_modulus() * geometry.radius);
+  dent.drag = tangent_to_body(frame, friction.force) * -compliance;
+  dent.pressure =
+      geometry.area > 0.0 ? snapshot.regions.at<RegionNormal>(region).force / geometry.area : 0.0;
+  dent.full_overlap = 0.1 * geometry.largest_depth;
+  return dent;
+}
+
+}  // namespace torsion

@@ -1,0 +1,69 @@
+#pragma once
+
+// What one contact region does to the surface around it: turn and dent, as functions of the place.
+// docs/models.md, "Twist angles" and "Local dent".
+
+#include <cstdint>
+
+#include <glm/vec3.hpp>
+
+#include "ecs/snapshot.hpp"
+#include "ecs/world.hpp"
+
+namespace torsion {
+
+/// A number that grows along one direction from zero at the fixed region to one at the contact,
+/// clamped to [0, 1]: l_u / l_contact.
+struct HeightShare {
+  glm::dvec3 origin{0.0};  // m, body: q_f
+  glm::dvec3 slope{0.0};   // 1/m, body
+
+  [[nodiscard]] double at(const glm::dvec3& point) const;
+};
+
+/// The twist of a body by one region, (10) to (13) of the paper as docs/models.md reads them.
+struct RegionTwist {
+  TwistAxis axis;              // for the vertices' turn
+  glm::dvec3 point{0.0};       // m, body: on the axis
+  glm::dvec3 direction{0.0};   // body, unit
+  double through = 0.0;        // share of the branch "the axis goes through the region"
+  double stick_turn = 0.0;     // phi_m, rad
+  double stick_radius = 0.0;   // r_m, m, > 0 where stick_turn is not 0
+  HeightShare through_height;  // along the region's normal
+  double past_turn = 0.0;      // rad at the contact: |T| l / (G J) with its sign
+  HeightShare past_height;     // along the tool's axis
+
+  /// Twist angle of a point of the rest shape [rad].
+  [[nodiscard]] double angle(const glm::dvec3& rest) const;
+};
+
+/// @param region  row in snapshot.regions
+RegionTwist region_twist(const World& world, const Snapshot& snapshot, std::uint32_t region);
+
+/// The dent that a contact presses and drags into an elastic half-space.
+struct RegionDent {
+  glm::dvec3 center{0.0};     // m, body
+  glm::dvec3 normal{0.0};     // body, unit, outward
+  double radius = 0.0;        // m: of the part that carries pressure
+  double depth = 0.0;         // m, at the centre
+  double flatness = 0.0;      // 0: Hertz' paraboloid, 1: flat punch
+  glm::dvec3 drag{0.0};       // m, body: tangential displacement of the contact
+  double pressure = 0.0;      // Pa, mean
+  double full_overlap = 0.0;  // m: overlap from which the pressure is drawn in full
+
+  /// Distance of a point of the surface from the centre, in radii.
+  [[nodiscard]] double reach(const glm::dvec3& point) const;
+  /// Displacement of a point of the surface [m, body].
+  [[nodiscard]] glm::dvec3 displacement(const glm::dvec3& point) const;
+  /// How much of the displacement at a far anchor is taken out again: 0 near the contact, 1 far
+  /// away.
+  [[nodiscard]] double far_share(const glm::dvec3& point) const;
+};
+
+/// @param moved  m, body: what the rest of the body's deformation does to the contact point; what
+/// it already yields
+///               is not dented once more
+RegionDent region_dent(const World& world, const Snapshot& snapshot, std::uint32_t region,
+                       const glm::dvec3& moved);
+
+}  // namespace torsion

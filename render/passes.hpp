@@ -1,0 +1,58 @@
+#pragma once
+
+// Recording of a frame's passes, in their order. Nothing here waits or submits.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "ecs/frame_world.hpp"
+#include "render/draw_options.hpp"
+#include "render/frame_view.hpp"
+#include "render/memory.hpp"
+#include "render/overlay_draw_list.hpp"
+#include "render/pipelines.hpp"
+#include "render/scene_buffers.hpp"
+#include "render/target.hpp"
+
+namespace torsion {
+
+/// Images and samplers that all frames share.
+struct Surfaces {
+  Image2d
+      color;  // multisampled; empty with one sample a pixel, when the target is drawn to directly
+  Image2d depth;
+  Image2d shadow_map;
+  Image2d color_maps;  // a row for each of twist and pressure
+  Image2d glyphs;      // the overlay's atlas; empty without one
+  vk::raii::Sampler shadow_sampler = nullptr;
+  vk::raii::Sampler linear_sampler = nullptr;
+};
+
+/// What a frame is recorded from.
+struct FrameInputs {
+  const Gpu& gpu;
+  const Pipelines& pipelines;
+  const SceneBuffers& buffers;
+  const Surfaces& surfaces;
+  const SceneExtent& extent;
+  const FrameWorld& frame;
+  const DrawOptions& options;
+  const SlotBuffers& slot;          // written for this frame
+  shared::vec4 background;          // linear rgb, alpha
+  std::span<const Range> contacts;  // rows in slot.contacts, one for each body
+  std::uint32_t arrow_vertices = 0;
+  const OverlayDrawList* overlay = nullptr;
+};
+
+/// Records the copies of what the CPU wrote for this frame, where there are staging buffers.
+void record_uploads(const vk::raii::CommandBuffer& commands, SlotBuffers& slot);
+
+void record_deform(const vk::raii::CommandBuffer& commands, const FrameInputs& inputs);
+void record_normals(const vk::raii::CommandBuffer& commands, const FrameInputs& inputs);
+void record_shadow(const vk::raii::CommandBuffer& commands, const FrameInputs& inputs);
+
+/// Ground, bodies and arrows, the tools over them, the overlay over all.
+void record_draw(const Frame& target, const FrameInputs& inputs);
+
+}  // namespace torsion

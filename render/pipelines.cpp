@@ -1,0 +1,275 @@
+#include "render/pipelines.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/overlay_draw_list.hpp"
+#include "shaders/arrow.frag.hpp"
+#include "shaders/arrow.vert.hpp"
+#include "shaders/body.frag.hpp"
+#include "shaders/body.vert.hpp"
+#include "shaders/deform.comp.hpp"
+#include "shaders/ground.frag.hpp"
+#include "shaders/ground.vert.hpp"
+#include "shaders/normals.comp.hpp"
+#include "shaders/overlay.frag.hpp"
+#include "shaders/overlay.vert.hpp"
+#include "shaders/shadow.vert.hpp"
+#include "shaders/shared.h"
+#include "shaders/tool.frag.hpp"
+#include "shaders/tool.vert.hpp"
+
+namespace torsion {
+namespace {
+
+using Code = std::span<const std::uint32_t>;
+
+vk::raii::ShaderModule make_module(const Gpu& gpu, Code code) {
+  return {gpu.device,
+          vk::ShaderModuleCreateInfo{.codeSize = code.size_bytes(), .pCode = code.data()}};
+}
+
+/// What differs between the graphics pipelines.
+struct Recipe {
+  Code vertex = {};
+  Code fragment = {};  // empty: depth only
+  std::span<const vk::VertexInputBindingDescription> bindings = {};
+  std::span<const vk::VertexInputAttributeDescription> attributes = {};
+  vk::Format color_format = vk::Format::eUndefined;
+  vk::Format depth_format = kDepthFormat;
+  vk::SampleCountFlagBits samples = vk::SampleCountFlagBits::e1;
+  vk::CullModeFlags cull = vk::CullModeFlagBits::eBack;
+  bool write_color = true;
+  bool write_depth = true;
+  bool test_depth = true;
+  bool blend = false;
+  bool depth_bias = false;
+};
+
+vk::PipelineColorBlendAttachmentState blend_state(const Recipe& recipe) {
+  using Component = vk::ColorComponentFlagBits;
+  vk::PipelineColorBlendAttachmentState state{
+      .blendEnable = recipe.blend ? VK_TRUE : VK_FALSE,
+      .srcColorBlendFactor = vk::BlendFactor::eSrcAlpha,
+      .dstColorBlendFactor = vk::BlendFactor::eOneMinusSrcAlpha,
+      .colorBlendOp = vk::BlendOp::eAdd,
+      .srcAlphaBlendFactor = vk::BlendFactor::eZero,  // the picture stays opaque
+      .dstAlphaBlendFactor = vk::BlendFactor::eOne,
+      .alphaBlendOp = vk::BlendOp::eAdd,
+  };
+  if (recipe.write_color) {
+    state.colorWriteMask = Component::eR | Component::eG | Component::eB | Component::eA;
+  }
+  return state;
+}
+
+vk::PipelineRasterizationStateCreateInfo rasterization_state(const Recipe& recipe) {
+  // The bias keeps a lit surface from shadowing itself: a constant for rounding, and the slope for
+  // the half texel that a comparison may lie beside its pixel.
+  return {
+      .polygonMode = vk::PolygonMode::eFill,
+      .cullMode = recipe.cull,
+      .frontFace = vk::FrontFace::eCounterClockwise,
+      .depthBiasEnable = recipe.depth_bias ? VK_TRUE : VK_FALSE,
+      .depthBiasConstantFactor = 2.0F,
+      .depthBiasSlopeFactor = 2.5F,
+      .lineWidth = 1.0F,
+  };
+}
+
+vk::raii::Pipeline make_graphics_pipeline(const Gpu& gpu, vk::PipelineLayout layout,
+                                          const Recipe& recipe) {
+  const vk::raii::ShaderModule vertex = make_module(gpu, recipe.vertex);
+  vk::raii::ShaderModule fragment = nullptr;
+  std::vector<vk::PipelineShaderStageCreateInfo> stages = {
+      {.stage = vk::ShaderStageFlagBits::eVertex, .module = *vertex, .pName = "main"}};
+  if (!recipe.fragment.empty()) {
+    fragment = make_module(gpu, recipe.fragment);
+    stages.push_back(
+        {.stage = vk::ShaderStageFlagBits::eFragment, .module = *fragment, .pName = "main"});
+  }
+  const vk::PipelineVertexInputStateCreateInfo input{
+      .vertexBindingDescriptionCount = static_cast<std::uint32_t>(recipe.bindings.size()),
+      .pVertexBindingDescriptions = recipe.bindings.data(),
+      .vertexAttributeDescriptionCount = static_cast<std::uint32_t>(recipe.attributes.size()),
+      .pVertexAttributeDescriptions = recipe.attributes.data(),
+  };
+  const vk::PipelineInputAssemblyStateCreateInfo assembly{.topology =
+                                                              vk::PrimitiveTopology::eTriangleList};
+  const vk::PipelineViewportStateCreateInfo viewport{.viewportCount = 1, .scissorCount = 1};
+  const vk::PipelineRasterizationStateCreateInfo rasterization = rasterization_state(recipe);
+  const vk::PipelineMultisampleStateCreateInfo multisample{.rasterizationSamples = recipe.samples};
+  const vk::PipelineDepthStencilStateCreateInfo depth{
+      .depthTestEnable = recipe.test_depth ? VK_TRUE : VK_FALSE,
+      .depthWriteEnable = recipe.write_depth ? VK_TRUE : VK_FALSE,
+      .depthCompareOp = vk::CompareOp::eLessOrEqual,
+  };
+  const bool has_color = recipe.color_format != vk::Format::eUndefined;
+  const vk::PipelineColorBlendAttachmentState attachment = blend_state(recipe);
+  const vk::PipelineColorBlendStateCreateInfo blend{.attachmentCount = has_color ? 1U : 0U,
+                                                    .pAttachments = &attachment};
+  const std::array dynamic_states = {vk::DynamicState::eViewport, vk::DynamicState::eScissor};
+  const vk::PipelineDynamicStateCreateInfo dynamic{.dynamicStateCount = dynamic_states.size(),
+                                                   .pDynamicStates = dynamic_states.data()};
+  const vk::PipelineRenderingCreateInfo rendering{
+      .colorAttachmentCount = has_color ? 1U : 0U,
+      .pColorAttachmentFormats = &recipe.color_format,
+      .depthAttachmentFormat = recipe.depth_format,
+  };
+  return {gpu.device, nullptr,
+          vk::GraphicsPipelineCreateInfo{
+              .pNext = &rendering,
+              .stageCount = static_cast<std::uint32_t>(stages.size()),
+              .pStages = stages.data(),
+              .pVertexInputState = &input,
+              .pInputAssemblyState = &assembly,
+              .pViewportState = &viewport,
+              .pRasterizationState = &rasterization,
+              .pMultisampleState = &multisample,
+              .pDepthStencilState = &depth,
+              .pColorBlendState = &blend,
+              .pDynamicState = &dynamic,
+              .layout = layout,
+          }};
+}
+
+vk::raii::Pipeline make_compute_pipeline(const Gpu& gpu, vk::PipelineLayout layout, Code code) {
+  const vk::raii::ShaderModule module = make_module(gpu, code);
+  return {
+      gpu.device, nullptr,
+      vk::ComputePipelineCreateInfo{
+          .stage = {.stage = vk::ShaderStageFlagBits::eCompute, .module = *module, .pName = "main"},
+          .layout = layout,
+      }};
+}
+
+vk::raii::DescriptorSetLayout make_bindings(
+    const Gpu& gpu, std::span<const vk::DescriptorSetLayoutBinding> bindings) {
+  return {gpu.device, vk::DescriptorSetLayoutCreateInfo{
+                          .flags = vk::DescriptorSetLayoutCreateFlagBits::ePushDescriptorKHR,
+                          .bindingCount = static_cast<std::uint32_t>(bindings.size()),
+                          .pBindings = bindings.data(),
+                      }};
+}
+
+vk::raii::PipelineLayout make_layout(const Gpu& gpu, const vk::raii::DescriptorSetLayout& bindings,
+                                     vk::ShaderStageFlags stages, std::size_t constants) {
+  const vk::DescriptorSetLayout set = *bindings;
+  const vk::PushConstantRange range{.stageFlags = stages,
+                                    .size = static_cast<std::uint32_t>(constants)};
+  return {gpu.device, vk::PipelineLayoutCreateInfo{
+                          .setLayoutCount = 1,
+                          .pSetLayouts = &set,
+                          .pushConstantRangeCount = 1,
+                          .pPushConstantRanges = &range,
+                      }};
+}
+
+void make_layouts(const Gpu& gpu, Pipelines& pipelines) {
+  using Type = vk::DescriptorType;
+  using Stage = vk::ShaderStageFlagBits;
+  std::vector<vk::DescriptorSetLayoutBinding> compute;
+  for (std::uint32_t binding = 0; binding < kComputeBindings; ++binding) {
+    compute.push_back({binding, Type::eStorageBuffer, 1, Stage::eCompute});
+  }
+  pipelines.compute_bindings = make_bindings(gpu, compute);
+  pipelines.compute_layout = make_layout(gpu, pipelines.compute_bindings, Stage::eCompute,
+                                         sizeof(shared::DeformConstants));
+
+  const std::array<vk::DescriptorSetLayoutBinding, 5> draw = {{
+      {draw_binding::kUniforms, Type::eUniformBuffer, 1, Stage::eVertex | Stage::eFragment},
+      {draw_binding::kShadowMap, Type::eCombinedImageSampler, 1, Stage::eFragment},
+      {draw_binding::kColorMaps, Type::eCombinedImageSampler, 1, Stage::eFragment},
+      {draw_binding::kContacts, Type::eStorageBuffer, 1, Stage::eFragment},
+      {draw_binding::kGlyphs, Type::eCombinedImageSampler, 1, Stage::eFragment},
+  }};
+  pipelines.draw_bindings = make_bindings(gpu, draw);
+  pipelines.draw_layout =
+      make_layout(gpu, pipelines.draw_bindings, Stage::eVertex | Stage::eFragment,
+                  sizeof(shared::DrawConstants));
+}
+
+/// `count` vertex buffers of one vec4 each: binding i is location i.
+struct RowInput {
+  explicit RowInput(std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      bindings.push_back({i, sizeof(shared::vec4), vk::VertexInputRate::eVertex});
+      attributes.push_back({i, i, vk::Format::eR32G32B32A32Sfloat, 0});
+    }
+  }
+  std::vector<vk::VertexInputBindingDescription> bindings;
+  std::vector<vk::VertexInputAttributeDescription> attributes;
+};
+
+vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, vk::PipelineLayout layout,
+                                         vk::Format color_format, vk::SampleCountFlagBits samples) {
+  const std::array<vk::VertexInputBindingDescription, 1> bindings = {
+      {{0, sizeof(OverlayVertex), vk::VertexInputRate::eVertex}}};
+  const std::array<vk::VertexInputAttributeDescription, 3> attributes = {{
+      {0, 0, vk::Format::eR32G32Sfloat, offsetof(OverlayVertex, x)},
+      {1, 0, vk::Format::eR32G32Sfloat, offsetof(OverlayVertex, u)},
+      {2, 0, vk::Format::eR8G8B8A8Unorm, offsetof(OverlayVertex, rgba)},
+  }};
+  return make_graphics_pipeline(gpu, layout,
+                                {.vertex = k_overlay_vert,
+                                 .fragment = k_overlay_frag,
+                                 .bindings = bindings,
+                                 .attributes = attributes,
+                                 .color_format = color_format,
+                                 .samples = samples,
+                                 .cull = vk::CullModeFlagBits::eNone,
+                                 .write_depth = false,
+                                 .test_depth = false,
+                                 .blend = true});
+}
+
+}  // namespace
+
+Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCountFlagBits samples) {
+  Pipelines pipelines;
+  make_layouts(gpu, pipelines);
+  pipelines.deform = make_compute_pipeline(gpu, *pipelines.compute_layout, k_deform_comp);
+  pipelines.normals = make_compute_pipeline(gpu, *pipelines.compute_layout, k_normals_comp);
+
+  const RowInput positions(1);
+  const RowInput positions_normals(2);
+  const RowInput three_rows(3);
+  const vk::PipelineLayout layout = *pipelines.draw_layout;
+  pipelines.shadow = make_graphics_pipeline(gpu, layout,
+                                            {.vertex = k_shadow_vert,
+                                             .bindings = positions.bindings,
+                                             .attributes = positions.attributes,
+                                             .depth_bias = true});
+  Recipe recipe{.vertex = k_ground_vert,
+                .fragment = k_ground_frag,
+                .color_format = color_format,
+                .samples = samples};
+  pipelines.ground = make_graphics_pipeline(gpu, layout, recipe);
+
+  recipe.bindings = three_rows.bindings;
+  recipe.attributes = three_rows.attributes;
+  recipe.vertex = k_body_vert;
+  recipe.fragment = k_body_frag;
+  pipelines.body = make_graphics_pipeline(gpu, layout, recipe);
+  recipe.vertex = k_arrow_vert;
+  recipe.fragment = k_arrow_frag;
+  pipelines.arrow = make_graphics_pipeline(gpu, layout, recipe);
+
+  recipe.bindings = positions_normals.bindings;
+  recipe.attributes = positions_normals.attributes;
+  recipe.vertex = k_tool_vert;
+  recipe.fragment = k_tool_frag;
+  recipe.blend = true;
+  pipelines.tool = make_graphics_pipeline(gpu, layout, recipe);
+  recipe.fragment = {};
+  recipe.write_color = false;
+  pipelines.tool_depth = make_graphics_pipeline(gpu, layout, recipe);
+
+  pipelines.overlay = make_overlay_pipeline(gpu, layout, color_format, samples);
+  return pipelines;
+}
+
+}  // namespace torsion

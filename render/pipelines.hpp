@@ -1,0 +1,41 @@
+#pragma once
+
+#include "render/gpu.hpp"
+
+namespace torsion {
+
+/// Binding numbers of the draws, the same for all of them; the shaders name them too.
+namespace draw_binding {
+inline constexpr std::uint32_t kUniforms = 0;
+inline constexpr std::uint32_t kShadowMap = 1;
+inline constexpr std::uint32_t kColorMaps = 2;
+inline constexpr std::uint32_t kContacts = 3;
+inline constexpr std::uint32_t kGlyphs = 4;
+}  // namespace draw_binding
+
+inline constexpr std::uint32_t kComputeBindings =
+    5;  // storage buffers 0 to 4 of either compute shader
+inline constexpr vk::Format kDepthFormat = vk::Format::eD32Sfloat;
+
+/// All pipelines, and the layouts that they share. Members are in the order of creation.
+struct Pipelines {
+  vk::raii::DescriptorSetLayout compute_bindings = nullptr;
+  vk::raii::DescriptorSetLayout draw_bindings = nullptr;
+  vk::raii::PipelineLayout compute_layout = nullptr;
+  vk::raii::PipelineLayout draw_layout = nullptr;
+
+  vk::raii::Pipeline deform = nullptr;
+  vk::raii::Pipeline normals = nullptr;
+  vk::raii::Pipeline shadow = nullptr;
+  vk::raii::Pipeline ground = nullptr;
+  vk::raii::Pipeline body = nullptr;
+  vk::raii::Pipeline arrow = nullptr;
+  vk::raii::Pipeline tool_depth = nullptr;  // the tool's nearest surface, depth only
+  vk::raii::Pipeline tool = nullptr;        // blended over what is behind, where it is the nearest
+  vk::raii::Pipeline overlay = nullptr;
+};
+
+/// Throws vk::SystemError.
+Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCountFlagBits samples);
+
+}  // namespace torsion

@@ -1,0 +1,335 @@
+#include "render/renderer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "render/arrows.hpp"
+#include "render/barriers.hpp"
+#include "render/colormap.hpp"
+#include "render/frame_view.hpp"
+#include "render/offscreen_target.hpp"
+#include "render/passes.hpp"
+#include "render/pipelines.hpp"
+#include "render/scene_buffers.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr std::uint32_t kSlots = Renderer::kFramesInFlight;
+constexpr std::uint32_t kTimestamps = 7;  // one before and after each pass of PassTimes
+constexpr double kArrowLength = 0.9;      // of the longest, as a part of the bodies' largest side
+constexpr std::uint32_t kColorMapWidth = 256;
+constexpr std::uint32_t kLargestSide =
+    16384;  // pixels: what every Vulkan 1.3 desktop driver allows
+
+Error described(const vk::SystemError& error, const char* doing) {
+  return Error{std::string("Vulkan failed while ") + doing + ": " + error.what() + "."};
+}
+
+std::optional<Error> check(const RendererOptions& options) {
+  const auto bad_side = [](std::uint32_t side) {
+    return side < 1 || side > kLargestSide;
+  };
+  if (bad_side(options.width) || bad_side(options.height)) {
+    return Error{"The picture's size is " + std::to_string(options.width) + "x" +
+                 std::to_string(options.height) + " pixels; each side must be 1 to " +
+                 std::to_string(kLargestSide) + "."};
+  }
+  if (options.samples != 1 && options.samples != 4) {
+    return Error{"The number of samples a pixel is " + std::to_string(options.samples) +
+                 "; it must be 1 or 4."};
+  }
+  if (bad_side(options.shadow_size)) {
+    return Error{"The shadow map's side is " + std::to_string(options.shadow_size) +
+                 " texels; it must be 1 to " + std::to_string(kLargestSide) + "."};
+  }
+  return std::nullopt;
+}
+
+/// A row for each signed and unsigned heat map, at the places that frame_uniforms() gives in
+/// heat_scale.z.
+Image2d make_color_maps(const Gpu& gpu) {
+  std::vector<std::uint8_t> texels;
+  for (const HeatMap map : {HeatMap::kTwist, HeatMap::kPressure}) {
+    for (std::uint32_t i = 0; i < kColorMapWidth; ++i) {
+      const glm::dvec3 color = heat_color(map, i / (kColorMapWidth - 1.0));
+      for (const double part : {color.x, color.y, color.z, 1.0}) {
+        texels.push_back(static_cast<std::uint8_t>(std::lround(255.0 * part)));
+      }
+    }
+  }
+  return make_constant_image(gpu, {kColorMapWidth, 2}, vk::Format::eR8G8B8A8Srgb,
+                             std::as_bytes(std::span(texels)));
+}
+
+Surfaces make_surfaces(const Gpu& gpu, const RendererOptions& options, vk::Format color_format,
+                       vk::SampleCountFlagBits samples) {
+  using Usage = vk::ImageUsageFlagBits;
+  const vk::Extent2D extent{options.width, options.height};
+  Surfaces surfaces;
+  if (samples != vk::SampleCountFlagBits::e1) {
+    surfaces.color = make_image(gpu, extent, color_format, samples,
+                                Usage::eColorAttachment | Usage::eTransientAttachment);
+  }
+  surfaces.depth = make_image(gpu, extent, kDepthFormat, samples, Usage::eDepthStencilAttachment);
+  surfaces.shadow_map =
+      make_image(gpu, {options.shadow_size, options.shadow_size}, kDepthFormat,
+                 vk::SampleCountFlagBits::e1, Usage::eDepthStencilAttachment | Usage::eSampled);
+  surfaces.color_maps = make_color_maps(gpu);
+  if (options.overlay_atlas != nullptr) {
+    const OverlayAtlas& atlas = *options.overlay_atlas;
+    surfaces.glyphs = make_constant_image(gpu, {atlas.width, atlas.height}, vk::Format::eR8Unorm,
+                                          std::as_bytes(std::span(atlas.alpha)));
+  }
+  vk::SamplerCreateInfo sampler{
+      .magFilter = vk::Filter::eLinear,
+      .minFilter = vk::Filter::eLinear,
+      .addressModeU = vk::SamplerAddressMode::eClampToEdge,
+      .addressModeV = vk::SamplerAddressMode::eClampToEdge,
+      .addressModeW = vk::SamplerAddressMode::eClampToEdge,
+  };
+  surfaces.linear_sampler = {gpu.device, sampler};
+  // Outside the shadow map everything is lit.
+  sampler.addressModeU = vk::SamplerAddressMode::eClampToBorder;
+  sampler.addressModeV = vk::SamplerAddressMode::eClampToBorder;
+  sampler.borderColor = vk::BorderColor::eFloatOpaqueWhite;
+  sampler.compareEnable = VK_TRUE;
+  sampler.compareOp = vk::CompareOp::eLessOrEqual;
+  surfaces.shadow_sampler = {gpu.device, sampler};
+  return surfaces;
+}
+
+}  // namespace
+
+/// Members are in the order of creation.
+struct Renderer::Impl {
+  Gpu gpu;
+  SceneExtent extent;
+  SceneBuffers buffers;
+  Surfaces surfaces;
+  Pipelines pipelines;
+  std::vector<vk::raii::QueryPool> timestamps;  // one for each slot
+  std::optional<OffscreenTarget> target;
+
+  vk::Extent2D size;
+  std::uint64_t drawn = 0;  // frames so far
+  ArrowMesh arrows;
+  std::vector<shared::ContactSpot> contacts;
+  std::vector<Range> contact_ranges;
+  double largest_force = 0.0;   // N, drawn so far
+  double largest_torque = 0.0;  // N m, drawn so far
+
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    if (*gpu.device) {
+      gpu.device.waitIdle();
+    }
+  }
+
+  [[nodiscard]] ArrowScale arrow_scale(const Snapshot& snapshot, const DrawOptions& options);
+  void write_arrows(const Snapshot& snapshot, const DrawOptions& options, SlotBuffers& slot);
+  void write_overlay(const OverlayDrawList* overlay, SlotBuffers& slot);
+  void record(const Frame& frame, const FrameInputs& inputs, SlotBuffers& slot);
+  std::vector<glm::vec4> read_rows(const Buffer& buffer);
+};
+
+ArrowScale Renderer::Impl::arrow_scale(const Snapshot& snapshot, const DrawOptions& options) {
+  for (const ToolWrench& wrench : snapshot.tools.column<ToolWrench>()) {
+    largest_force = std::max(largest_force, glm::length(wrench.total.force));
+    largest_torque = std::max(largest_torque, glm::length(wrench.total.torque));
+  }
+  const auto scale_or = [](double wanted, double largest) {
+    const double scale = wanted > 0.0 ? wanted : largest;
+    return scale > 0.0 ? scale : 1.0;
+  };
+  const glm::dvec3 side = extent.highest - extent.lowest;
+  return {kArrowLength * std::max({side.x, side.y, side.z}),
+          scale_or(options.full_force, largest_force),
+          scale_or(options.full_torque, largest_torque)};
+}
+
+void Renderer::Impl::write_arrows(const Snapshot& snapshot, const DrawOptions& options,
+                                  SlotBuffers& slot) {
+  arrows.clear();
+  if (options.arrows) {
+    append_wrenches(snapshot, arrow_scale(snapshot, options), arrows);
+  }
+  const auto write = [&](FrameBuffer& buffer, const std::vector<glm::vec4>& rows) {
+    const auto bytes = std::as_bytes(std::span(rows));
+    buffer.reserve(gpu, bytes.size());
+    buffer.write(0, bytes);
+  };
+  write(slot.arrow_positions, arrows.positions);
+  write(slot.arrow_normals, arrows.normals);
+  write(slot.arrow_colors, arrows.colors);
+}
+
+void Renderer::Impl::write_overlay(const OverlayDrawList* overlay, SlotBuffers& slot) {
+  if (overlay == nullptr) {
+    return;
+  }
+  const auto vertices = std::as_bytes(std::span(overlay->vertices));
+  const auto indices = std::as_bytes(std::span(overlay->indices));
+  slot.overlay_vertices.reserve(gpu, vertices.size());
+  slot.overlay_vertices.write(0, vertices);
+  slot.overlay_indices.reserve(gpu, indices.size());
+  slot.overlay_indices.write(0, indices);
+}
+
+void Renderer::Impl::record(const Frame& frame, const FrameInputs& inputs, SlotBuffers& slot) {
+  const vk::raii::CommandBuffer& commands = *frame.commands;
+  const vk::QueryPool queries = *timestamps[frame.slot];
+  commands.resetQueryPool(queries, 0, kTimestamps);
+  std::uint32_t query = 0;
+  const auto stamp = [&] {
+    commands.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, queries, query++);
+  };
+  stamp();
+  record_uploads(commands, slot);
+  stamp();
+  record_deform(commands, inputs);
+  stamp();
+  record_normals(commands, inputs);
+  stamp();
+  record_shadow(commands, inputs);
+  stamp();
+  record_draw(frame, inputs);
+  stamp();
+  target->finish(frame);
+  stamp();
+}
+
+std::vector<glm::vec4> Renderer::Impl::read_rows(const Buffer& buffer) {
+  gpu.device.waitIdle();
+  const Buffer read_back =
+      make_buffer(gpu, buffer.size, vk::BufferUsageFlagBits::eTransferDst, Home::kReadBack);
+  run_once(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    compute_to_copy(commands);
+    commands.copyBuffer(*buffer.handle, *read_back.handle, vk::BufferCopy{.size = buffer.size});
+    copy_to_host(commands);
+  });
+  std::vector<glm::vec4> rows(buffer.size / sizeof(glm::vec4));
+  std::memcpy(rows.data(), read_back.mapped, rows.size() * sizeof(glm::vec4));
+  return rows;
+}
+
+Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+Renderer::~Renderer() = default;
+
+Result<Renderer> Renderer::create(const RendererOptions& options, const FrameWorld& frame) try {
+  if (const auto error = check(options)) {
+    return *error;
+  }
+  Result<Gpu> gpu = open_gpu({options.validation, options.force_staging, options.device_name});
+  if (!gpu) {
+    return gpu.error();
+  }
+  auto impl = std::make_unique<Impl>();
+  impl->gpu = std::move(gpu).value();
+  impl->extent = scene_extent(frame);
+  Result<SceneBuffers> buffers = make_scene_buffers(impl->gpu, frame, kSlots);
+  if (!buffers) {
+    return buffers.error();
+  }
+  impl->buffers = std::move(buffers).value();
+  impl->size = vk::Extent2D{options.width, options.height};
+  impl->target.emplace(impl->gpu, impl->size, kSlots);
+  const vk::SampleCountFlagBits samples =
+      options.samples == 4 ? vk::SampleCountFlagBits::e4 : vk::SampleCountFlagBits::e1;
+  impl->surfaces = make_surfaces(impl->gpu, options, impl->target->format(), samples);
+  impl->pipelines = make_pipelines(impl->gpu, impl->target->format(), samples);
+  for (std::uint32_t slot = 0; slot < kSlots; ++slot) {
+    impl->timestamps.emplace_back(
+        impl->gpu.device,
+        vk::QueryPoolCreateInfo{.queryType = vk::QueryType::eTimestamp, .queryCount = kTimestamps});
+  }
+  impl->contacts.reserve(std::size_t{frame.bodies.size()} * kMaxRegionsPerBody);
+  impl->contact_ranges.reserve(frame.bodies.size());
+  return Renderer(std::move(impl));
+} catch (const vk::SystemError& error) {
+  return described(error, "it was set up");
+} catch (const vk::LogicError& error) {
+  return Error{std::string("Vulkan is not installed (package libvulkan1): ") + error.what() + "."};
+}
+
+Result<std::uint64_t> Renderer::draw(const FrameWorld& frame, const Snapshot& snapshot,
+                                     const Camera& camera, const DrawOptions& options,
+                                     const OverlayDrawList* overlay) try {
+  Impl& impl = *impl_;
+  if (const auto error = check_columns(impl.gpu, frame)) {
+    return *error;
+  }
+  const Frame target = impl.target->begin();
+  SlotBuffers& slot = impl.buffers.slots[target.slot];
+  write_columns(frame, slot);
+  const double aspect = static_cast<double>(impl.size.width) / impl.size.height;
+  const shared::FrameUniforms uniforms = frame_uniforms(impl.extent, camera, aspect, options);
+  slot.uniforms.write(0, std::as_bytes(std::span(&uniforms, 1)));
+  contact_spots(snapshot, frame.bodies.size(), impl.contacts, impl.contact_ranges);
+  slot.contacts.write(0, std::as_bytes(std::span(impl.contacts)));
+  impl.write_arrows(snapshot, options, slot);
+  impl.write_overlay(overlay, slot);
+  impl.record(target,
+              {impl.gpu, impl.pipelines, impl.buffers, impl.surfaces, impl.extent, frame, options,
+               slot, uniforms.background, impl.contact_ranges,
+               static_cast<std::uint32_t>(impl.arrows.positions.size()), overlay},
+              slot);
+  impl.target->submit(target);
+  return impl.drawn++;
+} catch (const vk::SystemError& error) {
+  return described(error, "a picture was drawn");
+}
+
+Result<Image> Renderer::read_pixels(std::uint64_t number) try {
+  TORSION_ASSERT(number < impl_->drawn && number + kSlots >= impl_->drawn);
+  const std::span<const std::byte> pixels =
+      impl_->target->pixels(static_cast<std::uint32_t>(number % kSlots));
+  Image image{impl_->size.width, impl_->size.height, std::vector<std::uint8_t>(pixels.size())};
+  std::memcpy(image.rgba.data(), pixels.data(), pixels.size());
+  return image;
+} catch (const vk::SystemError& error) {
+  return described(error, "a picture was read back");
+}
+
+Result<PassTimes> Renderer::pass_times(std::uint64_t number) try {
+  TORSION_ASSERT(number < impl_->drawn && number + kSlots >= impl_->drawn);
+  const auto slot = static_cast<std::uint32_t>(number % kSlots);
+  impl_->target->wait(slot);
+  const auto [result, ticks] = impl_->timestamps[slot].getResults<std::uint64_t>(
+      0, kTimestamps, kTimestamps * sizeof(std::uint64_t), sizeof(std::uint64_t),
+      vk::QueryResultFlagBits::e64);
+  const auto between = [&, &counts = ticks](std::uint32_t pass) {
+    return static_cast<double>(counts[pass + 1] - counts[pass]) * impl_->gpu.milliseconds_per_tick;
+  };
+  return PassTimes{between(0), between(1), between(2), between(3), between(4), between(5)};
+} catch (const vk::SystemError& error) {
+  return described(error, "times were read");
+}
+
+Result<std::vector<glm::vec4>> Renderer::read_positions() try {
+  return impl_->read_rows(impl_->buffers.positions);
+} catch (const vk::SystemError& error) {
+  return described(error, "positions were read back");
+}
+
+Result<std::vector<glm::vec4>> Renderer::read_normals() try {
+  return impl_->read_rows(impl_->buffers.normals);
+} catch (const vk::SystemError& error) {
+  return described(error, "normals were read back");
+}
+
+const std::string& Renderer::device_name() const {
+  return impl_->gpu.name;
+}
+
+}  // namespace torsion

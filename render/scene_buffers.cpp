@@ -1,0 +1,127 @@
+#include "render/scene_buffers.hpp"
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "render/normal_rings.hpp"
+#include "shaders/shared.h"
+
+namespace torsion {
+namespace {
+
+using Usage = vk::BufferUsageFlagBits;
+
+template <class T>
+std::span<const std::byte> bytes_of(const std::vector<T>& rows) {
+  return std::as_bytes(std::span(rows));
+}
+
+std::optional<Error> check_range(const Gpu& gpu, vk::DeviceSize rows, vk::DeviceSize row_size,
+                                 const char* what) {
+  if (rows * row_size <= gpu.limits.maxStorageBufferRange) {
+    return std::nullopt;
+  }
+  return Error{"The scene has " + std::to_string(rows) + " " + what + "; the device \"" + gpu.name +
+               "\" can draw " + std::to_string(gpu.limits.maxStorageBufferRange / row_size) +
+               " at most. Use coarser meshes."};
+}
+
+SlotBuffers make_slot(const Gpu& gpu, const FrameWorld& frame) {
+  const vk::DeviceSize vertices = frame.body_vertices.size();
+  const vk::DeviceSize regions = vk::DeviceSize{frame.bodies.size()} * kMaxRegionsPerBody;
+  SlotBuffers slot;
+  slot.displacement = {gpu, vertices * sizeof(VertexDisplacement), Usage::eStorageBuffer};
+  slot.twist = {gpu, frame.twist.size() * sizeof(TwistAngle), Usage::eStorageBuffer};
+  slot.axes = {gpu, frame.axes.size() * sizeof(TwistAxis), Usage::eStorageBuffer};
+  slot.uniforms = {gpu, sizeof(shared::FrameUniforms), Usage::eUniformBuffer};
+  slot.contacts = {gpu, regions * sizeof(shared::ContactSpot), Usage::eStorageBuffer};
+  slot.arrow_positions = {gpu, 0, Usage::eVertexBuffer};
+  slot.arrow_normals = {gpu, 0, Usage::eVertexBuffer};
+  slot.arrow_colors = {gpu, 0, Usage::eVertexBuffer};
+  slot.overlay_vertices = {gpu, 0, Usage::eVertexBuffer};
+  slot.overlay_indices = {gpu, 0, Usage::eIndexBuffer};
+  return slot;
+}
+
+}  // namespace
+
+Result<SceneBuffers> make_scene_buffers(const Gpu& gpu, const FrameWorld& frame,
+                                        std::uint32_t slots) {
+  const NormalRings rings = make_normal_rings(frame);
+  for (const std::optional<Error>& error : {
+           check_range(gpu, frame.body_vertices.size(), sizeof(VertexRest),
+                       "vertices of elastic bodies"),
+           check_range(gpu, rings.entries.size(), sizeof(std::uint32_t),
+                       "edges around vertices of elastic bodies"),
+       }) {
+    if (error) {
+      return *error;
+    }
+  }
+  SceneBuffers buffers;
+  const auto vertex_columns = [&](const auto& table, auto usage, Buffer& positions,
+                                  Buffer& normals) {
+    positions =
+        make_constant_buffer(gpu, std::as_bytes(table.template column<VertexRest>()), usage);
+    normals =
+        make_constant_buffer(gpu, std::as_bytes(table.template column<VertexNormal>()), usage);
+  };
+  const auto both = Usage::eStorageBuffer | Usage::eVertexBuffer;
+  vertex_columns(frame.body_vertices, both, buffers.rest, buffers.rest_normals);
+  vertex_columns(frame.tool_vertices, both, buffers.tool_positions, buffers.tool_normals);
+  buffers.body_indices = make_constant_buffer(
+      gpu, std::as_bytes(frame.body_triangles.column<Triangle>()), Usage::eIndexBuffer);
+  buffers.tool_indices = make_constant_buffer(
+      gpu, std::as_bytes(frame.tool_triangles.column<Triangle>()), Usage::eIndexBuffer);
+  buffers.ring_ranges = make_constant_buffer(gpu, bytes_of(rings.ranges), Usage::eStorageBuffer);
+  buffers.ring_entries = make_constant_buffer(gpu, bytes_of(rings.entries), Usage::eStorageBuffer);
+
+  const vk::DeviceSize rows = vk::DeviceSize{frame.body_vertices.size()} * sizeof(shared::vec4);
+  const auto computed = both | Usage::eTransferSrc;
+  buffers.positions = make_buffer(gpu, rows, computed, Home::kDevice);
+  buffers.normals = make_buffer(gpu, rows, computed, Home::kDevice);
+  for (std::uint32_t i = 0; i < slots; ++i) {
+    buffers.slots.push_back(make_slot(gpu, frame));
+  }
+  return buffers;
+}
+
+std::optional<Error> check_columns(const Gpu& gpu, const FrameWorld& frame) {
+  for (std::uint32_t body = 0; body < frame.bodies.size(); ++body) {
+    const Range rows = twist_rows_in_use(frame, body);
+    if (auto error = check_range(gpu, rows.count, sizeof(TwistAngle), "twist angles on one body")) {
+      return error;
+    }
+  }
+  return std::nullopt;
+}
+
+void write_columns(const FrameWorld& frame, SlotBuffers& slot) {
+  slot.displacement.write(0, std::as_bytes(frame.body_vertices.column<VertexDisplacement>()));
+  slot.axes.write(0, std::as_bytes(frame.axes.column<TwistAxis>()));
+  for (std::uint32_t body = 0; body < frame.bodies.size(); ++body) {
+    const Range rows = twist_rows_in_use(frame, body);
+    slot.twist.write(rows.first * sizeof(TwistAngle),
+                     std::as_bytes(frame.twist.rows<TwistAngle>(rows)));
+  }
+}
+
+BoundRows bound_rows(const Gpu& gpu, Range rows, std::uint32_t row_size) {
+  const vk::DeviceSize wanted = vk::DeviceSize{rows.first} * row_size;
+  const vk::DeviceSize alignment = gpu.limits.minStorageBufferOffsetAlignment;
+  BoundRows bound;
+  bound.offset = wanted / alignment * alignment;
+  bound.first = static_cast<std::uint32_t>((wanted - bound.offset) / row_size);
+  bound.size = std::max<vk::DeviceSize>(
+      wanted - bound.offset + vk::DeviceSize{rows.count} * row_size, row_size);
+  return bound;
+}
+
+Range twist_rows_in_use(const FrameWorld& frame, std::uint32_t body) {
+  const FrameBody& row = frame.bodies.at<FrameBody>(body);
+  return {row.twist.first, row.regions_drawn * frame.bodies.at<DrawRange>(body).vertices.count};
+}
+
+}  // namespace torsion

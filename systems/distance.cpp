@@ -36,20 +36,10 @@ Placement placement_of(const Pose& pose) {
 /// Calls f with the distance function of `part` in its own frame.
 template <class F>
 void with_shape(const World& world, const ShapePart& part, F&& f) {
-  const glm::dvec3& half = part.half_extent;
-  switch (part.kind) {
-    case ShapeKind::kSphere:
-      return f(SphereDistance{half.x});
-    case ShapeKind::kEllipsoid:
-      return f(EllipsoidDistance{half});
-    case ShapeKind::kBox:
-      return f(BoxDistance{half});
-    case ShapeKind::kCylinder:
-      return f(CylinderDistance{half.x, half.y});
-    case ShapeKind::kCapsule:
-      return f(CapsuleDistance{half.x, larger(half.y - half.x, 0.0)});
-    case ShapeKind::kMesh:
-      return f(FieldDistance(world, part.field));
+  if (part.kind == ShapeKind::kMesh) {
+    f(FieldDistance(world, part.field));
+  } else {
+    with_exact_shape(part, f);
   }
 }
 

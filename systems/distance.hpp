@@ -8,14 +8,14 @@ namespace torsion {
 
 /// Signed distance (negative inside) and its gradient.
 struct Distance {
-  double value = 0.0;           // m
-  glm::dvec3 gradient{0.0};     // unit in exact arithmetic; nearly so for mesh fields
+  double value = 0.0;        // m
+  glm::dvec3 gradient{0.0};  // unit in exact arithmetic; nearly so for mesh fields
 };
 
-/// Signed distance from `point` to the union of `parts`, and its gradient. Exact outside and on the surface for
-/// sphere, box, cylinder and capsule; for an ellipsoid exact on the surface and correct to first order near it; for
-/// a mesh as accurate as its field (systems/distance_field.hpp). Never overestimates |distance| by more than a mesh
-/// field's error.
+/// Signed distance from `point` to the union of `parts`, and its gradient. Exact outside and on the
+/// surface for sphere, box, cylinder and capsule; for an ellipsoid exact on the surface and correct
+/// to first order near it; for a mesh as accurate as its field (systems/distance_field.hpp). Never
+/// overestimates |distance| by more than a mesh field's error.
 /// @param point  m, the owner's frame
 Distance signed_distance(const World& world, Range parts, const glm::dvec3& point);
 

@@ -154,4 +154,23 @@ struct EllipsoidDistance {
   static constexpr int kIterations = 3;
 };
 
+/// Calls f with the distance function of an exact shape, in the part's frame. @pre part.kind is not
+/// kMesh
+template <class F>
+auto with_exact_shape(const ShapePart& part, F&& f) {
+  const glm::dvec3& half = part.half_extent;
+  switch (part.kind) {
+    case ShapeKind::kSphere:
+      return f(SphereDistance{half.x});
+    case ShapeKind::kEllipsoid:
+      return f(EllipsoidDistance(half));
+    case ShapeKind::kBox:
+      return f(BoxDistance{half});
+    case ShapeKind::kCylinder:
+      return f(CylinderDistance{half.x, half.y});
+    default:
+      return f(CapsuleDistance{half.x, larger(half.y - half.x, 0.0)});
+  }
+}
+
 }  // namespace torsion

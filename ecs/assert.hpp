@@ -12,7 +12,8 @@ namespace torsion::detail {
 
 }  // namespace torsion::detail
 
-// For programmer errors only; bad input gets a Result, an overloaded step a fault bit. On in every build type:
-// a wrong row index in a haptic loop is worse than a stopped program.
-#define TORSION_ASSERT(condition) \
-  ((condition) ? static_cast<void>(0) : ::torsion::detail::assertion_failed(#condition, __FILE__, __LINE__))
+// For programmer errors only; bad input gets a Result, an overloaded step a fault bit. On in every
+// build type: a wrong row index in a haptic loop is worse than a stopped program.
+#define TORSION_ASSERT(condition)     \
+  ((condition) ? static_cast<void>(0) \
+               : ::torsion::detail::assertion_failed(#condition, __FILE__, __LINE__))

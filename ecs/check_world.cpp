@@ -45,13 +45,13 @@ void check_sizes(const World& world, Findings& findings) {
 
 void check_fields(const World& world, Findings& findings) {
   for (std::uint32_t row = 0; row < world.parts.size(); ++row) {
-    const ShapePart& part = world.parts.at<ShapePart>(row);
+    const auto& part = world.parts.at<ShapePart>(row);
     findings.require(part.kind <= ShapeKind::kMesh, "parts", row, "unknown kind of shape");
     findings.require(part.kind != ShapeKind::kMesh || part.field < world.fields.size(), "parts",
                      row, "its distance field is not there");
   }
   for (std::uint32_t row = 0; row < world.fields.size(); ++row) {
-    const DistanceField& field = world.fields.at<DistanceField>(row);
+    const auto& field = world.fields.at<DistanceField>(row);
     findings.require(inside(field.coarse_nodes, world.field_nodes.size()) &&
                          product(field.cells + 1U) == field.coarse_nodes.count,
                      "fields", row, "its coarse nodes are not there");
@@ -113,7 +113,7 @@ void check_owners(const World& world, Findings& findings) {
     }
   }
   for (std::uint32_t row = 0; row < world.regions.size(); ++row) {
-    const RegionIdentity& region = world.regions.at<RegionIdentity>(row);
+    const auto& region = world.regions.at<RegionIdentity>(row);
     findings.require(region.body < world.bodies.size(), "regions", row, "its body is not there");
     findings.require(region.tool < world.tools.size(), "regions", row, "its tool is not there");
     findings.require(inside(region.cells, world.cells.size()), "regions", row,

@@ -14,7 +14,9 @@ namespace torsion {
 
 /// Plain data: copied by memcpy, saved and hashed byte by byte, uploaded to a GPU as it is.
 template <class T>
-concept Component = std::is_trivially_copyable_v<T> && std::is_standard_layout_v<T> && sizeof(T) % 4 == 0;
+concept Component = std::is_trivially_copyable_v<T> && std::is_standard_layout_v<T> && sizeof(T) %
+                        4 ==
+                    0;
 
 inline constexpr std::size_t kColumnAlignment = 64;  // bytes: a cache line, and an AVX-512 register
 
@@ -25,7 +27,8 @@ class Column {
   /// Takes memory for `capacity` rows, zero-filled; what was there is gone. Load time only.
   void reserve(std::uint32_t capacity) {
     const std::size_t bytes = rounded_bytes(capacity);
-    storage_.reset(bytes == 0 ? nullptr : ::operator new(bytes, std::align_val_t{kColumnAlignment}));
+    storage_.reset(bytes == 0 ? nullptr
+                              : ::operator new (bytes, std::align_val_t{kColumnAlignment}));
     if (bytes != 0) {
       std::memset(storage_.get(), 0, bytes);
     }
@@ -36,7 +39,9 @@ class Column {
 
  private:
   struct Release {
-    void operator()(void* memory) const { ::operator delete(memory, std::align_val_t{kColumnAlignment}); }
+    void operator()(void* memory) const {
+      ::operator delete (memory, std::align_val_t{kColumnAlignment});
+    }
   };
 
   static std::size_t rounded_bytes(std::uint32_t rows) {

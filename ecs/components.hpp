@@ -152,7 +152,7 @@ struct BodyModels {
   ContactModel contact = ContactModel::kAuto;
   BodyModel body = BodyModel::kAuto;
   double tolerance = 0.05;        // relative error in the torque that kAuto may make
-  double region_threshold = 0.0;  // r_th, m; 0: from the sampling
+  double region_threshold = 0.0;  // r_th, m; at least what the sampling resolves
 };
 
 /// Which rows of other tables belong to a tool or body. Written by: load.
@@ -234,6 +234,7 @@ struct RegionFrame {
 /// Written by: region_grids.
 struct RegionGeometry {
   glm::dvec3 equivalent_point{0.0};  // m, body: p_eq, the pressure centre, on the tool's surface
+  glm::dvec3 rest_point{0.0};        // m, body: where p_eq was on the body's rest surface
   double area = 0.0;                 // m^2
   double radius = 0.0;               // m: a = sqrt(area / pi)
   double mean_depth = 0.0;           // m: x, the overlap's mean over the area

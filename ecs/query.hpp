@@ -19,7 +19,7 @@ auto column_of(AnyTable& table) {
 
 template <class... Cs, class AnyTable, class F>
 void visit_table(AnyTable& table, F& f) {
-  if constexpr ((std::remove_const_t<AnyTable>::template has<Cs> && ...)) {
+  if constexpr ((std::remove_const_t<AnyTable>::template kHas<Cs> && ...)) {
     f(column_of<Cs>(table)...);
   }
 }

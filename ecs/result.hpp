@@ -15,16 +15,17 @@ struct Error {
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : content_(std::move(value)) {}      // NOLINT(google-explicit-constructor): return v;
-  Result(Error error) : content_(std::move(error)) {}  // NOLINT(google-explicit-constructor): return e;
+  Result(T value) : content_(std::move(value)) {}  // NOLINT(google-explicit-constructor): return v;
+  Result(Error error)  // NOLINT(google-explicit-constructor): return e;
+      : content_(std::move(error)) {}
 
   [[nodiscard]] bool ok() const { return content_.index() == 0; }
   explicit operator bool() const { return ok(); }
 
   /// @pre ok()
-  T& value() & { return std::get<0>(content_); }
-  const T& value() const& { return std::get<0>(content_); }
-  T&& value() && { return std::get<0>(std::move(content_)); }
+  [[nodiscard]] T& value() & { return std::get<0>(content_); }
+  [[nodiscard]] const T& value() const& { return std::get<0>(content_); }
+  [[nodiscard]] T&& value() && { return std::get<0>(std::move(content_)); }
 
   /// @pre !ok()
   [[nodiscard]] const Error& error() const { return std::get<1>(content_); }

@@ -1,7 +1,7 @@
 #pragma once
 
-// What a scene file says, as plain load-time data: scenes/ writes it, systems/prepare.* and systems/prepare_frame.*
-// turn it into tables. Nothing here is read by a step.
+// What a scene file says, as plain load-time data: scenes/ writes it, systems/prepare.* and
+// systems/prepare_frame.* turn it into tables. Nothing here is read by a step.
 
 #include <string>
 #include <vector>
@@ -14,26 +14,27 @@ namespace torsion {
 
 /// One closed part of a tool or body.
 struct PartDescription {
-  std::string node;                 // name of the glTF node it comes from
-  ShapePart shape;                  // kind, pose in the owner's frame, half extents; `field` is not set yet
-  SurfaceMesh surface;              // m, owner's frame: welded, closed, oriented; always there, also for exact shapes
+  std::string node;  // name of the glTF node it comes from
+  ShapePart shape;   // kind, pose in the owner's frame, half extents; `field` is not set yet
+  SurfaceMesh
+      surface;  // m, owner's frame: welded, closed, oriented; always there, also for exact shapes
 };
 
 /// What is drawn: vertices as the file has them (split at hard edges), in the owner's frame.
 struct DrawMesh {
-  std::vector<glm::vec3> positions;   // m
-  std::vector<glm::vec3> normals;     // unit; one for each position
+  std::vector<glm::vec3> positions;  // m
+  std::vector<glm::vec3> normals;    // unit; one for each position
   std::vector<glm::uvec3> triangles;
-  std::vector<bool> fixed;            // bodies only: vertices of the fixed region; one for each position
+  std::vector<bool> fixed;  // bodies only: vertices of the fixed region; one for each position
   glm::vec4 color{0.8F, 0.8F, 0.8F, 1.0F};  // linear RGB and alpha of the first material
 };
 
 struct BodyDescription {
   std::string node;
-  Pose pose;                        // body frame in the world
+  Pose pose;  // body frame in the world
   Elasticity elasticity;
   Friction friction;
-  FixedRegion fixed;                // `volumes` counts rows of fixed_volumes below, from 0
+  FixedRegion fixed;  // `volumes` counts rows of fixed_volumes below, from 0
   std::vector<FixedVolume> fixed_volumes;
   BodyModels models;
   std::vector<PartDescription> parts;
@@ -44,14 +45,14 @@ struct ToolDescription {
   std::string node;
   std::string device = "animation";  // torsion_device
   MassProperties mass;
-  MotionScript script;               // links from the root to the tool node; no keys: the tool stays where it is
+  MotionScript script;  // links from the root to the tool node; no keys: the tool stays where it is
   std::vector<PartDescription> parts;
   DrawMesh draw;
 };
 
 struct CameraDescription {
   std::string node;
-  Pose pose;                        // camera frame in the world: looks along -z, +y up
+  Pose pose;                            // camera frame in the world: looks along -z, +y up
   double vertical_field_of_view = 0.8;  // rad
   double near_plane = 0.01;             // m
   double far_plane = 100.0;             // m; 0: infinite
@@ -62,7 +63,7 @@ struct SceneDescription {
   std::vector<BodyDescription> bodies;  // in the order of the file
   std::vector<ToolDescription> tools;   // in the order of the file
   std::vector<CameraDescription> cameras;
-  double duration = 0.0;                // s: the end of the longest animation
+  double duration = 0.0;  // s: the end of the longest animation
 };
 
 }  // namespace torsion

@@ -11,15 +11,15 @@ namespace torsion {
 template <class Context>
 struct System {
   std::string_view name;
-  std::string_view purpose;                 // one line for `torsion check`
-  std::string_view needs;                   // what a scene must have for it, in words
-  bool (*needed)(const Context&) = nullptr; // nullptr: always
+  std::string_view purpose;                  // one line for `torsion check`
+  std::string_view needs;                    // what a scene must have for it, in words
+  bool (*needed)(const Context&) = nullptr;  // nullptr: always
   void (*run)(Context&) = nullptr;
-  std::uint32_t every = 1;                  // runs in steps whose number is a multiple of this
+  std::uint32_t every = 1;  // runs in steps whose number is a multiple of this
 };
 
-/// Runs systems in the order given, each at its own rate, and times each. What no entity needs is left out at
-/// construction: it costs nothing, and `is_on` says so.
+/// Runs systems in the order given, each at its own rate, and times each. What no entity needs is
+/// left out at construction: it costs nothing, and `is_on` says so.
 template <class Context>
 class Schedule {
  public:
@@ -52,7 +52,8 @@ class Schedule {
       }
       const auto start = std::chrono::steady_clock::now();
       row.system.run(context);
-      const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const double elapsed =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       row.timing.runs += 1;
       row.timing.total_s += elapsed;
       row.timing.longest_s = elapsed > row.timing.longest_s ? elapsed : row.timing.longest_s;

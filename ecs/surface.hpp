@@ -7,8 +7,8 @@
 
 namespace torsion {
 
-/// A triangle mesh outside the tables: what load-time work reads. For physics it is welded, closed and oriented
-/// (counter-clockwise seen from outside).
+/// A triangle mesh outside the tables: what load-time work reads. For physics it is welded, closed
+/// and oriented (counter-clockwise seen from outside).
 struct SurfaceMesh {
   std::vector<glm::dvec3> positions;  // m
   std::vector<glm::uvec3> triangles;  // rows of positions

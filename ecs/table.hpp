@@ -13,12 +13,13 @@
 
 namespace torsion {
 
-/// Parallel columns: row i of every column belongs to the same thing. Memory is taken once, by `reserve`.
+/// Parallel columns: row i of every column belongs to the same thing. Memory is taken once, by
+/// `reserve`.
 template <Component... Ts>
 class Table {
  public:
   template <class T>
-  static constexpr bool has = (std::is_same_v<std::remove_const_t<T>, Ts> || ...);
+  static constexpr bool kHas = (std::is_same_v<std::remove_const_t<T>, Ts> || ...);
 
   /// Takes memory for `capacity` rows in every column and empties the table. The only allocation.
   void reserve(std::uint32_t capacity) {
@@ -85,7 +86,8 @@ class Table {
   [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
   [[nodiscard]] bool empty() const { return size_ == 0; }
 
-  /// Calls f(bytes, row_size) for each column, in declaration order: for saving, hashing and uploading.
+  /// Calls f(bytes, row_size) for each column, in declaration order: for saving, hashing and
+  /// uploading.
   template <class F>
   void each_column(F&& f) const {
     (f(std::as_bytes(column<Ts>()), sizeof(Ts)), ...);
@@ -106,7 +108,8 @@ class Table {
   template <class T>
   void clear_rows(Range range) {
     if (range.count > 0) {
-      std::memset(static_cast<void*>(std::get<Column<T>>(columns_).data() + range.first), 0, range.count * sizeof(T));
+      std::memset(static_cast<void*>(std::get<Column<T>>(columns_).data() + range.first), 0,
+                  range.count * sizeof(T));
     }
   }
 

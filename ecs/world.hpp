@@ -29,7 +29,7 @@ struct Capacities {
 enum class Fault : std::uint32_t {
   kPoseNotFinite = 1U << 0U,  // the device's pose has a NaN or infinity; the last good pose is kept
   kPoseJumped = 1U << 1U,     // the tool moved or turned further in one step than a hand can
-  kTooDeep = 1U << 2U,        // the overlap is beyond half the body's size
+  kTooDeep = 1U << 2U,             // half of the tool is inside the body, or it is beyond half the body
   kRegionsFull =
       1U << 3U,  // more than kMaxRegionsPerBody regions on a body, or the regions table is full
   kResultNotFinite = 1U << 4U,  // a wrench came out as NaN or infinity

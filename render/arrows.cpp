@@ -134,12 +134,12 @@ void append_wrenches(const Snapshot& snapshot, const ArrowScale& scale, ArrowMes
   for (std::uint32_t tool = 0; tool < snapshot.tools.size(); ++tool) {
     const glm::dvec3& center = snapshot.tools.at<ToolMotion>(tool).mass_center;
     const Wrench& wrench = snapshot.tools.at<ToolWrench>(tool).total;
-    append_arrow(center, wrench.force / scale.full_force * scale.length, 0.5 * scale.length,
+    append_arrow(center, wrench.force / scale.full_force * scale.length, 0.7 * scale.length,
                  kForceColor, mesh);
     const double torque = glm::length(wrench.torque);
     if (torque > 0.0) {
       const double angle = std::min(torque / scale.full_torque, 1.0) * kFullArc;
-      append_arc(center, wrench.torque / torque, 0.4 * scale.length, angle, 0.5 * scale.length,
+      append_arc(center, wrench.torque / torque, 0.55 * scale.length, angle, 0.7 * scale.length,
                  kTorqueColor, mesh);
     }
   }

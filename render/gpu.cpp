@@ -186,7 +186,11 @@ Result<Gpu> open_gpu(const GpuOptions& options) {
   if (options.validation != nullptr && !has_validation_layer(gpu.context)) {
     return Error{"The Vulkan validation layer is not installed (package vulkan-validationlayers)."};
   }
-  gpu.instance = make_instance(gpu.context, options.validation);
+  try {
+    gpu.instance = make_instance(gpu.context, options.validation);
+  } catch (const vk::IncompatibleDriverError&) {  // what the loader says when it finds none
+    return choose_device({}, {}).error();
+  }
   if (options.validation != nullptr) {
     gpu.messenger = {gpu.instance, messenger_info(options.validation)};
   }

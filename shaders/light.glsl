@@ -2,9 +2,10 @@
 
 layout(set = 0, binding = 1) uniform sampler2DShadow shadow_map;
 
-// Share of the key light that arrives: one comparison, which the sampler blends over the four nearest texels.
+// Share of the key light that arrives: one comparison, which the sampler blends over the four nearest texels. What is
+// deeper than the map reaches is compared as if at its end, where nothing casts a shadow.
 float key_light_share(vec3 in_shadow_map) {
-  return texture(shadow_map, in_shadow_map);
+  return texture(shadow_map, vec3(in_shadow_map.xy, min(in_shadow_map.z, 1.0)));
 }
 
 // Light from all around, `open` being the share of it that nothing near by takes away.

@@ -14,28 +14,29 @@ layout(location = 0) out vec4 color;
 const float kMeridians = 12.0;
 const float kTurn = 6.28318531;
 
-// Marks that turn with the tool: meridians about its y axis (x: share of the pixel that they cover), the one toward
-// +x being bold (y). Near the axis they fade out.
-vec2 meridians() {
+// Marks that turn with the tool: meridians about its y axis. x: share of the pixel that they cover; of that, y: the
+// bold one toward +x, z: the bold one toward -x. Near the axis they fade out.
+vec3 meridians() {
   vec2 from_axis = tool_position.xz - draw.grid.xz;
   float turns = atan(from_axis.y, from_axis.x) / kTurn * kMeridians;
   float away = abs(turns - round(turns));
   // Turns jump by kMeridians at the back: take the width from the position, which does not jump.
   float pixel = length(vec2(dFdx(from_axis.x), dFdx(from_axis.y))) + length(vec2(dFdy(from_axis.x), dFdy(from_axis.y)));
   pixel *= kMeridians / kTurn / max(length(from_axis), 1e-9);
-  float bold = step(abs(turns), 0.5);
-  float half_width = max(mix(0.025, 0.16, bold), 0.75 * pixel);
+  vec2 bold = step(vec2(abs(turns), kMeridians * 0.5 - abs(turns)), vec2(0.5));
+  float half_width = max(bold.x + bold.y > 0.0 ? 0.16 : 0.025, 0.75 * pixel);
   float line = 1.0 - smoothstep(half_width - 0.5 * pixel, half_width + 0.5 * pixel, away);
   line *= 1.0 - smoothstep(0.3, 0.8, pixel);
-  return vec2(line, line * bold);
+  return vec3(line, line * bold);
 }
 
 void main() {
   vec3 normal = normalize(world_normal);
   vec3 to_eye = normalize(frame.eye.xyz - world_position);
-  vec2 mark = meridians();
+  vec3 mark = meridians();
   vec3 base = mix(draw.color.rgb, draw.color.rgb * 0.25, mark.x);
   base = mix(base, vec3(0.80, 0.10, 0.03), mark.y);
+  base = mix(base, vec3(0.02, 0.10, 0.45), mark.z);
 
   float facing = max(dot(normal, frame.to_key_light.xyz), 0.0);
   float share = facing > 0.0 ? key_light_share(in_shadow_map) : 0.0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "systems/fault.hpp"
 #include "systems/frames.hpp"
 #include "systems/group_points.hpp"
 #include "systems/scratch.hpp"
@@ -106,6 +107,17 @@ void add_point(Scratch& scratch, const ContactPoint& point) {
   }
 }
 
+/// Deeper than half of the body, or with half of the tool's surface inside it, no side is "out" any
+/// more.
+bool too_deep(const Search& search, const Bounds& bounds, std::span<const ContactPoint> points) {
+  const glm::dvec3 size = bounds.highest - bounds.lowest;
+  const double deepest = 0.5 * std::min({size.x, size.y, size.z});
+  const auto beyond = [deepest](const ContactPoint& point) {
+    return point.depth >= deepest;
+  };
+  return 2 * points.size() > search.tool.samples.count || std::ranges::any_of(points, beyond);
+}
+
 void find_points(Search& search) {
   find_candidates(search);
   Scratch& scratch = search.scratch;
@@ -126,7 +138,7 @@ void find_points(Search& search) {
 }  // namespace
 
 void detect_contacts(StepContext& context) {
-  const World& world = context.world;
+  World& world = context.world;
   Scratch& scratch = context.scratch;
   scratch.points.clear();
   scratch.pairs.clear();
@@ -137,8 +149,12 @@ void detect_contacts(StepContext& context) {
                     world.tools.at<OwnedRows>(tool),
                     relative(world.bodies.at<Pose>(body), world.tools.at<ToolPose>(tool).now)};
       find_points(search);
-      scratch.pairs.push_back(
-          {tool, body, {first, static_cast<std::uint32_t>(scratch.points.size()) - first}, 0});
+      const Range points{first, static_cast<std::uint32_t>(scratch.points.size()) - first};
+      scratch.pairs.push_back({tool, body, points, 0});
+      if (too_deep(search, world.bodies.at<Bounds>(body),
+                   {scratch.points.data() + first, points.count})) {
+        raise(world.clock.at<Clock>(0), Fault::kTooDeep);
+      }
     }
   }
 }

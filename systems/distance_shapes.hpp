@@ -151,7 +151,7 @@ struct EllipsoidDistance {
     return {nx * x + ny * y + nz * z - support, {nx, ny, nz}};
   }
 
-  static constexpr int kIterations = 3;
+  static constexpr int kIterations = 2;
 };
 
 /// Calls f with the distance function of an exact shape, in the part's frame. @pre part.kind is not

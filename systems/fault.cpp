@@ -9,7 +9,8 @@ std::string_view fault_text(Fault fault) {
     case Fault::kPoseJumped:
       return "the tool moved faster than 20 m/s or 500 rad/s; smooth the motion or raise --rate";
     case Fault::kTooDeep:
-      return "the tool is pressed deeper than half the body; press less or use a larger body";
+      return "half of the tool is inside the body, or it is deeper than half the body; press less "
+             "or use a larger body";
     case Fault::kRegionsFull:
       return "more than 16 contact regions on one body; raise kMaxRegionsPerBody or "
              "torsion_region_threshold";

@@ -99,63 +99,73 @@ void find_depths(const Grid& grid, const ToolGrid& axes) {
   }
 }
 
-std::uint32_t cell_at(const Grid& grid, const glm::dvec3& point) {
-  const glm::dvec3 in_grid = body_to_grid(grid.frame, point);
+/// @param place  m, grid
+std::uint32_t cell_at(const Grid& grid, const glm::dvec3& place) {
   const auto index = [&grid](double position, double half) {
     const double scaled = (position / half + 1.0) * 0.5 * static_cast<double>(grid.side);
     return static_cast<std::uint32_t>(std::clamp(scaled, 0.0, static_cast<double>(grid.side - 1)));
   };
-  return index(in_grid.y, grid.frame.half_size.y) * grid.side +
-         index(in_grid.x, grid.frame.half_size.x);
+  return index(place.y, grid.frame.half_size.y) * grid.side +
+         index(place.x, grid.frame.half_size.x);
 }
 
-/// Visits covered cells joined to those already in the queue; returns the queue's length.
-std::uint32_t spread(const Grid& grid, std::uint32_t filled) {
-  auto& queue = grid.scratch.cell_queue;
+constexpr std::uint8_t kUnvisited = 0;
+constexpr std::uint8_t kOwn = 1;
+constexpr std::uint8_t kForeign = 2;
+
+/// Marks a covered cell for the first who reaches it and queues it.
+void visit(const Grid& grid, std::uint32_t cell, std::uint8_t mark, std::uint32_t& filled) {
   auto& marks = grid.scratch.cell_marks;
-  const auto visit = [&](std::uint32_t cell) {
-    if (marks[cell] == 0 && grid.cells[cell].coverage > 0.0) {
-      marks[cell] = 1;
-      queue[filled++] = cell;
-    }
-  };
+  if (marks[cell] == kUnvisited && grid.cells[cell].coverage > 0.0) {
+    marks[cell] = mark;
+    grid.scratch.cell_queue[filled++] = cell;
+  }
+}
+
+/// Marks every covered cell that is joined to a queued one with the mark of the nearest, in steps
+/// from cell to cell.
+void spread(const Grid& grid, std::uint32_t filled) {
   for (std::uint32_t next = 0; next < filled; ++next) {
-    const std::uint32_t i = queue[next] % grid.side;
-    const std::uint32_t j = queue[next] / grid.side;
+    const std::uint32_t cell = grid.scratch.cell_queue[next];
+    const std::uint8_t mark = grid.scratch.cell_marks[cell];
+    const std::uint32_t i = cell % grid.side;
+    const std::uint32_t j = cell / grid.side;
     for (std::uint32_t row = j - std::min(j, 1U); row <= std::min(j + 1, grid.side - 1); ++row) {
       for (std::uint32_t column = i - std::min(i, 1U); column <= std::min(i + 1, grid.side - 1);
            ++column) {
-        visit(row * grid.side + column);
+        visit(grid, row * grid.side + column, mark, filled);
       }
     }
   }
-  return filled;
 }
 
-/// Takes the coverage from cells that are not joined to the region's own contact points.
+/// Takes the coverage from cells that are not joined to the region's own contact points, or are
+/// nearer to those of another cluster.
 void keep_own_cells(const Grid& grid, const RegionPoints& contact) {
   auto& marks = grid.scratch.cell_marks;
-  std::ranges::fill(marks, std::uint8_t{0});
+  std::ranges::fill(marks, kUnvisited);
   std::uint32_t filled = 0;
-  const auto seed = [&](std::uint32_t cell) {
-    if (marks[cell] == 0 && grid.cells[cell].coverage > 0.0) {
-      marks[cell] = 1;
-      grid.scratch.cell_queue[filled++] = cell;
-    }
-  };
+  const glm::dvec2 reach = grid.frame.half_size;
   for (const ContactPoint& point : points_of(grid.scratch, contact)) {
-    if (point.cluster == contact.cluster) {
-      seed(cell_at(grid, point.position));
+    const glm::dvec3 place = body_to_grid(grid.frame, point.position);
+    if (std::abs(place.x) <= reach.x && std::abs(place.y) <= reach.y) {
+      visit(grid, cell_at(grid, place), point.cluster == contact.cluster ? kOwn : kForeign, filled);
     }
   }
-  if (filled == 0) {
-    // The points fall between the cells: the deepest cell is the nearest thing to them.
-    const auto deepest = std::ranges::max_element(grid.cells, {}, &CellGeometry::depth);
-    seed(static_cast<std::uint32_t>(deepest - grid.cells.begin()));
+  if (std::ranges::find(marks, kOwn) == marks.end()) {
+    // The points fall between the cells: the deepest cell that is left is the nearest thing to
+    // them.
+    std::uint32_t deepest = 0;
+    for (std::uint32_t cell = 1; cell < grid.cells.size(); ++cell) {
+      const bool better = grid.cells[cell].depth > grid.cells[deepest].depth;
+      deepest =
+          marks[cell] == kUnvisited && (better || marks[deepest] != kUnvisited) ? cell : deepest;
+    }
+    visit(grid, deepest, kOwn, filled);
   }
   spread(grid, filled);
   for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
-    grid.cells[cell].coverage = marks[cell] != 0 ? grid.cells[cell].coverage : 0.0;
+    grid.cells[cell].coverage = marks[cell] == kOwn ? grid.cells[cell].coverage : 0.0;
   }
 }
 

@@ -213,8 +213,7 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
     append_tool(world, scene.tools[tool], built.value().surfaces[tool], built.value(), next_field);
   }
   for (BodyModels& models : world.bodies.column<BodyModels>()) {
-    models.region_threshold =
-        models.region_threshold > 0.0 ? models.region_threshold : default_threshold(world);
+    models.region_threshold = std::max(models.region_threshold, default_threshold(world));
   }
   TORSION_ASSERT(world.cells.append(world.cells.capacity()).has_value());
   simulation.scratch->reserve(world);

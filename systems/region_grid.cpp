@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "systems/frames.hpp"
 #include "systems/grid_cells.hpp"
@@ -25,13 +26,14 @@ struct PlaneBox {
     lowest = glm::min(lowest, low);
     highest = glm::max(highest, high);
   }
-  [[nodiscard]] bool empty() const { return lowest.x > highest.x; }
+  [[nodiscard]] bool empty() const { return lowest.x > highest.x || lowest.y > highest.y; }
 };
 
 /// The contact as the last pass found it: covered cells, cut where their coverage says that the
 /// edge runs.
 PlaneBox covered_box(const Grid& grid) {
   PlaneBox box;
+  std::optional<glm::dvec2> middle;  // of some covered cell
   const glm::dvec2 half = cell_half_size(grid);
   for (std::uint32_t j = 0; j < grid.side; ++j) {
     for (std::uint32_t i = 0; i < grid.side; ++i) {
@@ -39,10 +41,15 @@ PlaneBox covered_box(const Grid& grid) {
       if (coverage > 0.0) {
         const glm::dvec2 center = cell_center(grid.frame, grid.side, i, j);
         const glm::dvec2 reach = half * (2.0 * coverage - 1.0);
+        // At less than half coverage the edge is short of the centre: the reach is negative, and
+        // this grows with the coverage without a jump.
         box.include(center - reach, center + reach);
-        box.include(center, center);
+        middle = center;
       }
     }
+  }
+  if (box.empty() && middle) {
+    box.include(*middle, *middle);
   }
   return box;
 }
@@ -121,6 +128,7 @@ double covered_depth(const CellGeometry& cell, double change_across) {
 RegionGeometry summarize(const Grid& grid) {
   RegionGeometry geometry;
   geometry.equivalent_point = grid.frame.origin;
+  geometry.rest_point = grid.frame.origin;
   geometry.mean_normal = grid.frame.normal;
   const double area = cell_area(grid.frame, grid.side);
   double volume = 0.0;
@@ -144,6 +152,7 @@ RegionGeometry summarize(const Grid& grid) {
   if (geometry.area > 0.0) {
     geometry.equivalent_point = grid_to_body(grid.frame, first_moment / geometry.area);
     geometry.mean_depth = volume / geometry.area;
+    geometry.rest_point = geometry.equivalent_point + grid.frame.normal * geometry.mean_depth;
     geometry.radius = std::sqrt(geometry.area / std::numbers::pi);
   }
   if (glm::length(normal) > 0.1 * geometry.area && geometry.area > 0.0) {

@@ -3,7 +3,6 @@
 
 #include "systems/body_models/skeleton.hpp"
 #include "systems/contact_models/paper.hpp"
-#include "systems/fault.hpp"
 
 namespace torsion {
 namespace {
@@ -36,7 +35,6 @@ PaperNormalLaw paper_normal_law(double contact_modulus, double radius, double ax
 
 void paper_normal_forces(StepContext& context) {
   World& world = context.world;
-  Clock& clock = world.clock.at<Clock>(0);
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
     const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
     if (world.bodies.at<BodyModels>(body).contact != ContactModel::kPaper) {
@@ -46,12 +44,9 @@ void paper_normal_forces(StepContext& context) {
     const Elasticity& elasticity = world.bodies.at<Elasticity>(body);
     BeamSummary beam;
     if (world.bodies.at<BodyModels>(body).body == BodyModel::kSkeleton) {
-      beam = beam_summary(world, body, geometry.equivalent_point);
+      beam = beam_summary(world, body, geometry.rest_point);
     }
     const double deepest = deepest_allowed(world.bodies.at<Bounds>(body));
-    if (geometry.largest_depth > deepest) {
-      raise(clock, Fault::kTooDeep);
-    }
     const double depth = std::min(geometry.mean_depth, deepest);
     const PaperNormalLaw law = paper_normal_law(elasticity.contact_modulus(), geometry.radius,
                                                 beam.axial_stiffness, beam.length);

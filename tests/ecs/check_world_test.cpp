@@ -21,7 +21,8 @@ struct Damage {
   std::function<void(World&)> inflict;
 };
 
-void PrintTo(const Damage& damage, std::ostream* out) {
+// Google Test finds it by this name.
+void PrintTo(const Damage& damage, std::ostream* out) {  // NOLINT(readability-identifier-naming)
   *out << damage.place;
 }
 

@@ -77,7 +77,7 @@ TEST(EntityPoolTest, AgreesWithAPlainListAndAllocatesNothing) {
   std::vector<Entity> dead;
   alive.reserve(kCapacity);
   dead.reserve(4000);
-  std::mt19937 random(1);  // NOLINT(cert-msc51-cpp): the same run every time
+  std::mt19937 random(1);  // the same run every time
   const test::AllocationGuard guard;
   for (std::uint32_t turn = 0; turn < 4000; ++turn) {
     if (random() % 2 == 0) {

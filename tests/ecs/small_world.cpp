@@ -25,7 +25,7 @@ void mend_shapes(World& world) {
   }
   world.parts.at<ShapePart>(1).kind = ShapeKind::kMesh;
   world.parts.at<ShapePart>(1).field = 0;
-  DistanceField& field = world.fields.at<DistanceField>(0);
+  auto& field = world.fields.at<DistanceField>(0);
   field.cells = glm::uvec3(2);
   field.subdivision = 2;
   field.coarse_nodes = {0, 27};
@@ -52,7 +52,7 @@ void mend_owners(World& world) {
     world.tools.at<OwnedRows>(row) = {{row, 1}, {row * 10, 10}, {row * 20, 20}, {}};
     world.bodies.at<OwnedRows>(row) = {{row + 1, 1}, {}, {}, {row * 3, 3}};
     world.bodies.at<FixedRegion>(row).volumes = {row, 1};
-    RegionIdentity& region = world.regions.at<RegionIdentity>(row);
+    auto& region = world.regions.at<RegionIdentity>(row);
     region.body = row;
     region.tool = 1 - row;
     region.cells = {row * 16, 16};

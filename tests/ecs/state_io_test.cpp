@@ -130,7 +130,7 @@ TEST(StateIoTest, ARowThatDoesNotExistIsRefused) {
 // Error. Run under the sanitizers this proves that the reader stays inside its bytes.
 TEST(StateIoTest, NoiseWithARightChecksumNeverCrashes) {
   const std::vector<std::byte> whole = to_bytes(test::small_world(1));
-  std::mt19937 random(7);  // NOLINT(cert-msc51-cpp): the same run every time
+  std::mt19937 random(7);  // the same run every time
   for (int round = 0; round < 2000; ++round) {
     std::vector<std::byte> bytes = whole;
     const int changes = 1 + static_cast<int>(random() % 8);

@@ -27,7 +27,7 @@ void count_release(const volatile void* block) {
 
 // A sanitizer owns malloc, but lets us listen.
 extern "C" int
-__sanitizer_install_malloc_and_free_hooks(  // NOLINT(bugprone-reserved-identifier): its name
+__sanitizer_install_malloc_and_free_hooks(  // NOLINT(readability-identifier-naming): its name
     void (*on_malloc)(const volatile void*, std::size_t), void (*on_free)(const volatile void*));
 
 namespace {
@@ -46,13 +46,13 @@ void count_allocation(const volatile void* /*block*/, std::size_t /*bytes*/) {
 // glibc lets a program define the malloc family and keeps its own under these names. operator new
 // ends in them too.
 extern "C" {
-// NOLINTBEGIN(bugprone-reserved-identifier): glibc's names
+// NOLINTBEGIN(readability-identifier-naming): glibc's names
 void* __libc_malloc(std::size_t bytes);
 void* __libc_calloc(std::size_t count, std::size_t bytes);
 void* __libc_realloc(void* block, std::size_t bytes);
 void* __libc_memalign(std::size_t alignment, std::size_t bytes);
 void __libc_free(void* block);
-// NOLINTEND(bugprone-reserved-identifier)
+// NOLINTEND(readability-identifier-naming)
 
 void* malloc(std::size_t bytes) {
   allocation_count += 1;

@@ -1,0 +1,104 @@
+// Times of the beam skeleton and of the surface field on a cube with one contact region.
+
+#include <array>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "systems/body_models/skeleton.hpp"
+#include "systems/prepare_anchors.hpp"
+#include "systems/scratch.hpp"
+#include "systems/surface_field.hpp"
+#include "tests/systems/body_scene.hpp"
+
+namespace {
+
+using namespace torsion;  // NOLINT(google-build-using-namespace): one program, one namespace
+
+/// A ball of radius 0.05 m, 2 mm deep in the top of the cube.
+void press(World& world) {
+  add_region(world, {.point = {0.0, 0.05, 0.0},
+                     .force_on_body = {1.0, -10.0, 0.0},
+                     .radius = 0.014,
+                     .depth = 0.002});
+  world.regions.at<RegionMotion>(0).axis_share = 1.0;
+  world.regions.at<RegionMotion>(0).axis = glm::dvec3(0.0, 1.0, 0.0);
+  world.regions.at<RegionFriction>(0).stick_turn = 0.2;
+  world.regions.at<RegionFriction>(0).stick_radius = 0.01;
+  world.tools.at<ToolPose>(0).now.position = glm::dvec3(0.0, 0.098, 0.0);
+}
+
+void skeleton_with_one_region(benchmark::State& state) {
+  World world = body_world(exact_body(ShapeKind::kBox, glm::dvec3(0.05), FixedKind::kPoint));
+  press(world);
+  Scratch scratch;
+  const std::array<Pose, 1> poses{};
+  StepContext context{world, poses, scratch};
+  for (auto _ : state) {
+    skeleton(context);
+    benchmark::ClobberMemory();
+  }
+}
+BENCHMARK(skeleton_with_one_region);
+
+void summary_of_the_main_beam(benchmark::State& state) {
+  const World world = body_world(exact_body(ShapeKind::kBox, glm::dvec3(0.05), FixedKind::kPoint));
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(beam_summary(world, 0, {0.01, 0.05, 0.0}));
+  }
+}
+BENCHMARK(summary_of_the_main_beam);
+
+void anchors_and_sections_at_load(benchmark::State& state) {
+  const BodyDescription body =
+      exact_body(ShapeKind::kEllipsoid, {0.06, 0.04, 0.05}, FixedKind::kPoint);
+  const World world = body_world(body);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(prepare_anchors(body, world, Range{0, 1}, Range{}));
+  }
+}
+BENCHMARK(anchors_and_sections_at_load)->Unit(benchmark::kMillisecond);
+
+/// A cube cut so that it has about the given number of vertices.
+struct Frame {
+  explicit Frame(std::int64_t vertices) {
+    std::uint32_t cells = 1;
+    while (6 * (cells + 1) * (cells + 1) < vertices) {
+      ++cells;
+    }
+    scene.bodies.push_back(exact_body(ShapeKind::kBox, glm::dvec3(0.05), FixedKind::kFace, cells));
+    scene.tools.emplace_back();
+    world = body_world(scene.bodies.front());
+    press(world);
+    run_skeleton(world);
+    frame = prepare_frame(scene, world);
+    snapshot.reserve(world);
+    capture(world, snapshot);
+  }
+  SceneDescription scene;
+  World world;
+  FrameWorld frame;
+  Snapshot snapshot;
+};
+
+void surface_field_of_one_region(benchmark::State& state) {
+  Frame drawn(state.range(0));
+  for (auto _ : state) {
+    surface_field(drawn.world, drawn.snapshot, drawn.frame);
+    benchmark::ClobberMemory();
+  }
+}
+BENCHMARK(surface_field_of_one_region)->Arg(1000)->Arg(100000)->Unit(benchmark::kMillisecond);
+
+void deform_on_the_cpu(benchmark::State& state) {
+  Frame drawn(state.range(0));
+  surface_field(drawn.world, drawn.snapshot, drawn.frame);
+  std::vector<glm::vec4> positions(drawn.frame.body_vertices.size());
+  for (auto _ : state) {
+    deform_vertices(drawn.frame, 0, positions);
+    benchmark::ClobberMemory();
+  }
+}
+BENCHMARK(deform_on_the_cpu)->Arg(100000)->Unit(benchmark::kMillisecond);
+
+}  // namespace

@@ -1,0 +1,58 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/contact_scenes.hpp"
+
+namespace torsion {
+namespace {
+
+using test::Hand;
+
+std::vector<std::string_view> names_on(Hand& hand) {
+  std::vector<std::string_view> names;
+  for (const auto& row : hand.simulation().schedule.rows()) {
+    if (row.on) {
+      names.push_back(row.system.name);
+    }
+  }
+  return names;
+}
+
+bool runs(Hand& hand, std::string_view name) {
+  hand.step_to({{glm::dvec3(0.0, 0.2, 0.0), glm::dquat(1.0, 0.0, 0.0, 0.0)}});
+  for (const auto& row : hand.simulation().schedule.rows()) {
+    if (row.system.name == name) {
+      EXPECT_EQ(row.on, row.timing.runs > 0) << name;
+      return row.timing.runs > 0;
+    }
+  }
+  ADD_FAILURE() << "no system " << name;
+  return false;
+}
+
+TEST(ScheduleOfScenesTest, TheWholeSceneRunsEverySystem) {
+  Hand hand(test::ball_on_cube());
+  EXPECT_EQ(names_on(hand).size(), step_systems().size());
+  EXPECT_TRUE(runs(hand, "paper_friction_forces"));
+  EXPECT_TRUE(runs(hand, "skeleton"));
+}
+
+TEST(ScheduleOfScenesTest, WithoutFrictionNothingOfFrictionRuns) {
+  SceneDescription scene = test::ball_on_cube();
+  scene.bodies[0].friction = {0.0, 0.0};
+  Hand hand(scene);
+  EXPECT_FALSE(runs(hand, "region_motion"));
+  EXPECT_FALSE(runs(hand, "paper_friction_forces"));
+  EXPECT_TRUE(runs(hand, "paper_normal_forces"));
+}
+
+TEST(ScheduleOfScenesTest, ABodyModelNoneLeavesTheSkeletonOut) {
+  SceneDescription scene = test::ball_on_cube();
+  scene.bodies[0].models.body = BodyModel::kNone;
+  Hand hand(scene);
+  EXPECT_FALSE(runs(hand, "skeleton"));
+  EXPECT_TRUE(runs(hand, "paper_friction_forces"));
+  EXPECT_EQ(hand.world().anchors.size(), 0U);
+}
+
+}  // namespace
+}  // namespace torsion

@@ -17,17 +17,13 @@ struct PairPoints {
   std::uint32_t clusters;
 };
 
-/// Share of a point that lies over a region: 1 on its covered cells, falling off over two cells
-/// around them, so that a small region that slid further than its size since the last step is still
-/// recognised.
+/// Share of a point that lies over a region: 1 on its covered cells, a little on the others of its
+/// grid.
 double overlap_with(const World& world, std::uint32_t region, const glm::dvec3& point) {
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
   const glm::dvec3 in_grid = body_to_grid(frame, point);
-  const double x = std::max(0.0, std::abs(in_grid.x) / frame.half_size.x - 1.0);
-  const double y = std::max(0.0, std::abs(in_grid.y) / frame.half_size.y - 1.0);
-  const double outside = std::max(x, y);
-  if (outside > 0.0) {
-    return outside < 2.0 ? 1e-3 * (2.0 - outside) : 0.0;
+  if (std::abs(in_grid.x) > frame.half_size.x || std::abs(in_grid.y) > frame.half_size.y) {
+    return 0.0;
   }
   const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
   const auto cell_of = [side](double position, double half) {
@@ -100,17 +96,20 @@ void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t c
       1;  // on_tool is zero: what it exerts at birth fades in
 }
 
-/// Fills scratch.owners: which region each cluster continues.
-void match_clusters(const World& world, Scratch& scratch, const ContactPair& pair,
-                    std::span<const ContactPoint> points) {
-  scratch.owners.assign(pair.clusters, ClusterOwner{});
+bool owns_cluster(const Scratch& scratch, std::uint32_t region) {
+  return std::ranges::any_of(
+      scratch.owners, [region](const ClusterOwner& owner) { return owner.region == region; });
+}
+
+/// Regions continue in the cluster that they overlap most; the oldest comes first and keeps what it
+/// takes.
+void match_by_overlap(const World& world, Scratch& scratch, const ContactPair& pair,
+                      std::span<const ContactPoint> points) {
   const auto regions = world.regions.column<RegionIdentity>();
   for (std::uint32_t region = 0; region < regions.size(); ++region) {
     if (!of_pair(regions[region], pair)) {
       continue;
     }
-    // The cluster that this region overlaps most; the oldest region comes first and keeps what it
-    // takes.
     scratch.overlaps.assign(pair.clusters, 0.0);
     for (const ContactPoint& point : points) {
       scratch.overlaps[point.cluster] += overlap_with(world, region, point.position);
@@ -126,6 +125,40 @@ void match_clusters(const World& world, Scratch& scratch, const ContactPair& pai
   }
 }
 
+/// A small region may slide or roll past its own size in a step: what is left over on both sides is
+/// matched when it is nearer than two regions can be to each other.
+void match_by_distance(const World& world, Scratch& scratch, const ContactPair& pair,
+                       std::span<const ContactPoint> points) {
+  const double threshold = world.bodies.at<BodyModels>(pair.body).region_threshold;
+  const auto regions = world.regions.column<RegionIdentity>();
+  for (std::uint32_t region = 0; region < regions.size(); ++region) {
+    if (!of_pair(regions[region], pair) || owns_cluster(scratch, region)) {
+      continue;
+    }
+    double nearest = threshold;
+    std::uint32_t cluster = kNoRow;
+    for (const ContactPoint& point : points) {
+      const double distance =
+          glm::distance(point.position, world.regions.at<RegionGeometry>(region).equivalent_point);
+      if (scratch.owners[point.cluster].region == kNoRow && distance < nearest) {
+        nearest = distance;
+        cluster = point.cluster;
+      }
+    }
+    if (cluster != kNoRow) {
+      scratch.owners[cluster] = {region, 0.0};
+    }
+  }
+}
+
+/// Fills scratch.owners: which region each cluster continues.
+void match_clusters(const World& world, Scratch& scratch, const ContactPair& pair,
+                    std::span<const ContactPoint> points) {
+  scratch.owners.assign(pair.clusters, ClusterOwner{});
+  match_by_overlap(world, scratch, pair, points);
+  match_by_distance(world, scratch, pair, points);
+}
+
 /// Where the region's contact went: the region that now owns the cluster over its old place, or
 /// kNoRow.
 std::uint32_t heir_of(const World& world, const Scratch& scratch, std::uint32_t region,
@@ -136,11 +169,6 @@ std::uint32_t heir_of(const World& world, const Scratch& scratch, std::uint32_t 
     }
   }
   return kNoRow;
-}
-
-bool owns_cluster(const Scratch& scratch, std::uint32_t region) {
-  return std::ranges::any_of(
-      scratch.owners, [region](const ClusterOwner& owner) { return owner.region == region; });
 }
 
 /// A cluster without an owner that lies over a living region was split off it.

@@ -14,6 +14,8 @@ namespace {
 constexpr int kMostPasses = 10;  // of one grid in one step: a new region finds its size by doubling
 constexpr double kMargin = 1.12;        // of the grid around the contact: about one cell of 16
 constexpr double kSmallestFill = 0.45;  // of the grid by the contact, else the grid is made smaller
+constexpr double kSettled =
+    0.02;  // of the grid: what it is off by when a region begins, splits or takes over another
 constexpr double kSteepest =
     0.25;  // smallest cosine between the surface's normal and the grid's that is divided by
 constexpr double kSmallestHalf = 1e-9;  // m
@@ -54,15 +56,19 @@ PlaneBox covered_box(const Grid& grid) {
   return box;
 }
 
+/// Half the sides of the grid that suits a contact. A sliver is given a tenth of its length in
+/// width, so that no cell degenerates.
+glm::dvec2 half_size_for(const PlaneBox& box) {
+  const glm::dvec2 half = 0.5 * (box.highest - box.lowest);
+  const double least = std::max(0.1 * std::max(half.x, half.y), kSmallestHalf);
+  return kMargin * glm::max(half, glm::dvec2(least));
+}
+
 /// Puts the grid around `box` (of its own plane) and its origin back on the body's rest surface.
 void fit(const Grid& grid, const PlaneBox& box) {
   RegionFrame& frame = grid.frame;
-  const glm::dvec2 center = 0.5 * (box.lowest + box.highest);
-  const glm::dvec2 half = 0.5 * (box.highest - box.lowest);
-  // A sliver is given a tenth of its length in width, so that no cell degenerates.
-  const double least = std::max(0.1 * std::max(half.x, half.y), kSmallestHalf);
-  frame.half_size = kMargin * glm::max(half, glm::dvec2(least));
-  frame.origin += tangent_to_body(frame, center);
+  frame.half_size = half_size_for(box);
+  frame.origin += tangent_to_body(frame, 0.5 * (box.lowest + box.highest));
   const Distance surface = signed_distance(
       grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts, frame.origin);
   frame.origin -= frame.normal *
@@ -99,8 +105,19 @@ void restart_heights(const Grid& grid, double depth) {
   }
 }
 
-/// Passes over the grid until it holds the whole contact and little else.
-void find_contact(const Grid& grid, const RegionPoints& contact, double start_depth) {
+/// True when a further pass would leave the grid where it is.
+bool settled(const Grid& grid, const PlaneBox& box) {
+  const glm::dvec2 change = glm::abs(half_size_for(box) - grid.frame.half_size);
+  const glm::dvec2 shift = glm::abs(0.5 * (box.lowest + box.highest));
+  const glm::dvec2 off = glm::max(change, shift) / grid.frame.half_size;
+  return std::max(off.x, off.y) < kSettled;
+}
+
+/// Passes over the grid until it holds the whole contact and little else. In most steps it does at
+/// once, and moves with the contact from step to step; when something happened to the region it
+/// settles within the step, so that what fades in is not the grid's way to its place.
+void find_contact(const Grid& grid, const RegionPoints& contact, double start_depth,
+                  bool event_now) {
   for (int pass = 0; pass < kMostPasses; ++pass) {
     find_cells(grid, contact);
     PlaneBox box = covered_box(grid);
@@ -110,7 +127,7 @@ void find_contact(const Grid& grid, const RegionPoints& contact, double start_de
     if (reaches_edge(grid, box)) {
       box.lowest -= 0.5 * grid.frame.half_size;
       box.highest += 0.5 * grid.frame.half_size;
-    } else if (!fills_too_little(grid, box)) {
+    } else if (event_now ? settled(grid, box) : !fills_too_little(grid, box)) {
       return;
     }
     fit(grid, box);
@@ -225,7 +242,8 @@ void region_grids(StepContext& context) {
     const RegionPoints& contact = contact_of(context, grid.identity);
     glm::dvec3 deepest(0.0);
     const double depth = deepest_point(points_of(grid.scratch, contact), contact.cluster, deepest);
-    find_contact(grid, contact, depth);
+    find_contact(grid, contact, depth,
+                 context.world.regions.at<RegionWrench>(region).event_now != 0);
     context.world.regions.at<RegionGeometry>(region) = summarize(grid);
   }
 }

@@ -7,12 +7,14 @@
 namespace torsion {
 namespace {
 
-constexpr double kDeepest =
-    0.5;  // of the body's smallest side: beyond it no small-strain law means anything
+// Of the body's smallest side and of the beam's length: beyond it no small-strain law means
+// anything, and the cubic term would grow without bound.
+constexpr double kDeepest = 0.5;
 
-double deepest_allowed(const Bounds& bounds) {
+double deepest_allowed(const Bounds& bounds, const BeamSummary& beam) {
   const glm::dvec3 size = bounds.highest - bounds.lowest;
-  return kDeepest * std::min({size.x, size.y, size.z});
+  const double side = std::min({size.x, size.y, size.z});
+  return kDeepest * (beam.length > 0.0 ? std::min(side, beam.length) : side);
 }
 
 }  // namespace
@@ -46,7 +48,7 @@ void paper_normal_forces(StepContext& context) {
     if (world.bodies.at<BodyModels>(body).body == BodyModel::kSkeleton) {
       beam = beam_summary(world, body, geometry.rest_point);
     }
-    const double deepest = deepest_allowed(world.bodies.at<Bounds>(body));
+    const double deepest = deepest_allowed(world.bodies.at<Bounds>(body), beam);
     const double depth = std::min(geometry.mean_depth, deepest);
     const PaperNormalLaw law = paper_normal_law(elasticity.contact_modulus(), geometry.radius,
                                                 beam.axial_stiffness, beam.length);

@@ -99,6 +99,23 @@ void store(const Block& block, bool first_part, std::span<Distance> distances) {
   }
 }
 
+/// Distances to one part; unless it is the first, only where they are smaller than those that are
+/// there.
+void nearer_of_part(const World& world, const ShapePart& part, bool first_part,
+                    std::span<const glm::dvec3> points, std::span<Distance> distances) {
+  const Placement placement = placement_of(part.pose);
+  Block block;
+  with_shape(world, part, [&](const auto& shape) {
+    for (std::size_t first = 0; first < points.size(); first += kBlock) {
+      const std::size_t count = std::min(kBlock, points.size() - first);
+      to_part_frame(placement, points.subspan(first, count), block);
+      evaluate_block(shape, block, count);
+      gradients_to_owner_frame(placement, count, block);
+      store(block, first_part, distances.subspan(first, count));
+    }
+  });
+}
+
 }  // namespace
 
 Distance signed_distance(const World& world, Range parts, const glm::dvec3& point) {
@@ -122,27 +139,43 @@ Distance signed_distance(const World& world, Range parts, const glm::dvec3& poin
   return nearest;
 }
 
+std::span<const std::uint32_t> parts_near(const World& world, Range parts, const glm::dvec3& center,
+                                          double reach, std::span<std::uint32_t> rows) {
+  TORSION_ASSERT(rows.size() >= parts.count);
+  // A distance changes by at most `reach` on the way from the centre, so a part that is 2 reach
+  // farther away than the nearest stays farther. A third reach covers what an ellipsoid or a field
+  // is off by.
+  const double farthest = signed_distance(world, parts, center).value + 3.0 * reach;
+  std::uint32_t count = 0;
+  for (std::uint32_t row = parts.first; row < parts.first + parts.count; ++row) {
+    // Written so that NaN keeps all.
+    if (parts.count == 1 || !(signed_distance(world, Range{row, 1}, center).value > farthest)) {
+      rows[count++] = row;
+    }
+  }
+  return rows.first(count);
+}
+
+void signed_distances(const World& world, std::span<const std::uint32_t> rows,
+                      std::span<const glm::dvec3> points, std::span<Distance> distances) {
+  TORSION_ASSERT(points.size() == distances.size());
+  if (rows.empty()) {
+    std::fill(distances.begin(), distances.end(),
+              Distance{std::numeric_limits<double>::infinity(), glm::dvec3(0.0)});
+  }
+  for (const std::uint32_t& row : rows) {
+    nearer_of_part(world, world.parts.at<ShapePart>(row), &row == rows.data(), points, distances);
+  }
+}
+
 void signed_distances(const World& world, Range parts, std::span<const glm::dvec3> points,
                       std::span<Distance> distances) {
   TORSION_ASSERT(points.size() == distances.size());
   if (parts.count == 0) {
-    std::fill(distances.begin(), distances.end(),
-              Distance{std::numeric_limits<double>::infinity(), glm::dvec3(0.0)});
+    signed_distances(world, std::span<const std::uint32_t>{}, points, distances);
   }
-  bool first_part = true;
-  Block block;
-  for (const ShapePart& part : world.parts.rows<ShapePart>(parts)) {
-    const Placement placement = placement_of(part.pose);
-    with_shape(world, part, [&](const auto& shape) {
-      for (std::size_t first = 0; first < points.size(); first += kBlock) {
-        const std::size_t count = std::min(kBlock, points.size() - first);
-        to_part_frame(placement, points.subspan(first, count), block);
-        evaluate_block(shape, block, count);
-        gradients_to_owner_frame(placement, count, block);
-        store(block, first_part, distances.subspan(first, count));
-      }
-    });
-    first_part = false;
+  for (std::uint32_t row = parts.first; row < parts.first + parts.count; ++row) {
+    nearer_of_part(world, world.parts.at<ShapePart>(row), row == parts.first, points, distances);
   }
 }
 

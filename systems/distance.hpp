@@ -19,8 +19,19 @@ struct Distance {
 /// @param point  m, the owner's frame
 Distance signed_distance(const World& world, Range parts, const glm::dvec3& point);
 
-/// The same for many points; the loop over parts is outside.
+/// Which of `parts` can be the nearest to any point within `reach` [m] of `center`.
+/// @param rows  at least parts.count long; its front is filled
+/// @return the filled front: rows of World::parts, rising; not empty unless `parts` is
+std::span<const std::uint32_t> parts_near(const World& world, Range parts, const glm::dvec3& center,
+                                          double reach, std::span<std::uint32_t> rows);
+
+/// The same as signed_distance for many points and the parts in `rows` of World::parts; the loop
+/// over parts is outside.
 /// @param points, distances  (n) out: distances
+void signed_distances(const World& world, std::span<const std::uint32_t> rows,
+                      std::span<const glm::dvec3> points, std::span<Distance> distances);
+
+/// The same for all of `parts`.
 void signed_distances(const World& world, Range parts, std::span<const glm::dvec3> points,
                       std::span<Distance> distances);
 

@@ -36,11 +36,23 @@ void place_points(const Grid& grid, const ToolGrid& axes) {
   }
 }
 
+/// Radius about the grid's origin that holds the cells' centres at their present heights and, with
+/// the same again, where they move in a pass.
+double reach_of(const Grid& grid) {
+  double farthest = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
+  for (const CellGeometry& cell : grid.cells) {
+    farthest = std::max(farthest, -cell.height);
+  }
+  return glm::length(grid.frame.half_size) + farthest;
+}
+
 /// Newton's method along the normal from every cell to the tool's underside. Leaves in scratch the
 /// distances at the last heights but one; the gradient there is the surface's normal.
 void find_tool_surface(const Grid& grid, const ToolGrid& axes) {
-  const Range parts = grid.world.tools.at<OwnedRows>(grid.identity.tool).parts;
   const double size = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
+  const auto parts =
+      parts_near(grid.world, grid.world.tools.at<OwnedRows>(grid.identity.tool).parts, axes.origin,
+                 reach_of(grid), grid.scratch.near_parts);
   const double close_enough = 0.02 * size / static_cast<double>(grid.side);
   for (int step = 0; step < kMostSurfaceSteps; ++step) {
     place_points(grid, axes);
@@ -78,8 +90,10 @@ void find_depths(const Grid& grid, const ToolGrid& axes) {
           frame, glm::dvec3(cell_center(frame, grid.side, i, j), grid.cells[cell].height));
     }
   }
-  signed_distances(grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts,
-                   scratch.cell_points, scratch.cell_distances);
+  const auto parts =
+      parts_near(grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts,
+                 frame.origin, reach_of(grid), scratch.near_parts);
+  signed_distances(grid.world, parts, scratch.cell_points, scratch.cell_distances);
   const glm::dvec2 half = cell_half_size(grid);
   for (cell = 0; cell < grid.cells.size(); ++cell) {
     const Distance& body = scratch.cell_distances[cell];

@@ -27,6 +27,7 @@ void Scratch::reserve(const World& world) {
   cell_depth_changes.assign(cells, 0.0);
   cell_queue.assign(cells, 0);
   cell_marks.assign(cells, 0);
+  near_parts.assign(world.parts.size(), 0);
 }
 
 }  // namespace torsion

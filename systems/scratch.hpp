@@ -75,6 +75,7 @@ struct Scratch {
   std::vector<double> cell_depth_changes;  // (cells of one region) m, across the cell
   std::vector<std::uint32_t> cell_queue;   // (cells of one region)
   std::vector<std::uint8_t> cell_marks;    // (cells of one region)
+  std::vector<std::uint32_t> near_parts;   // (parts of all bodies and tools)
 
   /// Takes all memory that a step of `world` can need.
   void reserve(const World& world);

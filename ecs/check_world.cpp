@@ -38,7 +38,7 @@ void check_sizes(const World& world, Findings& findings) {
     return;
   }
   const std::uint64_t side = world.settings.at<Settings>(0).grid_side;
-  findings.require(side >= 1 && side <= 256, "settings", 0, "grid_side must be 1 to 256");
+  findings.require(side >= 1 && side <= kMaxGridSide, "settings", 0, "grid_side must be 1 to 64");
   findings.require(world.cells.capacity() >= world.regions.capacity() * side * side, "cells", 0,
                    "there must be room for one grid a region");
 }

@@ -29,7 +29,7 @@ struct Capacities {
 enum class Fault : std::uint32_t {
   kPoseNotFinite = 1U << 0U,  // the device's pose has a NaN or infinity; the last good pose is kept
   kPoseJumped = 1U << 1U,     // the tool moved or turned further in one step than a hand can
-  kTooDeep = 1U << 2U,             // half of the tool is inside the body, or it is beyond half the body
+  kTooDeep = 1U << 2U,        // half of the tool is inside the body, or it is beyond half the body
   kRegionsFull =
       1U << 3U,  // more than kMaxRegionsPerBody regions on a body, or the regions table is full
   kResultNotFinite = 1U << 4U,  // a wrench came out as NaN or infinity
@@ -45,10 +45,13 @@ struct Clock {
   std::uint32_t faults_ever = 0;  // Fault bits of all steps
 };
 
+/// Most cells along one side of a region's grid: one row of them fits the bits of a machine word.
+inline constexpr std::uint32_t kMaxGridSide = 64;
+
 /// One row: what the user may set. Written by: load.
 struct Settings {
-  std::uint32_t grid_side =
-      16;  // cells along one side of a region's grid; 16 gives about 200 in a round contact
+  std::uint32_t grid_side = 16;  // cells along one side of a region's grid, 1 to kMaxGridSide; 16
+                                 // gives about 200 in a round contact
   std::uint32_t padding = 0;
 };
 

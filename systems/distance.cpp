@@ -28,9 +28,12 @@ struct Placement {
   bool turned;
 };
 
+bool is_turned(const glm::dquat& rotation) {
+  return rotation.x != 0.0 || rotation.y != 0.0 || rotation.z != 0.0;
+}
+
 Placement placement_of(const Pose& pose) {
-  const glm::dquat& q = pose.rotation;
-  return {glm::mat3_cast(q), pose.position, q.x != 0.0 || q.y != 0.0 || q.z != 0.0};
+  return {glm::mat3_cast(pose.rotation), pose.position, is_turned(pose.rotation)};
 }
 
 /// Calls f with the distance function of `part` in its own frame.
@@ -122,16 +125,16 @@ Distance signed_distance(const World& world, Range parts, const glm::dvec3& poin
   Distance nearest{std::numeric_limits<double>::infinity(), glm::dvec3(0.0)};
   bool first_part = true;
   for (const ShapePart& part : world.parts.rows<ShapePart>(parts)) {
-    const Placement placement = placement_of(part.pose);
-    glm::dvec3 local = point - placement.position;
-    if (placement.turned) {
-      local = local * placement.rotation;
+    const glm::dquat& turn = part.pose.rotation;
+    const bool turned = is_turned(turn);
+    glm::dvec3 local = point - part.pose.position;
+    if (turned) {
+      local = glm::conjugate(turn) * local;
     }
     with_shape(world, part, [&](const auto& shape) {
       const Distance distance = shape(local.x, local.y, local.z);
       if (first_part || distance.value < nearest.value) {
-        nearest = {distance.value,
-                   placement.turned ? placement.rotation * distance.gradient : distance.gradient};
+        nearest = {distance.value, turned ? turn * distance.gradient : distance.gradient};
       }
     });
     first_part = false;

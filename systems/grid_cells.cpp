@@ -1,6 +1,7 @@
 #include "systems/grid_cells.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "systems/frames.hpp"
@@ -99,17 +100,19 @@ void find_depths(const Grid& grid, const ToolGrid& axes) {
     const Distance& body = scratch.cell_distances[cell];
     const glm::dvec3 body_normal = body_to_grid_direction(frame, body.gradient);
     const glm::dvec3& tool_normal = scratch.cell_normals[cell];
-    const double body_slope = std::max(body_normal.z, kSteepest);
-    const double tool_slope = std::max(-tool_normal.z, kSteepest);
+    const double over_body_slope = 1.0 / std::max(body_normal.z, kSteepest);
+    const double over_tool_slope = 1.0 / std::max(-tool_normal.z, kSteepest);
     CellGeometry& geometry = grid.cells[cell];
-    geometry.depth = -body.value / body_slope;
+    geometry.depth = -body.value * over_body_slope;
     // How much the depth changes across the cell: the share of the cell with depth > 0, to first
     // order.
-    const double change_x = tool_normal.x / tool_slope + body_normal.x / body_slope;
-    const double change_y = tool_normal.y / tool_slope + body_normal.y / body_slope;
+    const double change_x = tool_normal.x * over_tool_slope + body_normal.x * over_body_slope;
+    const double change_y = tool_normal.y * over_tool_slope + body_normal.y * over_body_slope;
     const double across = 2.0 * (std::abs(change_x) * half.x + std::abs(change_y) * half.y) + 1e-30;
     scratch.cell_depth_changes[cell] = across;
-    geometry.coverage = std::clamp(0.5 + geometry.depth / across, 0.0, 1.0);
+    geometry.coverage = 2.0 * std::abs(geometry.depth) >= across
+                            ? (geometry.depth > 0.0 ? 1.0 : 0.0)
+                            : 0.5 + geometry.depth / across;
   }
 }
 
@@ -123,63 +126,77 @@ std::uint32_t cell_at(const Grid& grid, const glm::dvec3& place) {
          index(place.x, grid.frame.half_size.x);
 }
 
-constexpr std::uint8_t kUnvisited = 0;
-constexpr std::uint8_t kOwn = 1;
-constexpr std::uint8_t kForeign = 2;
+/// Cells as bits: bit i of word j is cell (i, j).
+using CellBits = std::array<std::uint64_t, kMaxGridSide>;
 
-/// Marks a covered cell for the first who reaches it and queues it.
-void visit(const Grid& grid, std::uint32_t cell, std::uint8_t mark, std::uint32_t& filled) {
-  auto& marks = grid.scratch.cell_marks;
-  if (marks[cell] == kUnvisited && grid.cells[cell].coverage > 0.0) {
-    marks[cell] = mark;
-    grid.scratch.cell_queue[filled++] = cell;
-  }
+void set(CellBits& bits, const Grid& grid, std::uint32_t cell) {
+  bits[cell / grid.side] |= std::uint64_t{1} << (cell % grid.side);
 }
 
-/// Marks every covered cell that is joined to a queued one with the mark of the nearest, in steps
-/// from cell to cell.
-void spread(const Grid& grid, std::uint32_t filled) {
-  for (std::uint32_t next = 0; next < filled; ++next) {
-    const std::uint32_t cell = grid.scratch.cell_queue[next];
-    const std::uint8_t mark = grid.scratch.cell_marks[cell];
-    const std::uint32_t i = cell % grid.side;
-    const std::uint32_t j = cell / grid.side;
-    for (std::uint32_t row = j - std::min(j, 1U); row <= std::min(j + 1, grid.side - 1); ++row) {
-      for (std::uint32_t column = i - std::min(i, 1U); column <= std::min(i + 1, grid.side - 1);
-           ++column) {
-        visit(grid, row * grid.side + column, mark, filled);
-      }
+CellBits covered_cells(const Grid& grid) {
+  CellBits covered{};
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
+      covered[j] |= static_cast<std::uint64_t>(grid.cells[cell].coverage > 0.0) << i;
     }
   }
+  return covered;
+}
+
+/// Adds to `bits` their free neighbours, those across a corner too. True when there were any.
+bool spread_one_step(const Grid& grid, CellBits& free, CellBits& bits) {
+  std::uint64_t any = 0;
+  std::uint64_t before = 0;  // the row before, as it was
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    const std::uint64_t after = j + 1 < grid.side ? bits[j + 1] : 0;
+    const std::uint64_t rows = before | bits[j] | after;
+    const std::uint64_t fresh = (rows | rows << 1 | rows >> 1) & free[j];
+    before = bits[j];
+    bits[j] |= fresh;
+    free[j] &= ~fresh;
+    any |= fresh;
+  }
+  return any != 0;
 }
 
 /// Takes the coverage from cells that are not joined to the region's own contact points, or are
-/// nearer to those of another cluster.
+/// nearer to those of another cluster, in steps from cell to cell.
 void keep_own_cells(const Grid& grid, const RegionPoints& contact) {
-  auto& marks = grid.scratch.cell_marks;
-  std::ranges::fill(marks, kUnvisited);
-  std::uint32_t filled = 0;
+  CellBits free = covered_cells(grid);
+  CellBits own{};
+  CellBits foreign{};
+  bool any_own = false;
   const glm::dvec2 reach = grid.frame.half_size;
   for (const ContactPoint& point : points_of(grid.scratch, contact)) {
     const glm::dvec3 place = body_to_grid(grid.frame, point.position);
     if (std::abs(place.x) <= reach.x && std::abs(place.y) <= reach.y) {
-      visit(grid, cell_at(grid, place), point.cluster == contact.cluster ? kOwn : kForeign, filled);
+      const std::uint32_t cell = cell_at(grid, place);
+      const bool is_own = point.cluster == contact.cluster;
+      if (grid.cells[cell].coverage > 0.0) {
+        set(is_own ? own : foreign, grid, cell);
+        any_own = any_own || is_own;
+      }
     }
   }
-  if (std::ranges::find(marks, kOwn) == marks.end()) {
-    // The points fall between the cells: the deepest cell that is left is the nearest thing to
-    // them.
-    std::uint32_t deepest = 0;
-    for (std::uint32_t cell = 1; cell < grid.cells.size(); ++cell) {
-      const bool better = grid.cells[cell].depth > grid.cells[deepest].depth;
-      deepest =
-          marks[cell] == kUnvisited && (better || marks[deepest] != kUnvisited) ? cell : deepest;
-    }
-    visit(grid, deepest, kOwn, filled);
+  if (!any_own) {
+    // The points fall between the cells: the deepest cell is the nearest thing to them.
+    const auto deepest = std::ranges::max_element(grid.cells, {}, &CellGeometry::depth);
+    set(own, grid, static_cast<std::uint32_t>(deepest - grid.cells.begin()));
   }
-  spread(grid, filled);
-  for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
-    grid.cells[cell].coverage = marks[cell] == kOwn ? grid.cells[cell].coverage : 0.0;
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    foreign[j] &= ~own[j];
+    own[j] &= free[j];
+    free[j] &= ~(own[j] | foreign[j]);
+  }
+  for (bool more = true; more;) {
+    more = spread_one_step(grid, free, own);
+    more = spread_one_step(grid, free, foreign) || more;
+  }
+  for (std::uint32_t cell = 0; cell < grid.cells.size(); ++cell) {
+    if ((own[cell / grid.side] >> (cell % grid.side) & 1U) == 0) {
+      grid.cells[cell].coverage = 0.0;
+    }
   }
 }
 

@@ -15,6 +15,7 @@ constexpr std::uint32_t kSamplesPerTool = 2000;
 // r_th over the mean distance to a sample's farthest neighbour: neighbours over one contact are
 // always linked, and two contacts a few samples apart are not.
 constexpr double kThresholdOverSpacing = 1.2;
+constexpr double kHighestRate = 1e6;  // Hz
 
 /// Everything that is computed before the tables' sizes are known.
 struct Built {
@@ -197,6 +198,14 @@ void append_body(World& world, const BodyDescription& body, const PrepareOptions
 }  // namespace
 
 Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options) {
+  if (!(options.rate > 0.0 && options.rate <= kHighestRate)) {
+    return Error{"the rate must be above 0 and at most 1e6 Hz, it is " +
+                 std::to_string(options.rate)};
+  }
+  if (options.settings.grid_side < 1 || options.settings.grid_side > kMaxGridSide) {
+    return Error{"the grid must have 1 to " + std::to_string(kMaxGridSide) +
+                 " cells along a side, it has " + std::to_string(options.settings.grid_side)};
+  }
   const Result<Built> built = build(scene, options);
   if (!built) {
     return built.error();

@@ -25,8 +25,6 @@ void Scratch::reserve(const World& world) {
   cell_distances.assign(cells, Distance{});
   cell_normals.assign(cells, glm::dvec3(0.0));
   cell_depth_changes.assign(cells, 0.0);
-  cell_queue.assign(cells, 0);
-  cell_marks.assign(cells, 0);
   near_parts.assign(world.parts.size(), 0);
 }
 

@@ -73,8 +73,6 @@ struct Scratch {
   std::vector<glm::dvec3>
       cell_normals;  // (cells of one region) gradient of the tool's distance, grid
   std::vector<double> cell_depth_changes;  // (cells of one region) m, across the cell
-  std::vector<std::uint32_t> cell_queue;   // (cells of one region)
-  std::vector<std::uint8_t> cell_marks;    // (cells of one region)
   std::vector<std::uint32_t> near_parts;   // (parts of all bodies and tools)
 
   /// Takes all memory that a step of `world` can need.

@@ -47,7 +47,7 @@ const std::vector<Damage> kDamages = {
      }},
     {"cells row 0",
      [](World& world) {
-       world.settings.at<Settings>(0).grid_side = 200;
+       world.settings.at<Settings>(0).grid_side = 60;
      }},
     {"clock row 0",
      [](World& world) {

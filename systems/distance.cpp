@@ -146,9 +146,9 @@ std::span<const std::uint32_t> parts_near(const World& world, Range parts, const
                                           double reach, std::span<std::uint32_t> rows) {
   TORSION_ASSERT(rows.size() >= parts.count);
   // A distance changes by at most `reach` on the way from the centre, so a part that is 2 reach
-  // farther away than the nearest stays farther. A third reach covers what an ellipsoid or a field
-  // is off by.
-  const double farthest = signed_distance(world, parts, center).value + 3.0 * reach;
+  // farther away than the nearest stays farther. Half a reach more covers what an ellipsoid or a
+  // field is off by.
+  const double farthest = signed_distance(world, parts, center).value + 2.5 * reach;
   std::uint32_t count = 0;
   for (std::uint32_t row = parts.first; row < parts.first + parts.count; ++row) {
     // Written so that NaN keeps all.

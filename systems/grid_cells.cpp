@@ -37,14 +37,14 @@ void place_points(const Grid& grid, const ToolGrid& axes) {
   }
 }
 
-/// Radius about the grid's origin that holds the cells' centres at their present heights and, with
-/// the same again, where they move in a pass.
+/// Radius about the grid's origin that holds what of a surface can lie under the cells' centres and
+/// below the rest surface.
 double reach_of(const Grid& grid) {
-  double farthest = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
+  double deepest = 0.0;
   for (const CellGeometry& cell : grid.cells) {
-    farthest = std::max(farthest, -cell.height);
+    deepest = std::max(deepest, -cell.height);
   }
-  return glm::length(grid.frame.half_size) + farthest;
+  return glm::length(grid.frame.half_size) + deepest;
 }
 
 /// Newton's method along the normal from every cell to the tool's underside. Leaves in scratch the
@@ -126,22 +126,8 @@ std::uint32_t cell_at(const Grid& grid, const glm::dvec3& place) {
          index(place.x, grid.frame.half_size.x);
 }
 
-/// Cells as bits: bit i of word j is cell (i, j).
-using CellBits = std::array<std::uint64_t, kMaxGridSide>;
-
 void set(CellBits& bits, const Grid& grid, std::uint32_t cell) {
   bits[cell / grid.side] |= std::uint64_t{1} << (cell % grid.side);
-}
-
-CellBits covered_cells(const Grid& grid) {
-  CellBits covered{};
-  std::uint32_t cell = 0;
-  for (std::uint32_t j = 0; j < grid.side; ++j) {
-    for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
-      covered[j] |= static_cast<std::uint64_t>(grid.cells[cell].coverage > 0.0) << i;
-    }
-  }
-  return covered;
 }
 
 /// Adds to `bits` their free neighbours, those across a corner too. True when there were any.
@@ -161,8 +147,8 @@ bool spread_one_step(const Grid& grid, CellBits& free, CellBits& bits) {
 }
 
 /// Takes the coverage from cells that are not joined to the region's own contact points, or are
-/// nearer to those of another cluster, in steps from cell to cell.
-void keep_own_cells(const Grid& grid, const RegionPoints& contact) {
+/// nearer to those of another cluster, in steps from cell to cell. Returns those that keep it.
+CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact) {
   CellBits free = covered_cells(grid);
   CellBits own{};
   CellBits foreign{};
@@ -198,15 +184,27 @@ void keep_own_cells(const Grid& grid, const RegionPoints& contact) {
       grid.cells[cell].coverage = 0.0;
     }
   }
+  return own;
 }
 
 }  // namespace
 
-void find_cells(const Grid& grid, const RegionPoints& contact) {
+CellBits covered_cells(const Grid& grid) {
+  CellBits covered{};
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
+      covered[j] |= static_cast<std::uint64_t>(grid.cells[cell].coverage > 0.0) << i;
+    }
+  }
+  return covered;
+}
+
+CellBits find_cells(const Grid& grid, const RegionPoints& contact) {
   const ToolGrid axes = grid_in_tool(grid);
   find_tool_surface(grid, axes);
   find_depths(grid, axes);
-  keep_own_cells(grid, contact);
+  return keep_own_cells(grid, contact);
 }
 
 }  // namespace torsion

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 
 #include "systems/scratch.hpp"
@@ -37,11 +39,18 @@ inline std::span<const ContactPoint> points_of(const Scratch& scratch,
   return {scratch.points.data() + contact.points.first, contact.points.count};
 }
 
+/// Cells as bits: bit i of word j is cell (i, j).
+using CellBits = std::array<std::uint64_t, kMaxGridSide>;
+
+/// The cells with coverage.
+CellBits covered_cells(const Grid& grid);
+
 /// Finds, for every cell of the grid, the tool's surface along the normal, how deep it lies under
 /// the body's rest surface, and the share of the cell that is in contact. Cells that are not joined
 /// to the region's own contact points belong to a neighbour and get coverage 0. Leaves the body's
 /// distances at the cells' points in Scratch::cell_distances, and how much the depth changes across
 /// each cell in Scratch::cell_depth_changes [m].
-void find_cells(const Grid& grid, const RegionPoints& contact);
+/// @return the cells with coverage
+CellBits find_cells(const Grid& grid, const RegionPoints& contact);
 
 }  // namespace torsion

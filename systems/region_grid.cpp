@@ -1,6 +1,7 @@
 #include "systems/region_grid.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -31,23 +32,38 @@ struct PlaneBox {
   [[nodiscard]] bool empty() const { return lowest.x > highest.x || lowest.y > highest.y; }
 };
 
+/// The highest set bit alone.
+std::uint64_t last_bit(std::uint64_t bits) {
+  return bits == 0 ? 0 : std::uint64_t{1} << (63 - std::countl_zero(bits));
+}
+
 /// The contact as the last pass found it: covered cells, cut where their coverage says that the
 /// edge runs.
-PlaneBox covered_box(const Grid& grid) {
+PlaneBox covered_box(const Grid& grid, const CellBits& covered) {
   PlaneBox box;
   std::optional<glm::dvec2> middle;  // of some covered cell
   const glm::dvec2 half = cell_half_size(grid);
-  for (std::uint32_t j = 0; j < grid.side; ++j) {
-    for (std::uint32_t i = 0; i < grid.side; ++i) {
-      const double coverage = grid.cells[j * grid.side + i].coverage;
-      if (coverage > 0.0) {
-        const glm::dvec2 center = cell_center(grid.frame, grid.side, i, j);
-        const glm::dvec2 reach = half * (2.0 * coverage - 1.0);
-        // At less than half coverage the edge is short of the centre: the reach is negative, and
-        // this grows with the coverage without a jump.
-        box.include(center - reach, center + reach);
-        middle = center;
-      }
+  const auto include = [&](std::uint32_t i, std::uint32_t j) {
+    const glm::dvec2 center = cell_center(grid.frame, grid.side, i, j);
+    // At less than half coverage the edge is short of the centre: the reach is negative, and this
+    // grows with the coverage without a jump.
+    const glm::dvec2 reach = half * (2.0 * grid.cells[j * grid.side + i].coverage - 1.0);
+    box.include(center - reach, center + reach);
+    middle = center;
+  };
+  // A cell reaches no farther than a covered neighbour outside of it, so the outermost of each row
+  // and all of the outermost rows say it all.
+  const auto any = [](std::uint64_t row) {
+    return row != 0;
+  };
+  const auto first = std::ranges::find_if(covered, any) - covered.begin();
+  const auto last = covered.rend() - std::find_if(covered.rbegin(), covered.rend(), any) - 1;
+  for (std::ptrdiff_t j = first; j <= last; ++j) {
+    const auto row = static_cast<std::uint32_t>(j);
+    for (std::uint64_t left = covered[row]; left != 0;) {
+      include(static_cast<std::uint32_t>(std::countr_zero(left)), row);
+      const bool outermost = j == first || j == last;
+      left = outermost ? left & (left - 1) : last_bit(left & (left - 1));
     }
   }
   if (box.empty() && middle) {
@@ -119,8 +135,7 @@ bool settled(const Grid& grid, const PlaneBox& box) {
 void find_contact(const Grid& grid, const RegionPoints& contact, double start_depth,
                   bool event_now) {
   for (int pass = 0; pass < kMostPasses; ++pass) {
-    find_cells(grid, contact);
-    PlaneBox box = covered_box(grid);
+    PlaneBox box = covered_box(grid, find_cells(grid, contact));
     if (box.empty()) {
       return;
     }
@@ -228,7 +243,7 @@ void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoin
 void follow_contact(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const Grid grid = grid_of(context, region);
   contact_of(context, grid.identity) = contact;
-  PlaneBox box = covered_box(grid);
+  PlaneBox box = covered_box(grid, covered_cells(grid));
   include_points(grid, contact, box);
   if (!box.empty()) {
     fit(grid, box);

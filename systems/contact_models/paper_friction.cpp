@@ -46,17 +46,23 @@ void set_levers(const FixedRegion& fixed, const RegionFrame& frame, const Region
   brush.least_lever = radius;
 }
 
-/// 1 - exp(-path / scale): approaches 1 as `path` is travelled; a zero scale is reached at once.
-/// By the reciprocal of the exponential's series to third order: monotone like it, within 4e-6 for
-/// paths below a tenth of the scale, the same bits with every mathematics library, and faster.
-double travelled(double path, double inverse_scale) {
-  const double x = path * inverse_scale;
-  return 1.0 - 1.0 / (1.0 + x * (1.0 + x * (0.5 + x / 6.0)));
+/// (exp(x) - 1) / x to third order in x: the reciprocal of the exponential's series makes a decay
+/// that is monotone, within 4e-6 of exp(-x) up to a tenth, and the same bits with every mathematics
+/// library.
+double growth(double x) {
+  return 1.0 + x * (0.5 + x / 6.0);
 }
 
-/// 1 / scale with 1 / 0 so large that any path is the whole way and none is none.
+/// 1 - exp(-path / scale): approaches 1 as `path` is travelled.
+double travelled(double path, double inverse_scale) {
+  const double x = path * inverse_scale;
+  const double grown = x * growth(x);
+  return grown / (1.0 + grown);
+}
+
+/// 1 / scale, with 1 / 0 so large that any path is the whole way and none is none.
 double inverse_of(double scale) {
-  return scale > 0.0 ? 1.0 / scale : 1e100;
+  return scale > 0.0 ? 1.0 / scale : 1e60;
 }
 
 /// True when another region of the same tool lies on the same body.
@@ -99,13 +105,13 @@ struct CellSlip {
   double moved = 0.0;   // m: the cell's own motion over the body
 };
 
-/// The kinetic branch: the traction turns against the cell's own motion within the slip
-/// displacement.
+/// The kinetic branch: the traction goes to the limit against the cell's own motion, the share
+/// travelled(moved) of the way.
 glm::dvec2 turn_against(glm::dvec2 traction, const glm::dvec2& motion, double moved, double limit,
                         double inverse_scale) {
-  if (moved > 0.0) {
-    traction += (motion * (-limit / moved) - traction) * travelled(moved, inverse_scale);
-  }
+  const double grown = growth(moved * inverse_scale) * inverse_scale;  // travelled / moved / kept
+  const double kept = 1.0 / (1.0 + moved * grown);
+  traction = kept * (traction - limit * grown * motion);
   const double square = glm::dot(traction, traction);
   return square > limit * limit ? traction * (limit / std::sqrt(square)) : traction;
 }

@@ -16,4 +16,7 @@ std::vector<double> read_numbers(const tinygltf::Model& model, int accessor);
 /// @pre as above
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor);
 
+/// Which elements a sparse accessor replaces. @pre as above, and the accessor is sparse
+std::vector<std::uint32_t> read_sparse_indices(const tinygltf::Model& model, int accessor);
+
 }  // namespace torsion

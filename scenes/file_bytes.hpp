@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "ecs/result.hpp"
+
+namespace torsion {
+
+/// Largest file that is read: a scene beyond it is a mistake.
+inline constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30;  // bytes
+
+/// All bytes of a regular file. Errors: missing, not a regular file (a pipe would block for ever),
+/// not readable, larger than kLargestFile.
+Result<std::vector<unsigned char>> read_file_bytes(const std::filesystem::path& path);
+
+/// Where a scene's relative URI leads. Errors: absolute paths, other schemes, "..", links or
+/// encoded characters that lead out of `folder`.
+Result<std::filesystem::path> path_inside(const std::filesystem::path& folder,
+                                          const std::string& uri);
+
+}  // namespace torsion

@@ -1,0 +1,83 @@
+#pragma once
+
+// The physics that a glTF carries in its extras: one table for the reader, `torsion check` and
+// docs/scenes.md.
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+
+namespace torsion {
+
+enum class Role : std::uint32_t {
+  kNone = 0,
+  kElastic = 1,
+  kTool = 2,
+  kFixedPoint = 4,
+  kFixedBox = 8,
+  kFixedSphere = 16,
+  kPart = 32,  // a mesh below an elastic node or a tool; has no torsion_role
+};
+
+struct RoleName {
+  std::string_view name;
+  Role role;
+};
+
+inline constexpr std::array kRoleNames = {
+    RoleName{"elastic", Role::kElastic}, RoleName{"tool", Role::kTool},
+    RoleName{"fixed_point", Role::kFixedPoint}, RoleName{"fixed_box", Role::kFixedBox},
+    RoleName{"fixed_sphere", Role::kFixedSphere}};
+
+enum class KeyKind : std::uint32_t { kNumber, kText, kVector };
+
+/// One key of the extras.
+struct SceneKey {
+  std::string_view name;
+  std::uint32_t roles;  // Role bits of the nodes that it may be on
+  KeyKind kind;
+  std::string_view allowed;  // in words, with the unit; for a text its values, with spaces between
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+  bool least_is_allowed = true;
+};
+
+constexpr std::uint32_t operator|(Role a, Role b) {
+  return static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b);
+}
+constexpr std::uint32_t bits(Role role) {
+  return static_cast<std::uint32_t>(role);
+}
+
+inline constexpr std::array kSceneKeys = {
+    SceneKey{"torsion_role", ~0U, KeyKind::kText,
+             "elastic tool fixed_point fixed_box fixed_sphere"},
+    SceneKey{"torsion_youngs_modulus", bits(Role::kElastic), KeyKind::kNumber,
+             "a number above 0 (Pa)", 0.0, 1e15, false},
+    SceneKey{"torsion_poisson_ratio", bits(Role::kElastic), KeyKind::kNumber,
+             "a number from 0 to 0.5", 0.0, 0.5},
+    SceneKey{"torsion_density", bits(Role::kElastic), KeyKind::kNumber, "a number above 0 (kg/m^3)",
+             0.0, 1e6, false},
+    SceneKey{"torsion_static_friction", bits(Role::kElastic), KeyKind::kNumber,
+             "a number of at least 0 and of at least torsion_dynamic_friction", 0.0, 100.0},
+    SceneKey{"torsion_dynamic_friction", bits(Role::kElastic), KeyKind::kNumber,
+             "a number of at least 0", 0.0, 100.0},
+    SceneKey{"torsion_contact_model", bits(Role::kElastic), KeyKind::kText, "auto paper"},
+    SceneKey{"torsion_body_model", bits(Role::kElastic), KeyKind::kText, "auto none skeleton"},
+    SceneKey{"torsion_tolerance", bits(Role::kElastic), KeyKind::kNumber,
+             "a number above 0 and up to 1", 0.0, 1.0, false},
+    SceneKey{"torsion_fixed", bits(Role::kElastic), KeyKind::kText,
+             "bottom_center bottom_face attribute children"},
+    SceneKey{"torsion_region_threshold", bits(Role::kElastic), KeyKind::kNumber,
+             "a number above 0 (m)", 0.0, 1e3, false},
+    SceneKey{"torsion_shape", (Role::kElastic | Role::kTool) | bits(Role::kPart), KeyKind::kText,
+             "mesh box sphere ellipsoid cylinder capsule"},
+    SceneKey{"torsion_mass", bits(Role::kTool), KeyKind::kNumber, "a number above 0 (kg)", 0.0, 1e6,
+             false},
+    SceneKey{"torsion_center_of_mass", bits(Role::kTool), KeyKind::kVector,
+             "3 numbers (m, in the node's frame)"},
+    SceneKey{"torsion_device", bits(Role::kTool), KeyKind::kText, "animation mouse usb"},
+};
+
+}  // namespace torsion

@@ -1,0 +1,141 @@
+#include "scenes/scene_reader.hpp"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "scenes/closed_mesh.hpp"
+#include "scenes/exact_shapes.hpp"
+#include "scenes/mesh_parts.hpp"
+
+namespace torsion {
+namespace {
+
+/// Keys of a node from its materials, its mesh and itself; the later win.
+NodeKeys keys_of(const SceneReader& reader, std::size_t node) {
+  NodeKeys keys;
+  if (const tinygltf::Mesh* mesh = reader.mesh(node)) {
+    for (const tinygltf::Primitive& primitive : mesh->primitives) {
+      if (primitive.material >= 0) {
+        const auto row = static_cast<std::size_t>(primitive.material);
+        const tinygltf::Material& material = reader.model.materials[row];
+        keys.add(material.extras, called("material", "materials", row, material.name),
+                 reader.problems);
+      }
+    }
+    const auto row = static_cast<std::size_t>(reader.file_node(node).mesh);
+    keys.add(mesh->extras, called("mesh", "meshes", row, mesh->name), reader.problems);
+  }
+  keys.add(reader.file_node(node).extras, reader.name(node), reader.problems);
+  return keys;
+}
+
+/// The role for whose keys a node is checked.
+Role checked_role(const SceneReader& reader, std::size_t node) {
+  const SceneNode& listed = reader.nodes[node];
+  const bool part =
+      listed.role == Role::kNone && listed.owner != SIZE_MAX && reader.mesh(node) != nullptr;
+  return part ? Role::kPart : listed.role;
+}
+
+void add_exact_part(const SceneReader& reader, std::size_t node, ShapeKind kind,
+                    const glm::dmat4& to_owner, std::vector<PartDescription>& parts) {
+  const std::string where = reader.name(node);
+  const std::optional<NodeTransform> transform = split_transform(to_owner);
+  if (!transform) {
+    reader.problems.add(where, "torsion_shape", "", "is sheared by the scales of its parents",
+                        "apply the scale of the parents, or use \"mesh\"");
+    return;
+  }
+  glm::dvec3 low(1e300);
+  glm::dvec3 high(-1e300);
+  const glm::dmat4 to_mesh = glm::inverse(to_owner);
+  const MeshTriangles triangles =
+      read_mesh(reader.model, *reader.mesh(node), to_owner, where, reader.problems);
+  for (const glm::dvec3& position : triangles.positions) {
+    const glm::dvec3 in_mesh(to_mesh * glm::dvec4(position, 1.0));
+    low = glm::min(low, in_mesh);
+    high = glm::max(high, in_mesh);
+  }
+  const auto shape = fit_shape(kind, low, high, *transform, where, reader.problems);
+  if (shape) {
+    parts.push_back({reader.file_node(node).name, *shape, tessellate(*shape)});
+  }
+}
+
+/// One mesh of an owner: what is drawn, and the part that is felt.
+void add_part(const SceneReader& reader, std::size_t node, OwnerShape& owner) {
+  const std::string where = reader.name(node);
+  const glm::dmat4 to_owner = owner.from_world * reader.nodes[node].to_world;
+  const MeshTriangles triangles =
+      read_mesh(reader.model, *reader.mesh(node), to_owner, where, reader.problems);
+  if (triangles.triangles.empty()) {
+    reader.problems.add(where, "mesh", "", "has no triangles");
+    return;
+  }
+  append_draw_mesh(triangles, owner.draw);
+  const ShapeKind kind = shape_kind(reader.keys[node].text("torsion_shape").value_or("mesh"));
+  if (kind != ShapeKind::kMesh) {
+    add_exact_part(reader, node, kind, to_owner, owner.parts);
+    return;
+  }
+  PartDescription part;
+  part.node = reader.file_node(node).name;
+  part.shape.kind = ShapeKind::kMesh;
+  part.surface = closed_surface({triangles.positions, triangles.triangles}, where, reader.problems);
+  owner.parts.push_back(std::move(part));
+}
+
+}  // namespace
+
+SceneReader make_reader(const tinygltf::Model& model, const ProblemList& problems) {
+  SceneReader reader{model, problems, list_scene_nodes(model), {}};
+  for (std::size_t node = 0; node < reader.nodes.size(); ++node) {
+    reader.keys.push_back(keys_of(reader, node));
+    const Role role = checked_role(reader, node);
+    reader.keys[node].check_role(role, problems);
+    if (role == Role::kPart) {
+      continue;
+    }
+    const std::size_t owner = reader.nodes[node].parent == SIZE_MAX
+                                  ? SIZE_MAX
+                                  : reader.nodes[reader.nodes[node].parent].owner;
+    const bool elastic_above = owner != SIZE_MAX && reader.nodes[owner].role == Role::kElastic;
+    if ((role == Role::kElastic || role == Role::kTool) && owner != SIZE_MAX) {
+      problems.add(reader.name(node), "torsion_role", "", "is below " + reader.name(owner),
+                   "move it out: an elastic body or a tool holds no other");
+    } else if (role != Role::kNone && role != Role::kElastic && role != Role::kTool &&
+               !elastic_above) {
+      problems.add(reader.name(node), "torsion_role", "", "expected an elastic node above it",
+                   "make it a child of the body that it holds");
+    }
+  }
+  return reader;
+}
+
+OwnerShape read_owner_shape(const SceneReader& reader, std::size_t owner) {
+  OwnerShape shape;
+  const std::optional<NodeTransform> transform = split_transform(reader.nodes[owner].to_world);
+  if (!transform) {
+    reader.problems.add(reader.name(owner), "scale", "",
+                        "it is sheared or flattened by its own scale and its parents'",
+                        "apply the scales (Blender: Object > Apply > Scale)");
+    return shape;
+  }
+  shape.pose = {transform->translation, transform->rotation};
+  shape.from_world = glm::inverse(glm::translate(glm::dmat4(1.0), shape.pose.position) *
+                                  glm::mat4_cast(shape.pose.rotation));
+  for (std::size_t node = owner; node < reader.nodes.size(); ++node) {
+    const SceneNode& listed = reader.nodes[node];
+    const bool holds = listed.role != Role::kNone && node != owner;
+    if (listed.owner == owner && !holds && reader.mesh(node) != nullptr) {
+      add_part(reader, node, shape);
+    }
+  }
+  if (shape.draw.positions.empty()) {
+    reader.problems.add(reader.name(owner), "mesh", "", "is missing, here and below",
+                        "give the node a mesh");
+  }
+  return shape;
+}
+
+}  // namespace torsion

@@ -1,0 +1,1 @@
+"""Writes the scenes that ship with Torsion."""

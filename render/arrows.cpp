@@ -11,9 +11,9 @@ namespace {
 
 constexpr int kSides = 16;           // of a shaft
 constexpr int kArcSteps = 48;        // of a full turn
-constexpr double kShaft = 0.03;      // radius, of `size`
-constexpr double kTip = 0.085;       // radius at its foot, of `size`
-constexpr double kTipLength = 0.22;  // of `size`
+constexpr double kShaft = 0.033;     // radius, of `size`
+constexpr double kTip = 0.1;         // radius at its foot, of `size`
+constexpr double kTipLength = 0.26;  // of `size`
 constexpr double kFullArc = 300.0 / 360.0 * glm::two_pi<double>();
 constexpr glm::vec3 kForceColor(0.02F, 0.16F, 0.55F);
 constexpr glm::vec3 kTorqueColor(0.75F, 0.22F, 0.0F);
@@ -102,19 +102,19 @@ void append_arrow(const glm::dvec3& tail, const glm::dvec3& vector, double size,
   append_tip(high.center, along, low.side, shown, color, mesh);
 }
 
-void append_arc(const glm::dvec3& center, const glm::dvec3& axis, double radius, double angle,
-                double size, const glm::vec3& color, ArrowMesh& mesh) {
-  const double tip_angle = kTipLength * size / radius;
-  if (!(angle * radius > 1e-3 * size)) {
+void append_arc(const Circle& circle, double angle, double size, const glm::vec3& color,
+                ArrowMesh& mesh) {
+  const double tip_angle = kTipLength * size / circle.radius;
+  if (!(angle * circle.radius > 1e-3 * size)) {
     return;
   }
   const double shown = std::min(size, angle / tip_angle * 0.6 * size);
   const double shaft_angle = angle - tip_angle * shown / size;
-  const glm::dvec3 x = any_across(axis);
-  const glm::dvec3 y = glm::cross(axis, x);
+  const glm::dvec3 y = glm::cross(circle.axis, circle.start);
   const auto ring_at = [&](double turn) {
-    const glm::dvec3 out = std::cos(turn) * x + std::sin(turn) * y;
-    return Ring{center + radius * out, glm::cross(axis, out), out, kShaft * shown, 0.0};
+    const glm::dvec3 out = std::cos(turn) * circle.start + std::sin(turn) * y;
+    return Ring{circle.center + circle.radius * out, glm::cross(circle.axis, out), out,
+                kShaft * shown, 0.0};
   };
   const int steps =
       std::max(1, static_cast<int>(std::ceil(shaft_angle / glm::two_pi<double>() * kArcSteps)));
@@ -130,17 +130,31 @@ void append_arc(const glm::dvec3& center, const glm::dvec3& axis, double radius,
   append_tip(last.center, along, any_across(along), shown, color, mesh);
 }
 
+namespace {
+
+/// Across `axis`: where an arc begins so that the gap that a full one leaves is toward the eye.
+glm::dvec3 arc_start(const glm::dvec3& axis, const glm::dvec3& to_eye) {
+  const glm::dvec3 across = to_eye - glm::dot(to_eye, axis) * axis;
+  const double length = glm::length(across);
+  const glm::dvec3 x = length > 1e-3 * glm::length(to_eye) ? across / length : any_across(axis);
+  constexpr double kHalfGap = 0.5 * (glm::two_pi<double>() - kFullArc);
+  return std::cos(kHalfGap) * x + std::sin(kHalfGap) * glm::cross(axis, x);
+}
+
+}  // namespace
+
 void append_wrenches(const Snapshot& snapshot, const ArrowScale& scale, ArrowMesh& mesh) {
   for (std::uint32_t tool = 0; tool < snapshot.tools.size(); ++tool) {
     const glm::dvec3& center = snapshot.tools.at<ToolMotion>(tool).mass_center;
     const Wrench& wrench = snapshot.tools.at<ToolWrench>(tool).total;
-    append_arrow(center, wrench.force / scale.full_force * scale.length, 0.7 * scale.length,
-                 kForceColor, mesh);
+    append_arrow(center, wrench.force / scale.full_force * scale.length, scale.length, kForceColor,
+                 mesh);
     const double torque = glm::length(wrench.torque);
     if (torque > 0.0) {
       const double angle = std::min(torque / scale.full_torque, 1.0) * kFullArc;
-      append_arc(center, wrench.torque / torque, 0.55 * scale.length, angle, 0.7 * scale.length,
-                 kTorqueColor, mesh);
+      const glm::dvec3 axis = wrench.torque / torque;
+      append_arc({center, axis, arc_start(axis, scale.eye - center), scale.arc_radii[tool]}, angle,
+                 scale.length, kTorqueColor, mesh);
     }
   }
 }

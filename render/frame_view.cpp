@@ -13,10 +13,19 @@ namespace {
 
 // The light's colours, linear. A white surface that faces the key light reaches 1 with the sky's
 // part.
-constexpr glm::vec3 kKeyLight(0.72F, 0.70F, 0.66F);
-constexpr glm::vec3 kSkyLight(0.40F, 0.42F, 0.46F);
-constexpr glm::vec3 kGroundLight(0.17F, 0.16F, 0.15F);
+constexpr glm::vec3 kKeyLight(0.62F, 0.60F, 0.57F);
+constexpr glm::vec3 kSkyLight(0.42F, 0.44F, 0.47F);
+constexpr glm::vec3 kGroundLight(0.26F, 0.25F, 0.24F);
+constexpr float kEyeLight = 0.14F;
+constexpr double kShadowStep = 2.5;      // texels: half the width of a shadow's edge
+constexpr double kClearToolShade = 0.4;  // share of the key light that a transparent tool takes
 constexpr glm::vec3 kBackground(0.78F, 0.80F, 0.83F);
+
+// The arc of a tool's torque goes around the tool, within these parts of the bodies' largest side.
+constexpr double kArcBeside = 1.25;  // of the tool's smallest half size
+constexpr double kSmallestArc = 0.25;
+constexpr double kLargestArc = 0.75;
+
 const glm::dvec3 kToKeyLight = glm::normalize(glm::dvec3(-0.45, 0.85, 0.40));
 
 struct Box {
@@ -52,6 +61,10 @@ double largest(const glm::dvec3& v) {
   return std::max({v.x, v.y, v.z});
 }
 
+double smallest(const glm::dvec3& v) {
+  return std::min({v.x, v.y, v.z});
+}
+
 /// Looks along the key light at the ball around the scene.
 glm::dmat4 shadow_from_world(const SceneExtent& extent) {
   const glm::dvec3 z = kToKeyLight;
@@ -83,6 +96,7 @@ SceneExtent scene_extent(const FrameWorld& frame) {
         measure(frame.tools.at<Pose>(row),
                 frame.tool_vertices.rows<VertexRest>(frame.tools.at<DrawRange>(row).vertices), all);
     extent.tool_centers.emplace_back(glm::vec3(own.center()), 0.0F);
+    extent.arc_radii.push_back(kArcBeside * smallest(own.size()) / 2.0);
   }
   const Box& floor = bodies.empty() ? all : bodies;
   if (floor.empty()) {
@@ -90,6 +104,10 @@ SceneExtent scene_extent(const FrameWorld& frame) {
   }
   extent.lowest = floor.lowest;
   extent.highest = floor.highest;
+  const double side = largest(floor.size());
+  for (double& radius : extent.arc_radii) {
+    radius = std::clamp(radius, kSmallestArc * side, kLargestArc * side);
+  }
   // A tool that starts far away must not spoil the shadow map: past three times the bodies' size it
   // is not counted.
   const double body_radius = 0.5 * glm::length(floor.size());
@@ -114,7 +132,7 @@ double grid_spacing(double size) {
 }
 
 shared::FrameUniforms frame_uniforms(const SceneExtent& extent, const Camera& camera, double aspect,
-                                     const DrawOptions& options) {
+                                     std::uint32_t shadow_size, const DrawOptions& options) {
   const glm::dvec3 size = extent.highest - extent.lowest;
   const glm::dvec3 middle = 0.5 * (extent.highest + extent.lowest);
   const bool is_signed = options.heat_map == HeatMap::kTwist;
@@ -124,13 +142,15 @@ shared::FrameUniforms frame_uniforms(const SceneExtent& extent, const Camera& ca
   uniforms.shadow_from_world = glm::mat4(shadow_from_world(extent));
   uniforms.eye = glm::vec4(glm::vec3(camera.pose.position), 1.0F);
   uniforms.to_key_light = glm::vec4(glm::vec3(kToKeyLight), 0.0F);
-  uniforms.key_light = glm::vec4(kKeyLight, 0.0F);
-  uniforms.sky_light = glm::vec4(kSkyLight, 0.0F);
+  uniforms.key_light =
+      glm::vec4(kKeyLight, static_cast<float>(kShadowStep * 2.0 * extent.radius / shadow_size));
+  uniforms.sky_light = glm::vec4(kSkyLight, kEyeLight);
   uniforms.ground_light = glm::vec4(kGroundLight, 0.0F);
   uniforms.background = glm::vec4(kBackground, 1.0F);
   uniforms.floor_box = glm::vec4(glm::dvec4(middle.x, middle.z, 0.5 * size.x, 0.5 * size.z));
   uniforms.floor_level =
-      glm::vec4(glm::dvec4(extent.lowest.y, std::max(size.y, 1e-6), 2.5 * extent.radius, 0.0));
+      glm::vec4(glm::dvec4(extent.lowest.y, std::max(size.y, 1e-6), 2.5 * extent.radius,
+                           options.transparent_tools ? kClearToolShade : 1.0));
   uniforms.heat_scale = glm::vec4(glm::dvec4(is_signed ? -heat_range : 0.0,
                                              is_signed ? 0.5 / heat_range : 1.0 / heat_range,
                                              is_signed ? 0.25 : 0.75, 0.0));

@@ -23,6 +23,7 @@ struct SceneExtent {
   double radius = 1.0;              // m
   std::vector<shared::vec4> grids;  // for each body: DrawConstants::grid
   std::vector<shared::vec4> tool_centers;  // for each tool: middle of its box, m, tool
+  std::vector<double> arc_radii;           // for each tool: of the arc that shows its torque, m
 };
 
 /// @param frame  with the tools' first poses
@@ -33,8 +34,9 @@ SceneExtent scene_extent(const FrameWorld& frame);
 double grid_spacing(double size);
 
 /// @param aspect  width / height of the picture
+/// @param shadow_size  texels along the side of the shadow map
 shared::FrameUniforms frame_uniforms(const SceneExtent& extent, const Camera& camera, double aspect,
-                                     const DrawOptions& options);
+                                     std::uint32_t shadow_size, const DrawOptions& options);
 
 /// Fills in DrawConstants::to_world.
 void set_pose(const Pose& pose, shared::DrawConstants& constants);

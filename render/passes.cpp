@@ -13,7 +13,7 @@ using Commands = vk::raii::CommandBuffer;
 
 constexpr auto kDrawStages = vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment;
 constexpr float kOpaqueTool = 1.0F;
-constexpr float kClearTool = 0.22F;  // alpha of a tool where one looks straight through it
+constexpr float kClearTool = 0.13F;  // alpha of a tool where one looks straight through it
 
 template <class Constants>
 void push_constants(const Commands& commands, const vk::raii::PipelineLayout& layout,
@@ -111,10 +111,12 @@ void draw_each(const Commands& commands, const FrameInputs& inputs, const Things
   }
 }
 
-void set_view(const Commands& commands, vk::Extent2D extent) {
-  commands.setViewport(0, vk::Viewport{0.0F, 0.0F, static_cast<float>(extent.width),
-                                       static_cast<float>(extent.height), 0.0F, 1.0F});
-  commands.setScissor(0, vk::Rect2D{{0, 0}, extent});
+void set_view(const Commands& commands, const vk::Rect2D& part) {
+  commands.setViewport(
+      0, vk::Viewport{static_cast<float>(part.offset.x), static_cast<float>(part.offset.y),
+                      static_cast<float>(part.extent.width), static_cast<float>(part.extent.height),
+                      0.0F, 1.0F});
+  commands.setScissor(0, part);
 }
 
 void draw_bodies(const Commands& commands, const FrameInputs& inputs) {
@@ -282,16 +284,19 @@ void record_shadow(const Commands& commands, const FrameInputs& inputs) {
   commands.beginRendering(vk::RenderingInfo{
       .renderArea = {{0, 0}, map.extent}, .layerCount = 1, .pDepthAttachment = &depth});
   bind(commands, inputs.pipelines.shadow);
-  set_view(commands, map.extent);
   push_draw_bindings(commands, inputs, false);
   const auto as_it_is = [](std::uint32_t /*row*/, shared::DrawConstants& /*constants*/) {
   };
+  // Bodies left, tools right: light.glsl says why.
+  const std::uint32_t side = map.extent.height;
   if (!inputs.frame.bodies.empty()) {
+    set_view(commands, {{0, 0}, {side, side}});
     bind_vertices(commands, {*inputs.buffers.positions.handle});
     commands.bindIndexBuffer(*inputs.buffers.body_indices.handle, 0, vk::IndexType::eUint32);
     draw_each(commands, inputs, inputs.frame.bodies, as_it_is);
   }
   if (!inputs.frame.tools.empty()) {
+    set_view(commands, {{static_cast<std::int32_t>(side), 0}, {side, side}});
     bind_vertices(commands, {*inputs.buffers.tool_positions.handle});
     commands.bindIndexBuffer(*inputs.buffers.tool_indices.handle, 0, vk::IndexType::eUint32);
     draw_each(commands, inputs, inputs.frame.tools, as_it_is);
@@ -318,7 +323,7 @@ void record_draw(const Frame& target, const FrameInputs& inputs) {
       .pColorAttachments = &color,
       .pDepthAttachment = &depth,
   });
-  set_view(commands, target.extent);
+  set_view(commands, {{0, 0}, target.extent});
   push_draw_bindings(commands, inputs, true);
   draw_bodies(commands, inputs);
   draw_arrows(commands, inputs);

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint32_t kSlots = Renderer::kFramesInFlight;
 constexpr std::uint32_t kTimestamps = 7;  // one before and after each pass of PassTimes
-constexpr double kArrowLength = 0.9;      // of the longest, as a part of the bodies' largest side
+constexpr double kArrowLength = 0.6;      // of the longest, as a part of the bodies' largest side
 constexpr std::uint32_t kColorMapWidth = 256;
 constexpr std::uint32_t kLargestSide =
     16384;  // pixels: what every Vulkan 1.3 desktop driver allows
@@ -45,9 +45,9 @@ std::optional<Error> check(const RendererOptions& options) {
     return Error{"The number of samples a pixel is " + std::to_string(options.samples) +
                  "; it must be 1 or 4."};
   }
-  if (bad_side(options.shadow_size)) {
+  if (options.shadow_size < 1 || options.shadow_size > kLargestSide / 2) {
     return Error{"The shadow map's side is " + std::to_string(options.shadow_size) +
-                 " texels; it must be 1 to " + std::to_string(kLargestSide) + "."};
+                 " texels; it must be 1 to " + std::to_string(kLargestSide / 2) + "."};
   }
   return std::nullopt;
 }
@@ -79,7 +79,7 @@ Surfaces make_surfaces(const Gpu& gpu, const RendererOptions& options, vk::Forma
   }
   surfaces.depth = make_image(gpu, extent, kDepthFormat, samples, Usage::eDepthStencilAttachment);
   surfaces.shadow_map =
-      make_image(gpu, {options.shadow_size, options.shadow_size}, kDepthFormat,
+      make_image(gpu, {2 * options.shadow_size, options.shadow_size}, kDepthFormat,
                  vk::SampleCountFlagBits::e1, Usage::eDepthStencilAttachment | Usage::eSampled);
   surfaces.color_maps = make_color_maps(gpu);
   if (options.overlay_atlas != nullptr) {
@@ -134,14 +134,17 @@ struct Renderer::Impl {
     }
   }
 
-  [[nodiscard]] ArrowScale arrow_scale(const Snapshot& snapshot, const DrawOptions& options);
-  void write_arrows(const Snapshot& snapshot, const DrawOptions& options, SlotBuffers& slot);
+  [[nodiscard]] ArrowScale arrow_scale(const Snapshot& snapshot, const Camera& camera,
+                                       const DrawOptions& options);
+  void write_arrows(const Snapshot& snapshot, const Camera& camera, const DrawOptions& options,
+                    SlotBuffers& slot);
   void write_overlay(const OverlayDrawList* overlay, SlotBuffers& slot);
   void record(const Frame& frame, const FrameInputs& inputs, SlotBuffers& slot);
   std::vector<glm::vec4> read_rows(const Buffer& buffer);
 };
 
-ArrowScale Renderer::Impl::arrow_scale(const Snapshot& snapshot, const DrawOptions& options) {
+ArrowScale Renderer::Impl::arrow_scale(const Snapshot& snapshot, const Camera& camera,
+                                       const DrawOptions& options) {
   for (const ToolWrench& wrench : snapshot.tools.column<ToolWrench>()) {
     largest_force = std::max(largest_force, glm::length(wrench.total.force));
     largest_torque = std::max(largest_torque, glm::length(wrench.total.torque));
@@ -153,14 +156,14 @@ ArrowScale Renderer::Impl::arrow_scale(const Snapshot& snapshot, const DrawOptio
   const glm::dvec3 side = extent.highest - extent.lowest;
   return {kArrowLength * std::max({side.x, side.y, side.z}),
           scale_or(options.full_force, largest_force),
-          scale_or(options.full_torque, largest_torque)};
+          scale_or(options.full_torque, largest_torque), camera.pose.position, extent.arc_radii};
 }
 
-void Renderer::Impl::write_arrows(const Snapshot& snapshot, const DrawOptions& options,
-                                  SlotBuffers& slot) {
+void Renderer::Impl::write_arrows(const Snapshot& snapshot, const Camera& camera,
+                                  const DrawOptions& options, SlotBuffers& slot) {
   arrows.clear();
   if (options.arrows) {
-    append_wrenches(snapshot, arrow_scale(snapshot, options), arrows);
+    append_wrenches(snapshot, arrow_scale(snapshot, camera, options), arrows);
   }
   const auto write = [&](FrameBuffer& buffer, const std::vector<glm::vec4>& rows) {
     const auto bytes = std::as_bytes(std::span(rows));
@@ -273,11 +276,12 @@ Result<std::uint64_t> Renderer::draw(const FrameWorld& frame, const Snapshot& sn
   SlotBuffers& slot = impl.buffers.slots[target.slot];
   write_columns(frame, slot);
   const double aspect = static_cast<double>(impl.size.width) / impl.size.height;
-  const shared::FrameUniforms uniforms = frame_uniforms(impl.extent, camera, aspect, options);
+  const shared::FrameUniforms uniforms =
+      frame_uniforms(impl.extent, camera, aspect, impl.surfaces.shadow_map.extent.height, options);
   slot.uniforms.write(0, std::as_bytes(std::span(&uniforms, 1)));
   contact_spots(snapshot, frame.bodies.size(), impl.contacts, impl.contact_ranges);
   slot.contacts.write(0, std::as_bytes(std::span(impl.contacts)));
-  impl.write_arrows(snapshot, options, slot);
+  impl.write_arrows(snapshot, camera, options, slot);
   impl.write_overlay(overlay, slot);
   impl.record(target,
               {impl.gpu, impl.pipelines, impl.buffers, impl.surfaces, impl.extent, frame, options,

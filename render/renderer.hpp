@@ -21,10 +21,10 @@
 namespace torsion {
 
 struct RendererOptions {
-  std::uint32_t width = 1280;        // pixels, 1 to 16384
-  std::uint32_t height = 720;        // pixels, 1 to 16384
-  std::uint32_t samples = 4;         // per pixel: 1, or 4 for smooth edges at about twice the time
-  std::uint32_t shadow_size = 1024;  // texels along the side of the shadow map
+  std::uint32_t width = 1280;       // pixels, 1 to 16384
+  std::uint32_t height = 720;       // pixels, 1 to 16384
+  std::uint32_t samples = 4;        // per pixel: 1, or 4 for smooth edges at about twice the time
+  std::uint32_t shadow_size = 512;  // texels along the side of the shadow map, 1 to 8192
   ValidationLog* validation =
       nullptr;  // switches validation and synchronization validation on and takes what they
                 // say, also at the renderer's end, so it must outlive it; for tests

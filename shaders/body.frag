@@ -42,7 +42,7 @@ float openness(vec3 normal) {
   for (uint i = 0; i < draw.rows.y; ++i) {
     vec4 spot = contacts[draw.rows.x + i].center_and_radius;
     float away = distance(rest_position.xyz, spot.xyz) / spot.w;
-    open *= 1.0 - 0.55 * (1.0 - smoothstep(0.7, 2.5, away));
+    open *= 1.0 - 0.3 * (1.0 - smoothstep(0.7, 2.5, away));
   }
   float height = (world_position.y - frame.floor_level.x) / frame.floor_level.y;
   float downward = 0.5 - 0.5 * normal.y;
@@ -60,11 +60,14 @@ void main() {
   }
   base *= 1.0 - 0.25 * rest_position.w;  // what is fixed is a little darker
   if (draw.grid.w > 0.0) {
-    base = mix(base, base * 0.12, material_lines());
+    // Dark lines, or light ones where the colour is too dark for them.
+    float luminance = dot(base, vec3(0.2126, 0.7152, 0.0722));
+    vec3 line = mix(mix(base, vec3(1.0), 0.35), base * 0.12, smoothstep(0.03, 0.07, luminance));
+    base = mix(base, line, material_lines());
   }
 
   float facing = max(dot(normal, frame.to_key_light.xyz), 0.0);
   float share = facing > 0.0 ? key_light_share(in_shadow_map) : 0.0;
-  vec3 light = ambient_light(normal, openness(normal)) + frame.key_light.rgb * facing * share;
+  vec3 light = ambient_light(normal, to_eye, openness(normal)) + frame.key_light.rgb * facing * share;
   color = vec4(base * light + frame.key_light.rgb * share * 0.03 * highlight(normal, to_eye, 30.0), 1.0);
 }

@@ -18,6 +18,6 @@ void main() {
   world_normal = direction_to_world(normal.xyz);
   rest_position = rest;
   heat = position.w;
-  in_shadow_map = (frame.shadow_from_world * vec4(world_position, 1.0)).xyz;
+  in_shadow_map = shadow_lookup(world_position, world_normal);
   gl_Position = frame.clip_from_world * vec4(world_position, 1.0);
 }

@@ -10,6 +10,11 @@ vec3 point_to_world(vec3 point) {
   return vec3(dot(draw.to_world[0], p), dot(draw.to_world[1], p), dot(draw.to_world[2], p));
 }
 
+// Where to look into the shadow map: a step off the surface, so that it does not shade itself.
+vec3 shadow_lookup(vec3 world_position, vec3 world_normal) {
+  return (frame.shadow_from_world * vec4(world_position + frame.key_light.w * world_normal, 1.0)).xyz;
+}
+
 vec3 direction_to_world(vec3 direction) {
   return vec3(dot(draw.to_world[0].xyz, direction), dot(draw.to_world[1].xyz, direction),
               dot(draw.to_world[2].xyz, direction));

@@ -49,12 +49,13 @@ struct FrameUniforms {
   mat4 shadow_from_world;   // to shadow map coordinates: xy 0 to 1, z depth
   vec4 eye;                 // xyz: m, world
   vec4 to_key_light;        // xyz: world, unit
-  vec4 key_light;           // linear rgb
-  vec4 sky_light;           // linear rgb, from above
+  vec4 key_light;           // linear rgb; w: how far off a surface its shadow is looked up, m
+  vec4 sky_light;           // linear rgb, from above; w: light from the eye
   vec4 ground_light;        // linear rgb, from below
   vec4 background;          // linear rgb
   vec4 floor_box;           // xz centre, xz half size of the bodies' footprint, m, world
-  vec4 floor_level;         // x: y of the floor, m; y: height of the bodies, m; z: radius of the visible floor, m; w unused
+  vec4 floor_level;         // x: y of the floor, m; y: height of the bodies, m; z: radius of the visible floor, m; w: share of the
+                            // key light that a tool takes away
   vec4 heat_scale;          // x: value at 0, y: 1 / (value at 1 - value at 0), z: row of the colour map (0 to 1), w unused
 };
 

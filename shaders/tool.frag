@@ -41,7 +41,7 @@ void main() {
   float facing = max(dot(normal, frame.to_key_light.xyz), 0.0);
   float share = facing > 0.0 ? key_light_share(in_shadow_map) : 0.0;
   float shine = share * 0.08 * highlight(normal, to_eye, 60.0);
-  vec3 light = ambient_light(normal, 1.0) + frame.key_light.rgb * facing * share;
+  vec3 light = ambient_light(normal, to_eye, 1.0) + frame.key_light.rgb * facing * share;
 
   // More opaque at grazing angles, as glass is (Schlick's approximation of Fresnel's law, with a wider rim), so that
   // the outline stays clear while the contact shows through the middle.

@@ -199,7 +199,7 @@ TwistedCube twisted_cube(double turn, std::uint32_t squares) {
   scene.snapshot.regions.append();
   scene.snapshot.regions.at<RegionFrame>(0).origin = glm::dvec3(contact);
   scene.snapshot.regions.at<RegionGeometry>(0).radius = 0.007;
-  scene.camera = camera_at(glm::dvec3(0.10, 0.11, 0.15), glm::dvec3(0.0, 0.010, 0.0), 0.55);
+  scene.camera = camera_at(glm::dvec3(0.12, 0.14, 0.18), glm::dvec3(0.0, 0.012, 0.0), 0.55);
   return scene;
 }
 

@@ -1,0 +1,146 @@
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.hpp"
+#include "scenes/load_gltf.hpp"
+
+namespace torsion {
+namespace {
+
+struct CheckOptions {
+  SceneOptions scene;
+  bool json = false;
+};
+
+nlohmann::ordered_json problems_json(const std::vector<Problem>& problems) {
+  auto list = nlohmann::ordered_json::array();
+  for (const Problem& problem : problems) {
+    list.push_back({{"file", problem.file},
+                    {"where", problem.where},
+                    {"key", problem.key},
+                    {"value", problem.value},
+                    {"expected", problem.expected},
+                    {"mend", problem.mend}});
+  }
+  return list;
+}
+
+int report_problems(const std::vector<Problem>& problems, bool json) {
+  if (json) {
+    fmt::print("{}\n", nlohmann::ordered_json{{"problems", problems_json(problems)}}.dump(2));
+  } else {
+    fmt::print("{}{} problem{}\n", to_text(problems), problems.size(),
+               problems.size() == 1 ? "" : "s");
+  }
+  return kFailed;
+}
+
+const char* shape_name(ShapeKind kind) {
+  constexpr const char* kNames[] = {"sphere", "ellipsoid", "box", "cylinder", "capsule", "mesh"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::string parts_text(const std::vector<PartDescription>& parts) {
+  std::string text;
+  for (const PartDescription& part : parts) {
+    text += (text.empty() ? "" : ", ") + std::string(shape_name(part.shape.kind));
+    if (part.shape.kind == ShapeKind::kMesh) {
+      text += fmt::format(" of {} triangles", part.surface.triangles.size());
+    }
+  }
+  return text;
+}
+
+const char* fixed_text(FixedKind kind) {
+  constexpr const char* kNames[] = {"a point", "a face", "volumes"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+void print_scene(const SceneDescription& scene, const World& world) {
+  fmt::print("{}: no problems\n", scene.path);
+  for (std::size_t row = 0; row < scene.bodies.size(); ++row) {
+    const BodyDescription& body = scene.bodies[row];
+    const auto& models = world.bodies.at<BodyModels>(static_cast<std::uint32_t>(row));
+    const glm::dvec3& point = body.fixed.point;
+    fmt::print(
+        "body \"{}\"  {}; E {:.4g} Pa, nu {:.3g}, rho {:.4g} kg/m^3, mu_s {:.3g}, mu_d {:.3g}\n"
+        "  fixed by {} at ({:.4g}, {:.4g}, {:.4g}) m in its frame; regions nearer than {:.3g} mm "
+        "are one; {} anchors\n",
+        body.node, parts_text(body.parts), body.elasticity.youngs_modulus,
+        body.elasticity.poisson_ratio, body.elasticity.density, body.friction.static_friction,
+        body.friction.dynamic_friction, fixed_text(body.fixed.kind), point.x, point.y, point.z,
+        1e3 * models.region_threshold,
+        world.bodies.at<OwnedRows>(static_cast<std::uint32_t>(row)).anchors.count);
+    fmt::print("  contact model paper{}, body model {}{}\n",
+               body.models.contact == ContactModel::kAuto ? " (auto: the only one there is)" : "",
+               models.body == BodyModel::kNone ? "none" : "skeleton",
+               body.models.body == BodyModel::kAuto ? " (auto: the whole body deforms)" : "");
+  }
+  for (std::size_t row = 0; row < scene.tools.size(); ++row) {
+    const ToolDescription& tool = scene.tools[row];
+    fmt::print("tool \"{}\"  {}; {:.4g} kg; held by {}, {:.3f} s of motion; {} surface samples\n",
+               tool.node, parts_text(tool.parts), tool.mass.mass, tool.device, tool.script.end_time,
+               world.tools.at<OwnedRows>(static_cast<std::uint32_t>(row)).samples.count);
+  }
+}
+
+void print_systems(const Schedule<StepContext>& schedule) {
+  fmt::print("what a step does, in order:\n");
+  for (const auto& row : schedule.rows()) {
+    fmt::print("  {:3}  {:24}  {}{}\n", row.on ? "on" : "off", row.system.name, row.system.purpose,
+               row.on ? "" : fmt::format(" (off: no entity has {})", row.system.needs));
+  }
+}
+
+nlohmann::ordered_json scene_json(const SceneDescription& scene, const Simulation& simulation) {
+  nlohmann::ordered_json json = {{"scene", scene.path},
+                                 {"problems", nlohmann::json::array()},
+                                 {"bodies", scene.bodies.size()},
+                                 {"tools", scene.tools.size()},
+                                 {"duration_s", scene.duration}};
+  for (const auto& row : simulation.schedule.rows()) {
+    json["systems"].push_back({{"name", row.system.name},
+                               {"on", row.on},
+                               {"purpose", row.system.purpose},
+                               {"needs", row.system.needs}});
+  }
+  return json;
+}
+
+int check(const CheckOptions& options) {
+  const LoadedScene loaded = load_gltf(options.scene.scene);
+  if (!loaded.scene) {
+    return report_problems(loaded.problems, options.json);
+  }
+  Result<Simulation> prepared = prepare(*loaded.scene, options.scene.prepare_options());
+  if (!prepared) {
+    return report_problems({{options.scene.scene, "", "", "", prepared.error().text, ""}},
+                           options.json);
+  }
+  if (options.json) {
+    fmt::print("{}\n", scene_json(*loaded.scene, prepared.value()).dump(2));
+  } else {
+    print_scene(*loaded.scene, prepared.value().world);
+    print_systems(prepared.value().schedule);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Command& command) {
+  CLI::App* subcommand =
+      app.add_subcommand("check", "Say all that is wrong with a scene, or what would run and why");
+  auto options = std::make_shared<CheckOptions>();
+  options->scene.add_to(*subcommand);
+  subcommand->add_flag("--json", options->json, "Print as JSON");
+  subcommand->callback([options, &command] {
+    command = [options] {
+      return check(*options);
+    };
+  });
+}
+
+}  // namespace torsion

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "systems/step.hpp"
+
+namespace torsion {
+
+/// What a subcommand does once its options are read; returns the program's exit code.
+using Command = std::function<int()>;
+
+inline constexpr int kDone = 0;
+inline constexpr int kFailed = 1;  // bad input, or a run that failed
+inline constexpr int kUsage = 2;
+
+/// Each adds one subcommand to `app` and sets `command` when that subcommand was given.
+void add_simulate(CLI::App& app, Command& command);
+void add_render(CLI::App& app, Command& command);
+void add_export(CLI::App& app, Command& command);
+void add_check(CLI::App& app, Command& command);
+
+/// The scene's path and what may be chosen over what it says.
+struct SceneOptions {
+  std::string scene;
+  std::string contact_model = "auto";
+  std::string body_model = "auto";
+  double rate = 1000.0;  // Hz
+
+  void add_to(CLI::App& subcommand);
+  [[nodiscard]] PrepareOptions prepare_options() const;
+};
+
+/// Says `text` on stderr and returns kFailed.
+int fail(const std::string& text);
+
+}  // namespace torsion

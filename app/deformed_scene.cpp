@@ -1,0 +1,90 @@
+#include "app/deformed_scene.hpp"
+
+#include <array>
+#include <map>
+
+#include <glm/geometric.hpp>
+
+#include "systems/surface_field.hpp"
+
+namespace torsion {
+namespace {
+
+/// Vertices at one place with one normal at rest are one surface, however the file splits them.
+std::vector<std::uint32_t> joined_vertices(const DrawMesh& rest) {
+  std::map<std::array<float, 6>, std::uint32_t> first;
+  std::vector<std::uint32_t> joined;
+  for (std::uint32_t i = 0; i < rest.positions.size(); ++i) {
+    const glm::vec3& p = rest.positions[i];
+    const glm::vec3& n = rest.normals[i];
+    joined.push_back(first.try_emplace({p.x, p.y, p.z, n.x, n.y, n.z}, i).first->second);
+  }
+  return joined;
+}
+
+/// Normals of the deformed surface: triangles' normals weighted by area, over joined vertices.
+std::vector<glm::vec3> deformed_normals(const WrittenMesh& mesh, const DrawMesh& rest) {
+  const std::vector<std::uint32_t> joined = joined_vertices(rest);
+  std::vector<glm::vec3> sums(mesh.positions.size(), glm::vec3(0.0F));
+  for (const glm::uvec3& t : mesh.triangles) {
+    const glm::vec3 area = glm::cross(mesh.positions[t.y] - mesh.positions[t.x],
+                                      mesh.positions[t.z] - mesh.positions[t.x]);
+    for (int i = 0; i < 3; ++i) {
+      sums[joined[t[i]]] += area;
+    }
+  }
+  std::vector<glm::vec3> normals;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const glm::vec3 sum = sums[joined[i]];
+    const float length = glm::length(sum);
+    normals.push_back(length > 0.0F ? sum / length : rest.normals[i]);
+  }
+  return normals;
+}
+
+WrittenMesh deformed_body(const Session& session, const FrameWorld& frame, std::uint32_t row) {
+  const BodyDescription& body = session.scene.bodies[row];
+  WrittenMesh mesh;
+  mesh.name = body.node;
+  mesh.pose = body.pose;
+  mesh.color = body.draw.color;
+  mesh.triangles = body.draw.triangles;
+  mesh.rest_positions = body.draw.positions;
+  std::vector<glm::vec4> deformed(body.draw.positions.size());
+  deform_vertices(frame, row, deformed);
+  for (const glm::vec4& vertex : deformed) {
+    mesh.positions.emplace_back(vertex);
+    mesh.twist_angles.push_back(vertex.w);
+  }
+  mesh.normals = deformed_normals(mesh, body.draw);
+  return mesh;
+}
+
+}  // namespace
+
+std::vector<WrittenMesh> deformed_scene(const Session& session) {
+  const World& world = session.simulation.world;
+  FrameWorld frame = prepare_frame(session.scene, world);
+  Snapshot snapshot;
+  snapshot.reserve(world);
+  capture(world, snapshot);
+  surface_field(world, snapshot, frame);
+  std::vector<WrittenMesh> meshes;
+  for (std::uint32_t body = 0; body < session.scene.bodies.size(); ++body) {
+    meshes.push_back(deformed_body(session, frame, body));
+  }
+  for (std::uint32_t tool = 0; tool < session.scene.tools.size(); ++tool) {
+    const ToolDescription& from = session.scene.tools[tool];
+    WrittenMesh mesh;
+    mesh.name = from.node;
+    mesh.pose = world.tools.at<ToolPose>(tool).now;
+    mesh.color = from.draw.color;
+    mesh.positions = from.draw.positions;
+    mesh.normals = from.draw.normals;
+    mesh.triangles = from.draw.triangles;
+    meshes.push_back(std::move(mesh));
+  }
+  return meshes;
+}
+
+}  // namespace torsion

@@ -1,0 +1,39 @@
+#include <exception>
+
+#include <fmt/format.h>
+
+#include "app/commands.hpp"
+
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App app{"Torsion: a rigid tool that presses on and twists a deformable body"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", TORSION_VERSION);
+  app.footer("Exit codes: 0 done, 1 bad input or a run that failed, 2 wrong usage.");
+  torsion::Command command;
+  torsion::add_simulate(app, command);
+#ifdef TORSION_WITH_RENDER
+  torsion::add_render(app, command);
+#endif
+  torsion::add_export(app, command);
+  torsion::add_check(app, command);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? torsion::kDone : torsion::kUsage;
+  }
+  return command();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    // Out of memory and the like: bad input is reported long before.
+    fmt::print(stderr, "torsion: {}\n", error.what());
+    return torsion::kFailed;
+  }
+}

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <string_view>
+
+#include "ecs/result.hpp"
+
+namespace torsion {
+
+/// A file that is there whole or not at all: written under another name beside its place and
+/// renamed by commit(). What was there before stays until then.
+class OutputFile {
+ public:
+  static Result<OutputFile> create(const std::filesystem::path& path);
+
+  OutputFile(OutputFile&& other) noexcept;
+  OutputFile& operator=(OutputFile&& other) noexcept;
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+  ~OutputFile();  // takes the temporary file away unless it was committed
+
+  /// Remembers a failure for commit(), so that a loop need not check every line.
+  void write(std::string_view bytes);
+
+  /// Flushes and renames. Fails when anything since create() failed.
+  Result<Done> commit();
+
+ private:
+  OutputFile(std::filesystem::path path, std::filesystem::path temporary, std::FILE* file);
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;
+  std::FILE* file_ = nullptr;
+  bool failed_ = false;
+};
+
+/// The folder in which `path` will lie, made if it is not there.
+Result<Done> make_parent_folder(const std::filesystem::path& path);
+
+}  // namespace torsion

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "ecs/scene_description.hpp"
+#include "systems/step.hpp"
+
+namespace torsion {
+
+/// A scene, its simulation, and where its tools are in the step to come.
+struct Session {
+  SceneDescription scene;
+  Simulation simulation;
+  std::vector<Pose> tool_poses;  // (tools)
+};
+
+/// Loads and prepares a scene. The error has all problems of the file, one a line.
+Result<Session> open_session(const std::filesystem::path& path, const PrepareOptions& options);
+
+/// One step with the tools where their animations hold them at its time.
+void step_scripted(Session& session);
+
+/// How many steps `seconds` take.
+std::uint64_t steps_in(const Session& session, double seconds);
+
+/// The faults in words, one a line; empty where there are none.
+/// @param faults  bits of Fault
+std::string faults_text(std::uint32_t faults);
+
+}  // namespace torsion

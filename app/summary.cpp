@@ -1,0 +1,105 @@
+#include "app/summary.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "ecs/hash.hpp"
+#include "systems/fault.hpp"
+
+namespace torsion {
+namespace {
+
+double simulated_time(const Session& session, const RunStatistics& statistics) {
+  return static_cast<double>(statistics.steps) * session.simulation.world.clock.at<Clock>(0).dt;
+}
+
+const char* model_name(ContactModel model) {
+  return model == ContactModel::kPaper ? "paper" : "auto";
+}
+
+const char* model_name(BodyModel model) {
+  return model == BodyModel::kSkeleton ? "skeleton" : (model == BodyModel::kNone ? "none" : "auto");
+}
+
+}  // namespace
+
+std::string summary_text(const Session& session, const RunStatistics& statistics,
+                         const std::string& trace) {
+  const World& world = session.simulation.world;
+  const double simulated = simulated_time(session, statistics);
+  std::string text = fmt::format(
+      "{}: {} steps, {:.3f} s simulated in {:.3f} s ({:.1f} times real time)\n"
+      "step     median {:.1f} us, 99 % {:.1f} us, longest {:.1f} us\n"
+      "contact  in {} steps, up to {} regions; largest force {:.4g} N, torque {:.4g} N m\n",
+      session.scene.path, statistics.steps, simulated, statistics.wall_time,
+      simulated / statistics.wall_time, statistics.step_times.quantile(0.5),
+      statistics.step_times.quantile(0.99), statistics.step_times.largest(),
+      statistics.contact_steps, statistics.most_regions, statistics.peak_force,
+      statistics.peak_torque);
+  for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
+    const BodyModels& models = world.bodies.at<BodyModels>(body);
+    text += fmt::format("body     {}: contact model {}, body model {}\n",
+                        session.scene.bodies[body].node, model_name(models.contact),
+                        model_name(models.body));
+  }
+  if (statistics.lateness.count() > 0) {
+    text += fmt::format(
+        "clock    {:.2f} steps a second; {} of {} steps began more than a period late; "
+        "lateness:\n{}",
+        static_cast<double>(statistics.steps) / statistics.wall_time, statistics.missed_deadlines,
+        statistics.steps, statistics.lateness.text());
+  }
+  text += fmt::format("world    hash {:016x}\n", hash(world));
+  if (!trace.empty()) {
+    text += fmt::format("trace    {}\n", trace);
+  }
+  const std::uint32_t faults = world.clock.at<Clock>(0).faults_ever;
+  return faults == 0
+             ? text
+             : text + "FAULTS in this run; forces went to zero meanwhile:\n" + faults_text(faults);
+}
+
+std::string summary_json(const Session& session, const RunStatistics& statistics,
+                         const std::string& trace) {
+  const World& world = session.simulation.world;
+  const double simulated = simulated_time(session, statistics);
+  nlohmann::ordered_json json = {{"scene", session.scene.path},
+                                 {"steps", statistics.steps},
+                                 {"simulated_s", simulated},
+                                 {"wall_s", statistics.wall_time},
+                                 {"times_real_time", simulated / statistics.wall_time},
+                                 {"step_us",
+                                  {{"median", statistics.step_times.quantile(0.5)},
+                                   {"p99", statistics.step_times.quantile(0.99)},
+                                   {"longest", statistics.step_times.largest()}}},
+                                 {"contact_steps", statistics.contact_steps},
+                                 {"most_regions", statistics.most_regions},
+                                 {"peak_force_N", statistics.peak_force},
+                                 {"peak_torque_Nm", statistics.peak_torque},
+                                 {"world_hash", fmt::format("{:016x}", hash(world))},
+                                 {"faults", nlohmann::json::array()}};
+  for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
+    const BodyModels& models = world.bodies.at<BodyModels>(body);
+    json["bodies"].push_back({{"node", session.scene.bodies[body].node},
+                              {"contact_model", model_name(models.contact)},
+                              {"body_model", model_name(models.body)}});
+  }
+  for (const Fault fault : kAllFaults) {
+    if (raised(world.clock.at<Clock>(0).faults_ever, fault)) {
+      json["faults"].push_back(fault_text(fault));
+    }
+  }
+  if (statistics.lateness.count() > 0) {
+    json["rate_Hz"] = static_cast<double>(statistics.steps) / statistics.wall_time;
+    json["missed_deadlines"] = statistics.missed_deadlines;
+    json["lateness_us"] = {{"median", statistics.lateness.quantile(0.5)},
+                           {"p99", statistics.lateness.quantile(0.99)},
+                           {"largest", statistics.lateness.largest()}};
+  }
+  if (!trace.empty()) {
+    json["trace"] = trace;
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace torsion

@@ -1,0 +1,121 @@
+#include "scenes/write_gltf.hpp"
+
+#include <cstring>
+#include <limits>
+#include <span>
+#include <sstream>
+
+#include <tiny_gltf.h>
+
+namespace torsion {
+namespace {
+
+/// Appends rows to the one buffer of `model` and makes an accessor of them.
+template <class Row>
+int add_accessor(tinygltf::Model& model, std::span<const Row> rows, int component, int type,
+                 int target, std::size_t count) {
+  auto& data = model.buffers[0].data;
+  data.resize((data.size() + 3) / 4 * 4);
+  tinygltf::BufferView view;
+  view.buffer = 0;
+  view.byteOffset = data.size();
+  view.byteLength = rows.size_bytes();
+  view.target = target;
+  data.resize(data.size() + rows.size_bytes());
+  std::memcpy(data.data() + view.byteOffset, rows.data(), rows.size_bytes());
+  model.bufferViews.push_back(view);
+  tinygltf::Accessor accessor;
+  accessor.bufferView = static_cast<int>(model.bufferViews.size()) - 1;
+  accessor.componentType = component;
+  accessor.type = type;
+  accessor.count = count;
+  model.accessors.push_back(accessor);
+  return static_cast<int>(model.accessors.size()) - 1;
+}
+
+int add_vectors(tinygltf::Model& model, std::span<const glm::vec3> rows) {
+  return add_accessor(model, rows, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3,
+                      TINYGLTF_TARGET_ARRAY_BUFFER, rows.size());
+}
+
+void set_bounds(tinygltf::Accessor& accessor, std::span<const glm::vec3> rows) {
+  glm::vec3 low(std::numeric_limits<float>::max());
+  glm::vec3 high(std::numeric_limits<float>::lowest());
+  for (const glm::vec3& row : rows) {
+    low = glm::min(low, row);
+    high = glm::max(high, row);
+  }
+  for (int i = 0; i < 3; ++i) {
+    accessor.minValues.push_back(static_cast<double>(low[i]));
+    accessor.maxValues.push_back(static_cast<double>(high[i]));
+  }
+}
+
+int add_material(tinygltf::Model& model, const WrittenMesh& mesh) {
+  tinygltf::Material material;
+  material.name = mesh.name;
+  for (int i = 0; i < 4; ++i) {
+    material.pbrMetallicRoughness.baseColorFactor[static_cast<std::size_t>(i)] =
+        static_cast<double>(mesh.color[i]);
+  }
+  material.pbrMetallicRoughness.metallicFactor = 0.0;
+  material.pbrMetallicRoughness.roughnessFactor = 0.6;
+  model.materials.push_back(material);
+  return static_cast<int>(model.materials.size()) - 1;
+}
+
+void add_mesh(tinygltf::Model& model, const WrittenMesh& mesh) {
+  tinygltf::Primitive primitive;
+  primitive.mode = TINYGLTF_MODE_TRIANGLES;
+  primitive.material = add_material(model, mesh);
+  const int positions = add_vectors(model, mesh.positions);
+  set_bounds(model.accessors[static_cast<std::size_t>(positions)], mesh.positions);
+  primitive.attributes["POSITION"] = positions;
+  primitive.attributes["NORMAL"] = add_vectors(model, mesh.normals);
+  if (!mesh.rest_positions.empty()) {
+    primitive.attributes["_REST_POSITION"] = add_vectors(model, mesh.rest_positions);
+  }
+  if (!mesh.twist_angles.empty()) {
+    primitive.attributes["_TWIST_ANGLE"] = add_accessor<float>(
+        model, mesh.twist_angles, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR,
+        TINYGLTF_TARGET_ARRAY_BUFFER, mesh.twist_angles.size());
+  }
+  primitive.indices = add_accessor<glm::uvec3>(
+      model, mesh.triangles, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
+      TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, 3 * mesh.triangles.size());
+  tinygltf::Mesh written;
+  written.name = mesh.name;
+  written.primitives.push_back(primitive);
+  model.meshes.push_back(written);
+  tinygltf::Node node;
+  node.name = mesh.name;
+  node.mesh = static_cast<int>(model.meshes.size()) - 1;
+  const glm::dvec3& p = mesh.pose.position;
+  const glm::dquat& q = mesh.pose.rotation;
+  node.translation = {p.x, p.y, p.z};
+  node.rotation = {q.x, q.y, q.z, q.w};
+  model.nodes.push_back(node);
+  model.scenes[0].nodes.push_back(static_cast<int>(model.nodes.size()) - 1);
+}
+
+}  // namespace
+
+Result<std::string> gltf_bytes(const std::vector<WrittenMesh>& meshes, bool binary) {
+  tinygltf::Model model;
+  model.asset.version = "2.0";
+  model.asset.generator = "Torsion";
+  model.scenes.emplace_back();
+  model.defaultScene = 0;
+  model.buffers.emplace_back();
+  for (const WrittenMesh& mesh : meshes) {
+    add_mesh(model, mesh);
+  }
+  std::ostringstream stream;
+  tinygltf::TinyGLTF writer;
+  if (!writer.WriteGltfSceneToStream(&model, stream, true, binary) || !stream) {
+    return Error{"the scene cannot be written as glTF"};
+  }
+  return stream.str();
+}
+
+}  // namespace torsion

@@ -109,8 +109,9 @@ def two_bodies(name):
     gltf = start("two_bodies.bin", (0.2, 0.24, 0.3), (0.0, 0.05, 0.0), 0.5)
     cube = shapes.box((0.03, 0.03, 0.03), 28)
     body(gltf, "firm cube", cube, (-0.045, 0.03, 0.0), "box", SOFT,
-         torsion_youngs_modulus=3e5)
-    body(gltf, "soft cube", cube, (0.045, 0.03, 0.0), "box", SOFT, torsion_youngs_modulus=3e4)
+         torsion_youngs_modulus=3e5, torsion_region_threshold=0.02)
+    body(gltf, "soft cube", cube, (0.045, 0.03, 0.0), "box", SOFT, torsion_youngs_modulus=3e4,
+         torsion_region_threshold=0.02)
     top = (0.0, 0.06, 0.0)
     bar = gltf.node("bar", translation=top, extras={"torsion_role": "tool", "torsion_mass": 1.0})
     part(gltf, bar, "rod", shapes.capsule(0.012, 0.085, 40), "capsule", (0.0, 0.012, 0.0),

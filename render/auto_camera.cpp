@@ -1,0 +1,65 @@
+#include "render/auto_camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+namespace torsion {
+namespace {
+
+constexpr double kFieldOfView = 0.5;  // rad
+const glm::dvec3 kFrom(0.5, 0.62, 0.85);
+
+struct Box {
+  glm::dvec3 lowest{1e300};
+  glm::dvec3 highest{-1e300};
+};
+
+template <class Owners, class Vertices>
+void include(const Owners& owners, const Vertices& vertices, Box& box) {
+  for (std::uint32_t row = 0; row < owners.size(); ++row) {
+    const Pose& pose = owners.template at<Pose>(row);
+    const DrawRange& range = owners.template at<DrawRange>(row);
+    for (const VertexRest& vertex : vertices.template rows<VertexRest>(range.vertices)) {
+      const glm::dvec3 world =
+          pose.rotation * glm::dvec3(glm::vec3(vertex.position)) + pose.position;
+      box.lowest = glm::min(box.lowest, world);
+      box.highest = glm::max(box.highest, world);
+    }
+  }
+}
+
+}  // namespace
+
+Camera camera_of(const CameraDescription& description) {
+  return {description.pose, description.vertical_field_of_view, description.near_plane,
+          description.far_plane};
+}
+
+Camera auto_camera(const FrameWorld& frame, double aspect) {
+  Box box;
+  include(frame.bodies, frame.body_vertices, box);
+  include(frame.tools, frame.tool_vertices, box);
+  Camera camera;
+  if (!(box.lowest.x <= box.highest.x)) {
+    return camera;
+  }
+  const glm::dvec3 center = 0.5 * (box.lowest + box.highest);
+  const double radius = 0.5 * glm::length(box.highest - box.lowest);
+  const double half_angle =
+      std::min(0.5 * kFieldOfView, std::atan(std::tan(0.5 * kFieldOfView) * aspect));
+  const double distance = 1.02 * radius / std::sin(half_angle);
+  const glm::dvec3 back = glm::normalize(kFrom);
+  const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0.0, 1.0, 0.0), back));
+  camera.pose.position = center + distance * back;
+  camera.pose.rotation =
+      glm::normalize(glm::quat_cast(glm::dmat3(right, glm::cross(back, right), back)));
+  camera.vertical_field_of_view = kFieldOfView;
+  camera.near_plane = 0.05 * distance;
+  camera.far_plane = 20.0 * distance;
+  return camera;
+}
+
+}  // namespace torsion

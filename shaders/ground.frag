@@ -13,8 +13,9 @@ layout(location = 0) out vec4 color;
 // the shade that the bodies' box casts around its foot show.
 void main() {
   vec2 from_center = world_position.xz - frame.floor_box.xy;
-  vec2 outside = max(abs(from_center) - frame.floor_box.zw, 0.0) / frame.floor_level.y;
-  float shade = 0.42 * exp(-5.0 * length(outside));
+  // From a box of 0.6 of the bodies' size, so that the corners that a round body leaves free are not shaded flat.
+  vec2 outside = max(abs(from_center) - 0.6 * frame.floor_box.zw, 0.0) / frame.floor_level.y;
+  float shade = 0.5 * exp(-3.5 * length(outside));
   float shadow = 0.34 * (1.0 - key_light_share(in_shadow_map));
   float near = 1.0 - smoothstep(0.5, 1.0, length(from_center) / frame.floor_level.z);
   color = vec4(frame.background.rgb * (1.0 - near * (1.0 - (1.0 - shade) * (1.0 - shadow))), 1.0);

@@ -231,6 +231,12 @@ struct RegionFrame {
   glm::dvec2 half_size{0.0};            // m: the grid covers origin +- half_size
 };
 
+/// Where the grid was when the tractions were last carried over to it; half_size 0 before the first
+/// time. Written by: carry_tractions.
+struct TractionFrame {
+  RegionFrame frame;
+};
+
 /// Written by: region_grids.
 struct RegionGeometry {
   glm::dvec3 equivalent_point{0.0};  // m, body: p_eq, the pressure centre, on the tool's surface

@@ -9,9 +9,7 @@ namespace torsion {
 struct Snapshot {
   Table<Clock> clock;
   Table<ToolPose, ToolMotion, ToolWrench> tools;
-  Table<RegionIdentity, RegionFrame, RegionGeometry, RegionMotion, RegionNormal, RegionFriction,
-        RegionWrench>
-      regions;
+  RegionTable regions;
   Table<AnchorMotion> anchors;
 
   /// Takes memory for whatever `world` can hold.

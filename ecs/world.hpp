@@ -60,8 +60,8 @@ using BodyTable =
     Table<Entity, Pose, Elasticity, Friction, FixedRegion, BodyModels, OwnedRows, Bounds>;
 using ToolTable =
     Table<Entity, ToolPose, ToolMotion, MassProperties, ToolWrench, OwnedRows, Bounds>;
-using RegionTable = Table<RegionIdentity, RegionFrame, RegionGeometry, RegionMotion, RegionNormal,
-                          RegionFriction, RegionWrench>;
+using RegionTable = Table<RegionIdentity, RegionFrame, TractionFrame, RegionGeometry, RegionMotion,
+                          RegionNormal, RegionFriction, RegionWrench>;
 using CellTable = Table<CellGeometry, CellTraction>;
 using AnchorTable = Table<AnchorRest, AnchorMotion>;
 

@@ -25,6 +25,7 @@ void Scratch::reserve(const World& world) {
   cell_distances.assign(cells, Distance{});
   cell_normals.assign(cells, glm::dvec3(0.0));
   cell_depth_changes.assign(cells, 0.0);
+  cell_tractions.assign(cells, CellTraction{});
   near_parts.assign(world.parts.size(), 0);
 }
 

@@ -72,8 +72,9 @@ struct Scratch {
   std::vector<Distance> cell_distances;  // (cells of one region)
   std::vector<glm::dvec3>
       cell_normals;  // (cells of one region) gradient of the tool's distance, grid
-  std::vector<double> cell_depth_changes;  // (cells of one region) m, across the cell
-  std::vector<std::uint32_t> near_parts;   // (parts of all bodies and tools)
+  std::vector<double> cell_depth_changes;    // (cells of one region) m, across the cell
+  std::vector<CellTraction> cell_tractions;  // (cells of one region)
+  std::vector<std::uint32_t> near_parts;     // (parts of all bodies and tools)
 
   /// Takes all memory that a step of `world` can need.
   void reserve(const World& world);

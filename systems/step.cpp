@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "systems/body_models/skeleton.hpp"
+#include "systems/carry_tractions.hpp"
 #include "systems/contact_models/paper.hpp"
 #include "systems/couple_tools.hpp"
 #include "systems/detect_contacts.hpp"
@@ -58,6 +59,8 @@ std::vector<System<StepContext>> step_systems() {
        any_tool_and_body, group_regions},
       {"region_grids", "finds depth and area cell by cell", "a tool and a body", any_tool_and_body,
        region_grids},
+      {"carry_tractions", "keeps tractions at their place on the body", "a body with friction",
+       any_friction, carry_tractions},
       {"paper_normal_forces", "normal force f = k1 x + k3 x^3", "a body with contact model paper",
        any_contact_model<ContactModel::kPaper>, paper_normal_forces},
       {"region_motion", "slide, spin and axis of every region", "a body with friction",

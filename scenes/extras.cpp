@@ -42,7 +42,10 @@ std::string shown(const tinygltf::Value& value) {
   if (value.IsBool()) {
     return value.Get<bool>() ? "true" : "false";
   }
-  return value.IsArray() ? "an array" : "an object";
+  if (value.IsArray()) {
+    return "an array";
+  }
+  return value.IsObject() ? "an object" : "null";
 }
 
 std::vector<std::string_view> words_of(std::string_view text) {

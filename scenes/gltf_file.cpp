@@ -221,6 +221,31 @@ std::optional<tinygltf::Model> parse_gltf(const Bytes& bytes, bool binary, std::
   return model;
 }
 
+/// tinygltf cuts whole numbers to 32 bits and drops nulls: puts those of extras back as the file
+/// has them, so that 200000000000 Pa is read and a null is not taken for a missing key.
+void restore_extras(const json& from, tinygltf::Value& extras) {
+  if (!from.is_object() || !from.contains("extras") || !from["extras"].is_object()) {
+    return;
+  }
+  tinygltf::Value::Object members =
+      extras.IsObject() ? extras.Get<tinygltf::Value::Object>() : tinygltf::Value::Object{};
+  for (const auto& [name, value] : from["extras"].items()) {
+    if (value.is_number()) {
+      members.insert_or_assign(name, tinygltf::Value(value.get<double>()));
+    } else if (value.is_null()) {
+      members.insert_or_assign(name, tinygltf::Value());
+    }
+  }
+  extras = tinygltf::Value(std::move(members));
+}
+
+template <class Element>
+void restore_extras(const json& document, const char* array, std::vector<Element>& elements) {
+  for (std::size_t row = 0; row < elements.size(); ++row) {
+    restore_extras(document[array][row], elements[row].extras);
+  }
+}
+
 /// That every buffer really got its bytes.
 void check_buffer_bytes(const tinygltf::Model& model, const json& document,
                         const ProblemList& problems) {
@@ -269,6 +294,9 @@ std::optional<tinygltf::Model> read_gltf_file(const std::filesystem::path& path,
   std::optional<tinygltf::Model> model =
       parse_gltf(bytes.value(), binary, document->dump(), folder, problems);
   if (model) {
+    restore_extras(*document, "nodes", model->nodes);
+    restore_extras(*document, "meshes", model->meshes);
+    restore_extras(*document, "materials", model->materials);
     check_buffer_bytes(*model, *document, problems);
   }
   if (model && clean()) {

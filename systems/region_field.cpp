@@ -91,14 +91,14 @@ RegionTwist region_twist(const World& world, const Snapshot& snapshot, std::uint
   const RegionMotion& motion = snapshot.regions.at<RegionMotion>(region);
   const RegionFriction& friction = snapshot.regions.at<RegionFriction>(region);
   const FixedRegion& fixed = world.bodies.at<FixedRegion>(identity.body);
-  const glm::dvec3 contact = geometry.equivalent_point;
+  const glm::dvec3 contact = geometry.rest_point;
 
   RegionTwist twist;
   twist.through = motion.axis_share;
   twist.stick_turn = friction.stick_turn;
   twist.stick_radius = std::max(friction.stick_radius, 1e-3 * geometry.radius);
   twist.through_height = height_share(fixed, contact, frame.normal, geometry.radius);
-  const double height = body_to_grid(frame, contact).z;
+  const double height = body_to_grid(frame, geometry.equivalent_point).z;
   const glm::dvec3 pivot = grid_to_body(frame, glm::dvec3(motion.pivot, height));
   twist.point = pivot;
   twist.direction = frame.normal;
@@ -169,7 +169,7 @@ RegionDent region_dent(const World& world, const Snapshot& snapshot, std::uint32
   const double fullness = std::clamp(geometry.mean_depth / geometry.largest_depth, 0.5, 1.0);
   dent.flatness = 2.0 * fullness - 1.0;
   dent.radius = geometry.radius * std::sqrt(fullness);
-  dent.center = geometry.equivalent_point;
+  dent.center = geometry.rest_point;
   dent.normal = frame.normal;
   dent.depth = std::max(geometry.largest_depth + glm::dot(moved, frame.normal), 0.0);
   // Tangential compliance of a disc (2 - nu) / (8 G a); the force on the body is minus that on the

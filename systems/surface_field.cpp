@@ -109,9 +109,9 @@ void fill_slots(const Snapshot& snapshot, BodyField& field) {
     }
     const RegionGeometry& geometry = snapshot.regions.at<RegionGeometry>(region);
     glm::dvec3 moved =
-        field.has_weights ? interpolate(field.weights, geometry.equivalent_point) : glm::dvec3(0.0);
+        field.has_weights ? interpolate(field.weights, geometry.rest_point) : glm::dvec3(0.0);
     for (const Slot& before : field.slots) {
-      moved += before.dent.displacement(geometry.equivalent_point);
+      moved += before.dent.displacement(geometry.rest_point);
     }
     const RegionDent dent = region_dent(field.world, snapshot, region, moved);
     field.slots.push_back({region_twist(field.world, snapshot, region), dent, identity.tool,

@@ -113,7 +113,7 @@ void skeleton(StepContext& context) {
         continue;
       }
       const MainBeam beam =
-          main_beam(world, body, world.regions.at<RegionGeometry>(region).equivalent_point);
+          main_beam(world, body, world.regions.at<RegionGeometry>(region).rest_point);
       const TipLoad load = tip_load(beam, world.regions.at<RegionFrame>(region),
                                     world.regions.at<RegionNormal>(region),
                                     world.regions.at<RegionFriction>(region));

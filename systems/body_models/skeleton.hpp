@@ -22,14 +22,14 @@ struct BeamSummary {
 /// The main beam to `point`, its sections interpolated between the beams of the nearest anchors.
 /// Continuous in `point`. O(anchors). A body without anchors gives its length and zeros.
 /// @param body   row in world.bodies
-/// @param point  m, body frame, on the rest surface (p_eq)
+/// @param point  m, body frame, on the rest surface (where p_eq was)
 BeamSummary beam_summary(const World& world, std::uint32_t body, const glm::dvec3& point);
 
 /// Displacements of the anchors of each body whose body model is kSkeleton, summed over its regions
 /// in their order of formation: bending, shear, stretch and sideways contraction of a Timoshenko
-/// beam from q_f to p_eq. Torsion about the beam is left out: the twist angles of the drawn
-/// vertices carry it (systems/surface_field.hpp). Writes AnchorMotion; zero for bodies with another
-/// model. Source: docs/models.md, "Body model skeleton".
+/// beam from q_f to where p_eq was at rest. Torsion about the beam is left out: the twist angles of
+/// the drawn vertices carry it (systems/surface_field.hpp). Writes AnchorMotion; zero for bodies
+/// with another model. Source: docs/models.md, "Body model skeleton".
 void skeleton(StepContext& context);
 
 }  // namespace torsion

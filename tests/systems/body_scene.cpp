@@ -177,7 +177,8 @@ std::uint32_t add_region(World& world, const RegionOnBody& region) {
       RegionFrame{region.point, axes.first, axes.second, region.normal, glm::dvec2(region.radius)};
   RegionGeometry& geometry = world.regions.at<RegionGeometry>(row);
   geometry = RegionGeometry{};
-  geometry.equivalent_point = region.point;
+  geometry.equivalent_point = region.point - 0.5 * region.depth * region.normal;
+  geometry.rest_point = region.point;
   geometry.radius = region.radius;
   geometry.area = kPi * region.radius * region.radius;
   geometry.mean_depth = 0.5 * region.depth;

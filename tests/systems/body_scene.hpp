@@ -25,7 +25,7 @@ World body_world(const BodyDescription& body);
 
 /// What the tests set of one region.
 struct RegionOnBody {
-  glm::dvec3 point{0.0};             // m, body: p_eq
+  glm::dvec3 point{0.0};             // m, body: where p_eq was on the rest surface
   glm::dvec3 normal{0.0, 1.0, 0.0};  // body, outward
   glm::dvec3 force_on_body{0.0};     // N, body
   double couple_on_body = 0.0;       // N m about the normal

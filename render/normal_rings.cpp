@@ -120,12 +120,11 @@ class FanMaker {
   }
 
   Edge* unused_from(std::uint32_t place) {
-    for (Edge& edge : std::ranges::equal_range(by_start_, place, {}, &Edge::from_place)) {
-      if (!edge.used) {
-        return &edge;
-      }
+    auto edge = std::ranges::lower_bound(by_start_, place, {}, &Edge::from_place);
+    while (edge != by_start_.end() && edge->from_place == place && edge->used) {
+      ++edge;
     }
-    return nullptr;
+    return edge != by_start_.end() && edge->from_place == place ? &*edge : nullptr;
   }
 
   std::vector<Edge> by_start_;
@@ -133,7 +132,7 @@ class FanMaker {
 };
 
 void append_body(const FrameWorld& frame, std::uint32_t body, NormalRings& rings) {
-  const DrawRange& drawn = frame.bodies.at<DrawRange>(body);
+  const auto& drawn = frame.bodies.at<DrawRange>(body);
   const Groups groups = group_vertices(frame.body_vertices.rows<VertexRest>(drawn.vertices),
                                        frame.body_vertices.rows<VertexNormal>(drawn.vertices));
   const std::vector<Corner> corners =

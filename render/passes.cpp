@@ -98,7 +98,7 @@ void draw_range(const Commands& commands, const DrawRange& drawn) {
 template <class Things, class F>
 void draw_each(const Commands& commands, const FrameInputs& inputs, const Things& things, F&& f) {
   for (std::uint32_t row = 0; row < things.size(); ++row) {
-    const DrawRange& drawn = things.template at<DrawRange>(row);
+    const auto& drawn = things.template at<DrawRange>(row);
     if (drawn.triangles.count == 0) {
       continue;
     }
@@ -237,7 +237,7 @@ void record_deform(const Commands& commands, const FrameInputs& inputs) {
     if (vertices.count == 0) {
       continue;
     }
-    const FrameBody& row = frame.bodies.at<FrameBody>(body);
+    const auto& row = frame.bodies.at<FrameBody>(body);
     const BoundRows twist =
         bound_rows(inputs.gpu, twist_rows_in_use(frame, body), sizeof(TwistAngle));
     push_storage(commands, inputs,

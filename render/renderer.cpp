@@ -128,9 +128,12 @@ struct Renderer::Impl {
   Impl() = default;
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
+  Impl(Impl&&) = delete;
+  Impl& operator=(Impl&&) = delete;
   ~Impl() {
     if (*gpu.device) {
-      gpu.device.waitIdle();
+      // Not by the member function, which throws; a lost device has nothing left to wait for.
+      gpu.device.getDispatcher()->vkDeviceWaitIdle(static_cast<VkDevice>(*gpu.device));
     }
   }
 
@@ -138,9 +141,9 @@ struct Renderer::Impl {
                                        const DrawOptions& options);
   void write_arrows(const Snapshot& snapshot, const Camera& camera, const DrawOptions& options,
                     SlotBuffers& slot);
-  void write_overlay(const OverlayDrawList* overlay, SlotBuffers& slot);
+  void write_overlay(const OverlayDrawList* overlay, SlotBuffers& slot) const;
   void record(const Frame& frame, const FrameInputs& inputs, SlotBuffers& slot);
-  std::vector<glm::vec4> read_rows(const Buffer& buffer);
+  [[nodiscard]] std::vector<glm::vec4> read_rows(const Buffer& buffer) const;
 };
 
 ArrowScale Renderer::Impl::arrow_scale(const Snapshot& snapshot, const Camera& camera,
@@ -175,7 +178,7 @@ void Renderer::Impl::write_arrows(const Snapshot& snapshot, const Camera& camera
   write(slot.arrow_colors, arrows.colors);
 }
 
-void Renderer::Impl::write_overlay(const OverlayDrawList* overlay, SlotBuffers& slot) {
+void Renderer::Impl::write_overlay(const OverlayDrawList* overlay, SlotBuffers& slot) const {
   if (overlay == nullptr) {
     return;
   }
@@ -210,7 +213,7 @@ void Renderer::Impl::record(const Frame& frame, const FrameInputs& inputs, SlotB
   stamp();
 }
 
-std::vector<glm::vec4> Renderer::Impl::read_rows(const Buffer& buffer) {
+std::vector<glm::vec4> Renderer::Impl::read_rows(const Buffer& buffer) const {
   gpu.device.waitIdle();
   const Buffer read_back =
       make_buffer(gpu, buffer.size, vk::BufferUsageFlagBits::eTransferDst, Home::kReadBack);

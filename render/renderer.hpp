@@ -56,6 +56,8 @@ class Renderer {
   /// that is able, a size out of range, a body larger than the device can address.
   static Result<Renderer> create(const RendererOptions& options, const FrameWorld& frame);
 
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
   ~Renderer();

@@ -120,7 +120,7 @@ BoundRows bound_rows(const Gpu& gpu, Range rows, std::uint32_t row_size) {
 }
 
 Range twist_rows_in_use(const FrameWorld& frame, std::uint32_t body) {
-  const FrameBody& row = frame.bodies.at<FrameBody>(body);
+  const auto& row = frame.bodies.at<FrameBody>(body);
   return {row.twist.first, row.regions_drawn * frame.bodies.at<DrawRange>(body).vertices.count};
 }
 

@@ -22,6 +22,8 @@ class Target {
   Target() = default;
   Target(const Target&) = delete;
   Target& operator=(const Target&) = delete;
+  Target(Target&&) = delete;
+  Target& operator=(Target&&) = delete;
   virtual ~Target() = default;
 
   /// Waits until the frame before in the same slot is done, and begins its commands.

@@ -61,7 +61,7 @@ PassTimes measure(const TwistedCube& scene, std::uint32_t samples, const char* n
   Result<Renderer> renderer = Renderer::create(options, scene.frame);
   if (!renderer) {
     std::fprintf(stderr, "%s\n", renderer.error().text.c_str());
-    std::exit(1);
+    std::exit(1);  // NOLINT(concurrency-mt-unsafe): no other thread runs
   }
   DrawOptions draw;
   draw.heat_map = HeatMap::kTwist;

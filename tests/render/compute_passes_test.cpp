@@ -56,10 +56,10 @@ FrameWorld two_twisted_bodies() {
 /// The definition in double: quaternions instead of Rodrigues' formula, std::sin inside.
 glm::dvec3 turned_and_moved(const FrameWorld& frame, std::uint32_t body, std::uint32_t vertex) {
   const Range vertices = frame.bodies.at<DrawRange>(body).vertices;
-  const FrameBody& row = frame.bodies.at<FrameBody>(body);
+  const auto& row = frame.bodies.at<FrameBody>(body);
   glm::dvec3 x(frame.body_vertices.at<VertexRest>(vertices.first + vertex).position);
   for (std::uint32_t slot = 0; slot < row.regions_drawn; ++slot) {
-    const TwistAxis& axis = frame.axes.at<TwistAxis>(row.axes.first + slot);
+    const auto& axis = frame.axes.at<TwistAxis>(row.axes.first + slot);
     const float angle =
         frame.twist.at<TwistAngle>(row.twist.first + slot * vertices.count + vertex).angle;
     const glm::dvec3 point(axis.point);
@@ -73,7 +73,7 @@ glm::dvec3 turned_and_moved(const FrameWorld& frame, std::uint32_t body, std::ui
 class ComputePassesTest : public GpuTest {
  protected:
   /// Positions and normals after `frames` pictures.
-  void draw(const FrameWorld& frame, RendererOptions with, HeatMap heat, int frames = 1) {
+  void draw(const FrameWorld& frame, const RendererOptions& with, HeatMap heat, int frames = 1) {
     Renderer renderer = open(with, frame);
     const Snapshot snapshot = make_snapshot(frame.tools.size(), 0);
     const Camera camera = camera_at({0.2, 0.2, 0.3}, glm::dvec3(0.0), 0.6);

@@ -113,7 +113,7 @@ FrameWorld make_frame_world(const std::vector<TestThing>& bodies,
   for (const TestThing& thing : bodies) {
     const std::uint32_t row = frame.bodies.append()->first;
     frame.bodies.at<Pose>(row) = thing.pose;
-    DrawRange& drawn = frame.bodies.at<DrawRange>(row);
+    auto& drawn = frame.bodies.at<DrawRange>(row);
     drawn.color = thing.color;
     const Range rows = append_mesh(thing.mesh, frame.body_vertices, frame, true, drawn);
     frame.bodies.at<FrameBody>(row).twist = *frame.twist.append(rows.count * kMaxRegionsPerBody);
@@ -122,7 +122,7 @@ FrameWorld make_frame_world(const std::vector<TestThing>& bodies,
   for (const TestThing& thing : tools) {
     const std::uint32_t row = frame.tools.append()->first;
     frame.tools.at<Pose>(row) = thing.pose;
-    DrawRange& drawn = frame.tools.at<DrawRange>(row);
+    auto& drawn = frame.tools.at<DrawRange>(row);
     drawn.color = thing.color;
     append_mesh(thing.mesh, frame.tool_vertices, frame, false, drawn);
   }
@@ -131,7 +131,7 @@ FrameWorld make_frame_world(const std::vector<TestThing>& bodies,
 
 void add_twist(FrameWorld& frame, std::uint32_t body, const glm::vec3& point,
                const glm::vec3& direction, const std::function<float(const glm::vec3&)>& angle) {
-  FrameBody& row = frame.bodies.at<FrameBody>(body);
+  auto& row = frame.bodies.at<FrameBody>(body);
   TORSION_ASSERT(row.regions_drawn < kMaxRegionsPerBody);
   const Range vertices = frame.bodies.at<DrawRange>(body).vertices;
   frame.axes.at<TwistAxis>(row.axes.first + row.regions_drawn) = {glm::vec4(point, 0.0F),

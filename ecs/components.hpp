@@ -294,11 +294,12 @@ struct CellGeometry {
   double coverage = 0.0;  // share of the cell's area that is in contact, 0 to 1
 };
 
-/// Written by: friction_forces.
+/// Written by: carry_tractions and the friction forces of the contact model.
 struct CellTraction {
   glm::dvec2 traction{0.0};    // Pa, grid, on the tool, per covered area
   double pressure = 0.0;       // Pa
   double kinetic_share = 0.0;  // 0: threshold mu_s; 1: mu_d, after slipping a slip length
+  double coverage = 0.0;       // share of the cell that the traction acts on
   std::uint32_t sticks = 0;    // 1: sticks, 0: slips or carries nothing
   std::uint32_t padding = 0;
 };

@@ -25,7 +25,7 @@ void Scratch::reserve(const World& world) {
   cell_distances.assign(cells, Distance{});
   cell_normals.assign(cells, glm::dvec3(0.0));
   cell_depth_changes.assign(cells, 0.0);
-  cell_tractions.assign(cells, CellTraction{});
+  carried_cells.assign(std::size_t{side + 2} * (side + 2), CarriedCell{});
   near_parts.assign(world.parts.size(), 0);
 }
 

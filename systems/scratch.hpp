@@ -46,6 +46,13 @@ struct RegionPoints {
   std::uint32_t cluster = kNoRow;
 };
 
+/// What a place on the body carries from one grid to the next.
+struct CarriedCell {
+  glm::dvec2 per_cell{0.0};    // Pa: traction times coverage
+  double coverage = 0.0;       // share of the cell
+  double kinetic_share = 0.0;  // as in CellTraction
+};
+
 /// Memory that the systems of one step share. Reserved at load; nothing in it outlives a step, so
 /// that a saved world replays without it.
 struct Scratch {
@@ -72,9 +79,9 @@ struct Scratch {
   std::vector<Distance> cell_distances;  // (cells of one region)
   std::vector<glm::dvec3>
       cell_normals;  // (cells of one region) gradient of the tool's distance, grid
-  std::vector<double> cell_depth_changes;    // (cells of one region) m, across the cell
-  std::vector<CellTraction> cell_tractions;  // (cells of one region)
-  std::vector<std::uint32_t> near_parts;     // (parts of all bodies and tools)
+  std::vector<double> cell_depth_changes;  // (cells of one region) m, across the cell
+  std::vector<CarriedCell> carried_cells;  // (cells of one region and a border of one around them)
+  std::vector<std::uint32_t> near_parts;   // (parts of all bodies and tools)
 
   /// Takes all memory that a step of `world` can need.
   void reserve(const World& world);

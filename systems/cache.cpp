@@ -42,7 +42,8 @@ bool write_file(int descriptor, std::span<const std::byte> bytes) {
   // No fsync: a file torn by a power cut fails its checksum and is made anew.
   const FileHeader header = header_of(bytes);
   const bool written = std::fwrite(&header, sizeof(header), 1, file.get()) == 1 &&
-                       std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
+                       (bytes.empty() ||  // an empty span may have no address
+                        std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size());
   return std::fclose(file.release()) == 0 && written;
 }
 
@@ -103,7 +104,7 @@ std::optional<std::vector<std::byte>> load_cached(const CacheKey& key) {
     return std::nullopt;
   }
   std::vector<std::byte> bytes(header.length);
-  if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
+  if (!bytes.empty() && std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
     return std::nullopt;
   }
   const FileHeader found = header_of(bytes);

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <map>
-#include <numeric>
 #include <optional>
 
 #include <glm/geometric.hpp>
@@ -40,46 +38,99 @@ glm::dvec3 size_of(const SurfaceMesh& mesh) {
   return highest - lowest;
 }
 
-/// For each vertex the first one at its place: sorted along x, only near ones are compared.
-std::vector<std::uint32_t> first_at_place(const SurfaceMesh& mesh, double tolerance) {
-  const auto count = static_cast<std::uint32_t>(mesh.positions.size());
-  std::vector<std::uint32_t> order(count);
-  std::iota(order.begin(), order.end(), 0U);
-  const auto& positions = mesh.positions;
-  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
-    const glm::dvec3& p = positions[a];
-    const glm::dvec3& q = positions[b];
-    return std::array{p.x, p.y, p.z, static_cast<double>(a)} <
-           std::array{q.x, q.y, q.z, static_cast<double>(b)};
+/// Which cell of a grid a place lies in. Cells are much wider than the tolerance, so that few
+/// vertices have more than their own to search; without a tolerance every place is a cell of its
+/// own.
+std::array<double, 3> cell_of(const glm::dvec3& p, double tolerance) {
+  const double width = 8.0 * tolerance;
+  return tolerance > 0.0
+             ? std::array{std::floor(p.x / width), std::floor(p.y / width), std::floor(p.z / width)}
+             : std::array{p.x, p.y, p.z};
+}
+
+struct CellVertex {
+  std::array<double, 3> cell{};
+  std::uint32_t row = 0;
+};
+
+/// Vertices in the order of their cells, so that those of one cell are found by bisection.
+std::vector<CellVertex> vertices_by_cell(const SurfaceMesh& mesh, double tolerance) {
+  std::vector<CellVertex> sorted(mesh.positions.size());
+  for (std::uint32_t row = 0; row < sorted.size(); ++row) {
+    sorted[row] = {cell_of(mesh.positions[row], tolerance), row};
+  }
+  std::ranges::sort(sorted, [](const CellVertex& a, const CellVertex& b) {
+    return a.cell != b.cell ? a.cell < b.cell : a.row < b.row;
   });
-  std::vector<std::uint32_t> first(count);
-  std::iota(first.begin(), first.end(), 0U);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t self = order[i];
-    for (std::uint32_t j = i; j-- > 0;) {
-      const std::uint32_t other = order[j];
-      if (positions[self].x - positions[other].x > tolerance) {
-        break;
-      }
-      if (glm::distance(positions[self], positions[other]) <= tolerance) {
-        first[self] = first[other];
-        break;
+  return sorted;
+}
+
+/// The cells that a ball of the tolerance around `p` touches, mostly one.
+std::vector<std::array<double, 3>> cells_near(const glm::dvec3& p, double tolerance) {
+  std::vector<std::array<double, 3>> cells = {cell_of(p - glm::dvec3(tolerance), tolerance)};
+  if (cells[0] == cell_of(p + glm::dvec3(tolerance), tolerance)) {
+    return cells;
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 side((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0,
+                          (corner & 4) != 0 ? 1.0 : -1.0);
+    const auto cell = cell_of(p + tolerance * side, tolerance);
+    if (std::ranges::find(cells, cell) == cells.end()) {
+      cells.push_back(cell);
+    }
+  }
+  return cells;
+}
+
+/// For each vertex the first one at its place.
+std::vector<std::uint32_t> first_at_place(const SurfaceMesh& mesh, double tolerance) {
+  const std::vector<CellVertex> sorted = vertices_by_cell(mesh, tolerance);
+  std::vector<std::uint32_t> first(mesh.positions.size());
+  for (std::uint32_t row = 0; row < first.size(); ++row) {
+    const glm::dvec3& position = mesh.positions[row];
+    std::uint32_t nearest = row;
+    for (const auto& cell : cells_near(position, tolerance)) {
+      auto other = std::ranges::lower_bound(sorted, cell, {}, &CellVertex::cell);
+      for (; other != sorted.end() && other->cell == cell && other->row < nearest; ++other) {
+        if (glm::distance(position, mesh.positions[other->row]) <= tolerance) {
+          nearest = other->row;
+        }
       }
     }
+    first[row] = nearest == row ? row : first[nearest];
   }
   return first;
 }
 
-std::map<Edge, EdgeUse> edges_of(const SurfaceMesh& mesh) {
-  std::map<Edge, EdgeUse> edges;
+struct UsedEdge {
+  Edge edge{};
+  EdgeUse use;
+};
+
+/// Every edge once, in the order of its vertices.
+std::vector<UsedEdge> edges_of(const SurfaceMesh& mesh) {
+  std::vector<UsedEdge> edges;
+  edges.reserve(3 * mesh.triangles.size());
   for (const glm::uvec3& triangle : mesh.triangles) {
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t from = triangle[i];
       const std::uint32_t to = triangle[(i + 1) % 3];
-      EdgeUse& use = edges[{std::min(from, to), std::max(from, to)}];
-      (from < to ? use.forth : use.back) += 1;
+      const bool forth = from < to;
+      edges.push_back(
+          {{std::min(from, to), std::max(from, to)}, {forth ? 1U : 0U, forth ? 0U : 1U}});
     }
   }
+  std::ranges::sort(edges, {}, &UsedEdge::edge);
+  std::size_t last = 0;
+  for (std::size_t i = 1; i < edges.size(); ++i) {
+    if (edges[i].edge == edges[last].edge) {
+      edges[last].use.forth += edges[i].use.forth;
+      edges[last].use.back += edges[i].use.back;
+    } else {
+      edges[++last] = edges[i];
+    }
+  }
+  edges.resize(std::min(edges.size(), last + 1));
   return edges;
 }
 

@@ -1,0 +1,216 @@
+// What a step costs: the shipped scenes in contact, the same body cut ever finer, loading, and a
+// whole run against the clock. Run by ./dev bench.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "app/simulate_loop.hpp"
+#include "device/scripted_motion.hpp"
+#include "scenes/load_gltf.hpp"
+#include "scenes/write_gltf.hpp"
+#include "systems/surface_field.hpp"
+#include "tests/support/contact_scenes.hpp"
+
+namespace torsion {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+double seconds_since(SteadyClock::time_point start) {
+  return std::chrono::duration<double>(SteadyClock::now() - start).count();
+}
+
+std::string scene_path(const std::string& name) {
+  return std::string(TORSION_SOURCE_DIR) + "/scenes/" + name + ".gltf";
+}
+
+/// Counts every step's time and gives the benchmark their median and 99th percentile in us.
+class StepTimes {
+ public:
+  StepTimes() { times_.reserve(1 << 20); }
+  void add(double seconds) { times_.push_back(seconds); }
+  void report(benchmark::State& state) {
+    std::ranges::sort(times_);
+    const auto at = [this](double share) {
+      return 1e6 * times_[static_cast<std::size_t>(share * static_cast<double>(times_.size() - 1))];
+    };
+    state.counters["median_us"] = at(0.5);
+    state.counters["p99_us"] = at(0.99);
+  }
+
+ private:
+  std::vector<double> times_;
+};
+
+/// Steps through the scripted motion between two times of full contact, to and fro.
+void time_contact(benchmark::State& state, Session session) {
+  constexpr double kFirst = 1.0;  // s
+  constexpr double kLast = 3.3;   // s
+  const double dt = session.simulation.world.clock.at<Clock>(0).dt;
+  while (session.simulation.world.clock.at<Clock>(0).time < kFirst) {
+    step_scripted(session);
+  }
+  StepTimes times;
+  double time = kFirst;
+  double way = dt;
+  for (auto _ : state) {
+    way = time + way > kLast || time + way < kFirst ? -way : way;
+    time += way;
+    for (std::size_t tool = 0; tool < session.tool_poses.size(); ++tool) {
+      session.tool_poses[tool] = scripted_pose(session.scene.tools[tool].script, time);
+    }
+    const auto start = SteadyClock::now();
+    step(session.simulation, session.tool_poses);
+    const double seconds = seconds_since(start);
+    state.SetIterationTime(seconds);
+    times.add(seconds);
+  }
+  times.report(state);
+  state.counters["regions"] = session.simulation.world.regions.size();
+  if (session.simulation.world.clock.at<Clock>(0).faults_ever != 0) {
+    state.SkipWithError("a fault during the run");
+  }
+}
+
+void step_of_scene(benchmark::State& state, const std::string& name) {
+  Result<Session> session = open_session(scene_path(name), {});
+  if (!session) {
+    state.SkipWithError(session.error().text.c_str());
+    return;
+  }
+  time_contact(state, std::move(session).value());
+}
+
+/// ball_on_cube with the cube as a mesh of about 6 n^2 vertices.
+void step_of_mesh(benchmark::State& state) {
+  LoadedScene loaded = load_gltf(scene_path("ball_on_cube"));
+  PartDescription& part = loaded.scene->bodies[0].parts[0];
+  part = test::make_part(ShapeKind::kBox, part.shape.half_extent, part.shape.pose, true,
+                         static_cast<std::uint32_t>(state.range(0)));
+  const auto start = SteadyClock::now();
+  Result<Simulation> simulation = prepare(*loaded.scene, {});
+  if (!simulation) {
+    state.SkipWithError(simulation.error().text.c_str());
+    return;
+  }
+  state.counters["prepare_s"] = seconds_since(start);
+  state.counters["vertices"] = static_cast<double>(part.surface.positions.size());
+  Session session{std::move(*loaded.scene), std::move(simulation).value(), {}};
+  session.tool_poses.resize(1);
+  time_contact(state, std::move(session));
+}
+
+/// Writes a scene of a body of about 100 000 triangles and a ball.
+std::string write_large_scene(const std::filesystem::path& folder) {
+  const auto written = [](const std::string& name, const PartDescription& part) {
+    WrittenMesh mesh;
+    mesh.name = name;
+    for (const glm::dvec3& position : part.surface.positions) {
+      mesh.positions.emplace_back(position);
+      mesh.normals.emplace_back(glm::normalize(position));
+    }
+    mesh.triangles = part.surface.triangles;
+    return mesh;
+  };
+  WrittenMesh body =
+      written("body", test::make_part(ShapeKind::kEllipsoid, {0.07, 0.05, 0.06}, {}, true, 46));
+  WrittenMesh ball =
+      written("ball", test::make_part(ShapeKind::kSphere, glm::dvec3(0.03), {}, true, 8));
+  ball.pose.position.y = 0.09;
+  auto json = nlohmann::json::parse(gltf_bytes({body, ball}, false).value());
+  json["nodes"][0]["extras"]["torsion_role"] = "elastic";
+  json["nodes"][1]["extras"] = {
+      {"torsion_role", "tool"}, {"torsion_device", "mouse"}, {"torsion_shape", "sphere"}};
+  const std::string path = (folder / "large.gltf").string();
+  std::ofstream(path) << json.dump();
+  return path;
+}
+
+void load_large_scene(benchmark::State& state, bool cached) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("torsion_bench_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  ::setenv("TORSION_CACHE_DIR", (folder / "cache").c_str(), 1);
+  const std::string path = write_large_scene(folder);
+  std::size_t triangles = 0;
+  for (auto _ : state) {
+    if (!cached) {
+      std::filesystem::remove_all(folder / "cache");
+    }
+    const auto start = SteadyClock::now();
+    const LoadedScene loaded = load_gltf(path);
+    const Result<Simulation> simulation = prepare(*loaded.scene, {});
+    const FrameWorld frame = prepare_frame(*loaded.scene, simulation.value().world);
+    state.SetIterationTime(seconds_since(start));
+    triangles = frame.body_triangles.size();
+  }
+  state.counters["triangles"] = static_cast<double>(triangles);
+  ::unsetenv("TORSION_CACHE_DIR");
+  std::filesystem::remove_all(folder);
+}
+
+void whole_run(benchmark::State& state) {
+  double simulated = 0.0;
+  double wall = 0.0;
+  for (auto _ : state) {
+    Result<Session> session = open_session(scene_path("ball_on_cube"), {});
+    Progress silent("", true);
+    const double duration = session.value().scene.duration;
+    const RunStatistics statistics =
+        run_fast(session.value(), steps_in(session.value(), duration), nullptr, silent);
+    state.SetIterationTime(statistics.wall_time);
+    simulated += duration;
+    wall += statistics.wall_time;
+  }
+  state.counters["times_real_time"] = simulated / wall;
+}
+
+BENCHMARK_CAPTURE(step_of_scene, ball_on_cube, "ball_on_cube")
+    ->UseManualTime()
+    ->Iterations(20000)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step_of_scene, many_regions, "many_regions")
+    ->UseManualTime()
+    ->Iterations(5000)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step_of_scene, mallet_on_ellipsoid, "mallet_on_ellipsoid")
+    ->UseManualTime()
+    ->Iterations(5000)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step_of_scene, compass_on_ellipsoid, "compass_on_ellipsoid")
+    ->UseManualTime()
+    ->Iterations(5000)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step_of_scene, ball_on_cube_soft, "ball_on_cube_soft")
+    ->UseManualTime()
+    ->Iterations(5000)
+    ->Unit(benchmark::kMicrosecond);
+// 6 (2 n)^2 vertices: 1 k, 10 k, 100 k, 1 M.
+BENCHMARK(step_of_mesh)
+    ->Arg(6)
+    ->Arg(20)
+    ->Arg(65)
+    ->Arg(204)
+    ->UseManualTime()
+    ->Iterations(10000)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(load_large_scene, first, false)
+    ->UseManualTime()
+    ->Iterations(3)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(load_large_scene, cached, true)
+    ->UseManualTime()
+    ->Iterations(10)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(whole_run)->UseManualTime()->Iterations(10)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace torsion

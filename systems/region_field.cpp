@@ -112,9 +112,10 @@ RegionTwist region_twist(const World& world, const Snapshot& snapshot, std::uint
     // alike.
     const glm::dvec3 axis = glm::dot(motion.axis, frame.normal) < 0.0 ? -motion.axis : motion.axis;
     const glm::dvec3 center = to_inner(pose, tool.mass_center);
-    // A turn of less than a hundredth of a radian has hardly an axis yet: it grows in.
+    // A turn of less than a hundredth of a radian has hardly an axis yet: it grows in. A tool that
+    // keeps turning about one axis soon remembers twice as much (systems/couple_tools.cpp).
     constexpr double kFirstTurn = 0.01;
-    const double known = tool.axis_turn / (tool.axis_turn + kFirstTurn);
+    const double known = smooth_step(tool.axis_turn / kFirstTurn);
     twist.past_turn =
         past * known *
         turn_past_region(world, identity.body, contact, axis, center, -glm::dot(torque, axis));

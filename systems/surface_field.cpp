@@ -212,8 +212,23 @@ double way_out(const World& world, const Toucher& toucher, const glm::dvec3& sta
   return distance.value < 0.0 ? outside : t;
 }
 
-/// Pushes a point that is still inside a tool out of it, along the nearest region's normal into the
-/// body, and says how much of the region's pressure it bears.
+/// Which way the body yields to a tool at a point: against the outward normals of the tool's
+/// regions, weighted by the fourth power of how near they are, so that the nearest counts and
+/// nothing jumps between two of them. Body frame, unit.
+glm::dvec3 way_into_body(const BodyField& field, std::uint32_t tool, const glm::dvec3& point) {
+  glm::dvec3 sum(0.0);
+  for (const Slot& slot : field.slots) {
+    if (slot.tool == tool && slot.depth > 0.0) {
+      const glm::dvec3 away = (point - slot.dent.center) / slot.dent.radius;
+      const double square = glm::dot(away, away) + 1e-6;
+      sum -= slot.dent.normal / (square * square);
+    }
+  }
+  const double length = glm::length(sum);
+  return length > 0.0 ? sum / length : -nearest_slot(field.slots, tool, point).dent.normal;
+}
+
+/// Pushes a point that is still inside a tool out of it, into the body.
 glm::dvec3 push_out(const BodyField& field, const glm::dvec3& rest_place, const glm::dvec3& place) {
   glm::dvec3 pushed = place;
   for (const Toucher& toucher : field.touchers) {
@@ -225,9 +240,9 @@ glm::dvec3 push_out(const BodyField& field, const glm::dvec3& rest_place, const 
     if (!(distance.value < 0.0)) {
       continue;
     }
-    const Slot& slot = nearest_slot(field.slots, toucher.tool, rest_place);
-    const glm::dvec3 direction = glm::conjugate(toucher.in_body.rotation) * -slot.dent.normal;
-    pushed -= slot.dent.normal * way_out(field.world, toucher, in_tool, direction, distance);
+    const glm::dvec3 inward = way_into_body(field, toucher.tool, rest_place);
+    const glm::dvec3 direction = glm::conjugate(toucher.in_body.rotation) * inward;
+    pushed += inward * way_out(field.world, toucher, in_tool, direction, distance);
   }
   return pushed;
 }

@@ -1,6 +1,7 @@
 // Times of the beam skeleton and of the surface field on a cube with one contact region.
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -88,7 +89,32 @@ void surface_field_of_one_region(benchmark::State& state) {
     benchmark::ClobberMemory();
   }
 }
-BENCHMARK(surface_field_of_one_region)->Arg(1000)->Arg(100000)->Unit(benchmark::kMillisecond);
+BENCHMARK(surface_field_of_one_region)
+    ->Arg(1000)
+    ->Arg(10000)
+    ->Arg(100000)
+    ->Unit(benchmark::kMillisecond);
+
+/// Nine more regions on the top of the same cube.
+void surface_field_of_ten_regions(benchmark::State& state) {
+  Frame drawn(state.range(0));
+  for (int i = 1; i < 10; ++i) {
+    const double angle = 0.7 * i;
+    const std::uint32_t region =
+        add_region(drawn.world, {.point = {0.03 * std::cos(angle), 0.05, 0.03 * std::sin(angle)},
+                                 .force_on_body = {0.0, -1.0, 0.0},
+                                 .radius = 0.005,
+                                 .depth = 0.0005});
+    drawn.world.regions.at<RegionMotion>(region) = drawn.world.regions.at<RegionMotion>(0);
+    drawn.world.regions.at<RegionFriction>(region) = drawn.world.regions.at<RegionFriction>(0);
+  }
+  capture(drawn.world, drawn.snapshot);
+  for (auto _ : state) {
+    surface_field(drawn.world, drawn.snapshot, drawn.frame);
+    benchmark::ClobberMemory();
+  }
+}
+BENCHMARK(surface_field_of_ten_regions)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond);
 
 void deform_on_the_cpu(benchmark::State& state) {
   Frame drawn(state.range(0));

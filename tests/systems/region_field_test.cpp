@@ -124,7 +124,7 @@ TEST(RegionTwistTest, TorqueOfAnAxisThatMissesTheRegionTwistsBarsAsSaintVenantSa
     drawn.world.regions.at<RegionMotion>(region).axis = kUp;
     drawn.world.regions.at<RegionWrench>(region).on_tool.torque = -bar.torque * kUp;
     drawn.world.tools.at<ToolMotion>(0).axis = kUp;
-    drawn.world.tools.at<ToolMotion>(0).axis_turn = 1e6;
+    drawn.world.tools.at<ToolMotion>(0).axis_turn = 0.02;  // what is remembered of a long turn
     drawn.world.tools.at<ToolMotion>(0).mass_center = glm::dvec3(0.0, 0.3, 0.0);
     drawn.draw();
     for (std::uint32_t v = 0; v < drawn.vertices(); ++v) {
@@ -149,7 +149,7 @@ TEST(RegionTwistTest, TorqueAgainstTheAxisTurnsTheSameWayAsAlongTheFlippedAxis) 
     drawn.world.regions.at<RegionMotion>(region).axis = axis;
     drawn.world.regions.at<RegionWrench>(region).on_tool.torque = -0.1 * kUp;
     drawn.world.tools.at<ToolMotion>(0).axis = axis;
-    drawn.world.tools.at<ToolMotion>(0).axis_turn = 1.0;
+    drawn.world.tools.at<ToolMotion>(0).axis_turn = 0.02;
     drawn.draw();
     const std::uint32_t v = 4 * 21 * 21;  // a corner of the top face
     ASSERT_NEAR(drawn.rest(v).y, 0.05, 1e-9);
@@ -163,7 +163,7 @@ TEST(RegionTwistTest, SharesOfTheAxisBlendWithoutAJump) {
   Drawn drawn(exact_body(ShapeKind::kBox, glm::dvec3(0.05), FixedKind::kFace, 2));
   const std::uint32_t region = twisting_region(drawn.world, 0.3, 0.01, 0.02);
   drawn.world.regions.at<RegionWrench>(region).on_tool.torque = -0.5 * kUp;
-  drawn.world.tools.at<ToolMotion>(0).axis_turn = 1.0;
+  drawn.world.tools.at<ToolMotion>(0).axis_turn = 0.02;
   drawn.world.tools.at<ToolMotion>(0).mass_center = glm::dvec3(0.02, 0.1, 0.0);
   double before = 0.0;
   for (int i = 0; i <= 100; ++i) {

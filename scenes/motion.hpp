@@ -10,7 +10,8 @@
 
 namespace torsion {
 
-/// How the scene node `tool` moves by the animations of the file. Scaling the tool is a problem.
+/// How the scene node `tool` moves by the animations of the file. Scaling the tool is a problem,
+/// and so is turning it below a scale that differs along x, y, z: a rigid tool keeps its shape.
 MotionScript read_motion(const tinygltf::Model& model, const std::vector<SceneNode>& nodes,
                          std::size_t tool, const ProblemList& problems);
 

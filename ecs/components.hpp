@@ -231,8 +231,9 @@ struct RegionFrame {
   glm::dvec2 half_size{0.0};            // m: the grid covers origin +- half_size
 };
 
-/// Where the grid was when the tractions were last carried over to it; half_size 0 before the first
-/// time. Written by: carry_tractions.
+/// Where the tractions are: the grid as it was when they were last carried over to it, moved since
+/// with the material where that sticks; half_size 0 before the first time. Written by:
+/// group_regions and carry_tractions.
 struct TractionFrame {
   RegionFrame frame;
 };
@@ -272,6 +273,7 @@ struct RegionFriction {
   double kinetic_share = 0.0;  // 0: threshold mu_s and elastic traction; 1: mu_d along the slip
   double stick_radius = 0.0;   // m: r_m, at most a
   double stick_turn = 0.0;     // rad: phi at r_m that the body's surface follows (phi_m)
+  double stick_share = 0.0;    // of the area that sticks: there the body moves with the tool
 };
 
 /// Written by: region_wrenches.

@@ -103,6 +103,31 @@ void turn_to(RegionFrame& frame, const glm::dvec3& normal) {
   frame.tangent_y = glm::cross(normal, frame.tangent_x);
 }
 
+void turn_about_normal(RegionFrame& frame, double angle) {
+  const glm::dvec3 x = frame.tangent_x;
+  const glm::dvec3 y = frame.tangent_y;
+  frame.tangent_x = std::cos(angle) * x + std::sin(angle) * y;
+  frame.tangent_y = std::cos(angle) * y - std::sin(angle) * x;
+}
+
+/// Where the contact sticks, the material went along with the tool in the last step: the grid turns
+/// with it, and the place of the tractions moves with it. Without this a long contact that sticks
+/// and turns would seem to leave the area that it holds, for contact is found against the rest
+/// shape.
+void follow_material(World& world, std::uint32_t region) {
+  RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  RegionFrame& tractions = world.regions.at<TractionFrame>(region).frame;
+  const RegionMotion& motion = world.regions.at<RegionMotion>(region);
+  const double share = world.regions.at<RegionFriction>(region).stick_share;
+  const double angle = share * motion.spin;
+  const glm::dvec3 pivot = grid_to_body(frame, {motion.pivot, 0.0});
+  const glm::dvec3 slide = tangent_to_body(frame, share * motion.slide);
+  const glm::dvec3 arm = tractions.origin - pivot;
+  tractions.origin += slide + std::sin(angle) * glm::cross(frame.normal, arm);
+  turn_about_normal(tractions, angle);
+  turn_about_normal(frame, angle);
+}
+
 /// True when the contact reaches the grid's edge, so that some of it may lie outside.
 bool reaches_edge(const Grid& grid, const PlaneBox& box) {
   const glm::dvec2 inner = grid.frame.half_size - cell_half_size(grid);
@@ -243,6 +268,7 @@ void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoin
 void follow_contact(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const Grid grid = grid_of(context, region);
   contact_of(context, grid.identity) = contact;
+  follow_material(context.world, region);
   PlaneBox box = covered_box(grid, covered_cells(grid));
   include_points(grid, contact, box);
   if (!box.empty()) {

@@ -270,6 +270,7 @@ void paper_friction_forces(StepContext& context) {
     friction.force = sums.force;
     // An axis that misses the region leaves T = r x F alone (1).
     friction.couple = motion.axis_share * sums.couple;
+    friction.stick_share = sums.area > 0.0 ? sums.stuck_area / sums.area : 0.0;
     friction.kinetic_share = next_kinetic_share(brush, sums, motion.axis_share);
     set_stick_radius(brush, sums, world.regions.at<RegionGeometry>(region), motion, friction);
   }

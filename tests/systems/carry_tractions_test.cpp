@@ -86,5 +86,30 @@ TEST(CarryTractionsTest, SlidingContactIsAtItsLimitAgainstTheMotion) {
   EXPECT_LT(std::abs(hand.wrench().force.z), 0.01 * limit);
 }
 
+TEST(CarryTractionsTest, LongContactThatSticksTurnsWithItsMaterial) {
+  // A lying capsule on a slab with so much friction that nothing slips. The patch is twice as long
+  // as wide; on a body that is flat and held by a face it stays so, and tau = G r phi / l is linear
+  // in phi: ten times the turn is ten times the torque. Were the patch to wander over its material,
+  // it would lose what its ends hold.
+  SceneDescription scene;
+  scene.bodies.push_back(
+      test::make_body({test::make_part(ShapeKind::kBox, {0.15, 0.05, 0.15},
+                                       {glm::dvec3(0.0, -0.05, 0.0), glm::dquat(1, 0, 0, 0)})}));
+  scene.bodies[0].fixed = {FixedKind::kFace, 0, {0.0, -0.1, 0.0}, {0.0, 1.0, 0.0}, {}};
+  scene.bodies[0].friction = {50.0, 50.0};
+  const glm::dquat lying = glm::angleAxis(0.5 * std::numbers::pi, glm::dvec3(0.0, 0.0, 1.0));
+  scene.tools.push_back(test::make_tool({test::make_part(ShapeKind::kCapsule, {0.02, 0.025, 0.02},
+                                                         {glm::dvec3(0.0, 0.02, 0.0), lying})}));
+  Hand hand(scene);
+  hand.step_to({{glm::dvec3(0.0, 1e-4, 0.0), glm::dquat(1.0, 0.0, 0.0, 0.0)}});
+  hand.move(glm::dvec3(0.0, -1e-4 - kDeep, 0.0), kUp, 0.0, 200);
+  const double sixth = 0.1047;  // rad, 6 degrees
+  hand.move(glm::dvec3(0.0), kUp, sixth, 100);
+  const double first = hand.wrench().torque.y;
+  hand.move(glm::dvec3(0.0), kUp, 9.0 * sixth, 900);
+  EXPECT_LT(first, 0.0);
+  EXPECT_NEAR(hand.wrench().torque.y, 10.0 * first, 0.02 * std::abs(10.0 * first));
+}
+
 }  // namespace
 }  // namespace torsion

@@ -47,6 +47,19 @@ double reach_of(const Grid& grid) {
   return glm::length(grid.frame.half_size) + deepest;
 }
 
+/// Cells that found nothing of the tool near the rest surface look again from below: where they are
+/// now may be above the tool, and from there no step leads to its underside.
+void return_from_above(const Grid& grid) {
+  const double size = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
+  double lowest = 0.0;
+  for (const CellGeometry& cell : grid.cells) {
+    lowest = std::min(lowest, cell.height);
+  }
+  for (CellGeometry& cell : grid.cells) {
+    cell.height = cell.height < 0.5 * size ? cell.height : lowest;
+  }
+}
+
 /// Newton's method along the normal from every cell to the tool's underside. Leaves in scratch the
 /// distances at the last heights but one; the gradient there is the surface's normal.
 void find_tool_surface(const Grid& grid, const ToolGrid& axes) {
@@ -202,6 +215,7 @@ CellBits covered_cells(const Grid& grid) {
 
 CellBits find_cells(const Grid& grid, const RegionPoints& contact) {
   const ToolGrid axes = grid_in_tool(grid);
+  return_from_above(grid);
   find_tool_surface(grid, axes);
   find_depths(grid, axes);
   return keep_own_cells(grid, contact);

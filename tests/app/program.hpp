@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace torsion::test {
+
+/// What a run of the program torsion left.
+struct Ran {
+  int exit_code = -1;  // minus the signal's number when it was killed
+  std::string out;
+  std::string err;
+};
+
+/// Runs the built program with these words.
+Ran run_torsion(const std::vector<std::string>& words);
+
+/// A shipped scene.
+std::string scene(const std::string& name);
+
+/// An empty folder that goes with the object.
+class Folder {
+ public:
+  Folder();
+  ~Folder();
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  Folder(Folder&&) = delete;
+  Folder& operator=(Folder&&) = delete;
+  [[nodiscard]] std::string operator/(const std::string& name) const {
+    return (path_ / name).string();
+  }
+  [[nodiscard]] bool empty() const { return std::filesystem::is_empty(path_); }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string read_text(const std::string& path);
+void write_text(const std::string& path, const std::string& text);
+
+}  // namespace torsion::test

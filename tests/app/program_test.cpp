@@ -1,0 +1,154 @@
+#include "tests/app/program.hpp"
+
+#include <cmath>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace torsion {
+namespace {
+
+using nlohmann::json;
+using test::Folder;
+using test::Ran;
+using test::read_text;
+using test::run_torsion;
+using test::scene;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+std::vector<std::string> fields_of(const std::string& line) {
+  std::vector<std::string> fields;
+  std::istringstream stream(line);
+  for (std::string field; std::getline(stream, field, ',');) {
+    fields.push_back(field);
+  }
+  return fields;
+}
+
+TEST(SimulateTest, TraceHasTheColumnsOfTheGuideAndARowAStep) {
+  const Folder folder;
+  const std::string trace = folder / "t.csv";
+  const Ran ran =
+      run_torsion({"simulate", scene("ball_on_cube"), "--trace", trace, "--seconds", "1.5"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const std::vector<std::string> lines = lines_of(read_text(trace));
+  ASSERT_EQ(lines.size(), 1501U);
+  EXPECT_EQ(lines[0],
+            "time_s,tool_x_m,tool_y_m,tool_z_m,tool_qx,tool_qy,tool_qz,tool_qw,regions,cells,"
+            "force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,stick_fraction,"
+            "energy_J,step_us");
+  const std::vector<std::string> first = fields_of(lines[1]);
+  const std::vector<std::string> last = fields_of(lines.back());
+  ASSERT_EQ(last.size(), 19U);
+  EXPECT_EQ(first[0], "0");
+  EXPECT_EQ(first[8], "0");  // it starts clear of the body
+  EXPECT_EQ(last[0], "1.499");
+  EXPECT_EQ(last[8], "1");
+  EXPECT_GT(std::stod(last[11]), 1.0);   // pressed: the cube pushes up
+  EXPECT_GT(std::stod(last[14]), 0.01);  // turned clockwise: it resists the other way
+}
+
+TEST(SimulateTest, TwoRunsAgreeToTheBitButForTheTimes) {
+  const Folder folder;
+  for (const std::string name : {"a.csv", "b.csv"}) {
+    ASSERT_EQ(run_torsion({"simulate", scene("compass_on_ellipsoid"), "--trace", folder / name,
+                           "--seconds", "1.2"})
+                  .exit_code,
+              0);
+  }
+  const auto without_times = [&](const std::string& name) {
+    std::string text;
+    for (const std::string& line : lines_of(read_text(folder / name))) {
+      text += line.substr(0, line.rfind(',')) + "\n";
+    }
+    return text;
+  };
+  EXPECT_EQ(without_times("a.csv"), without_times("b.csv"));
+}
+
+TEST(SimulateTest, JsonSummaryGivesTheRun) {
+  const Ran ran = run_torsion({"simulate", scene("many_regions"), "--seconds", "1", "--json"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const json summary = json::parse(ran.out);
+  EXPECT_EQ(summary["steps"], 1000);
+  EXPECT_EQ(summary["most_regions"], 10);
+  EXPECT_TRUE(summary["faults"].empty());
+}
+
+TEST(SimulateTest, RealtimeRunsOnTheClock) {
+  const Ran ran =
+      run_torsion({"simulate", scene("ball_on_cube"), "--realtime", "--seconds", "0.5", "--json"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const json summary = json::parse(ran.out);
+  // 500 periods of 1 ms cannot be over early; late they may be on a busy machine.
+  EXPECT_GE(summary["wall_s"].get<double>(), 0.498);
+  EXPECT_LE(summary["rate_Hz"].get<double>(), 1005.0);
+  EXPECT_TRUE(summary.contains("missed_deadlines"));
+}
+
+TEST(SimulateTest, SeveralToolsWouldHaveColumnsOfTheirOwnAndBodiesShareOneTool) {
+  const Folder folder;
+  ASSERT_EQ(run_torsion(
+                {"simulate", scene("two_bodies"), "--trace", folder / "t.csv", "--seconds", "1.5"})
+                .exit_code,
+            0);
+  const auto last = fields_of(lines_of(read_text(folder / "t.csv")).back());
+  EXPECT_EQ(last[8], "2");
+}
+
+TEST(CheckTest, SaysWhatRunsAndWhatStaysOff) {
+  const Ran ran = run_torsion({"check", scene("ball_on_cube"), "--body-model", "none"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_NE(ran.out.find("no problems"), std::string::npos);
+  EXPECT_NE(ran.out.find("on   detect_contacts"), std::string::npos);
+  EXPECT_NE(ran.out.find("off  skeleton"), std::string::npos);
+}
+
+TEST(ExportTest, WritesTheTwistAndTheRestShape) {
+  const Folder folder;
+  const std::string out = folder / "d.gltf";
+  const Ran ran = run_torsion({"export", scene("ball_on_cube_soft"), "--at", "2.0", "--out", out});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const json gltf = json::parse(read_text(out));
+  const json& attributes = gltf["meshes"][0]["primitives"][0]["attributes"];
+  EXPECT_TRUE(attributes.contains("_TWIST_ANGLE"));
+  EXPECT_TRUE(attributes.contains("_REST_POSITION"));
+  const json& moved = gltf["accessors"][attributes["POSITION"].get<std::size_t>()];
+  // The cube was 0.1 m high about its centre; the ball is 10 mm into its top.
+  EXPECT_LT(moved["max"][1].get<double>(), 0.051);
+  EXPECT_EQ(gltf["nodes"].size(), 2U);
+}
+
+#ifdef TORSION_WITH_RENDER
+TEST(RenderTest, DrawsOneMomentAFolderAndAVideo) {
+  const Folder folder;
+  const std::vector<std::string> small = {"--size", "320x180", "--quiet"};
+  const auto render = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"render", scene("ball_on_cube_soft")});
+    words.insert(words.end(), small.begin(), small.end());
+    return run_torsion(words);
+  };
+  const Ran one = render({"--at", "1.5", "--out", folder / "one.png"});
+  EXPECT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_EQ(read_text(folder / "one.png").substr(1, 3), "PNG");
+  const Ran many = render({"--fps", "4", "--seconds", "1", "--out", folder / "many"});
+  EXPECT_EQ(many.exit_code, 0) << many.err;
+  EXPECT_EQ(read_text(folder / "many/0003.png").substr(1, 3), "PNG");
+  EXPECT_FALSE(std::filesystem::exists(folder / "many/0004.png"));
+  const Ran video = render({"--fps", "10", "--seconds", "1", "--out", folder / "v.mp4"});
+  EXPECT_EQ(video.exit_code, 0) << video.err;
+  EXPECT_EQ(read_text(folder / "v.mp4").substr(4, 4), "ftyp");
+}
+#endif
+
+}  // namespace
+}  // namespace torsion

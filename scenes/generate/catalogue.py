@@ -35,7 +35,7 @@ def part(gltf, tool, name, mesh, shape, translation, rotation=(0.0, 0.0, 0.0, 1.
 
 def ball_on_cube(name, material, depth, degrees):
     radius = 0.03
-    gltf = start("ball_on_cube.bin", (0.17, 0.24, 0.27), (0.0, 0.07, 0.0))
+    gltf = start("ball_on_cube.bin", (0.195, 0.275, 0.31), (0.0, 0.066, 0.0))
     body(gltf, "cube", shapes.box((0.05, 0.05, 0.05), 34), (0.0, 0.05, 0.0), "box", material)
     top = (0.0, 0.1 + radius, 0.0)
     ball = gltf.node("ball", mesh=gltf.mesh("ball", shapes.grooved_ball(radius, 64),

@@ -65,6 +65,13 @@ FixedVolume volume_of(const FixedNode& node) {
   return volume;
 }
 
+/// False where the image of the unit box is flat, however small the box may be.
+bool has_extent(const glm::dmat3& axes) {
+  const glm::dvec3 lengths(glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2]));
+  return std::min({lengths.x, lengths.y, lengths.z}) > 1e-9 &&
+         std::abs(glm::determinant(axes)) > 1e-6 * lengths.x * lengths.y * lengths.z;
+}
+
 bool holds(const FixedVolume& volume, const glm::dvec3& point) {
   const glm::dvec3 unit = volume.to_unit * (point - volume.center);
   return volume.kind == VolumeKind::kSphere
@@ -130,7 +137,7 @@ void fix_by_nodes(std::span<const FixedNode> nodes, const std::string& where, Bo
   const FixedNode* point = nullptr;
   for (const FixedNode& node : nodes) {
     if (node.role != Role::kFixedPoint) {
-      if (!(std::abs(glm::determinant(glm::dmat3(node.to_body))) > 1e-18)) {
+      if (!has_extent(glm::dmat3(node.to_body))) {
         problems.add(node.where, "scale", "", "has no extent along one axis", "scale it up");
         return;
       }

@@ -44,7 +44,7 @@ TEST(ExtrasTest, WholeNumbersAreNumbers) {
 
 TEST(ExtrasTest, KeysOfOthersAreLeftAlone) {
   Keys read;
-  read.keys.add(one("my_torsion_density", tinygltf::Value("x")), "n", read.problems);
+  read.keys.add(one("my_torsion_density", tinygltf::Value(std::string("x"))), "n", read.problems);
   read.keys.add(tinygltf::Value(3.0), "n", read.problems);
   EXPECT_TRUE(read.found.empty());
 }

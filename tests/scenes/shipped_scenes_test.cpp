@@ -1,0 +1,68 @@
+// Every scene that ships loads without a problem, is prepared, and steps.
+
+#include <algorithm>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "device/scripted_motion.hpp"
+#include "scenes/load_gltf.hpp"
+#include "systems/step.hpp"
+
+namespace torsion::test {
+namespace {
+
+std::vector<std::string> shipped_scenes() {
+  std::vector<std::string> names;
+  const std::filesystem::path folder = std::filesystem::path(TORSION_SOURCE_DIR) / "scenes";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension == ".gltf" || extension == ".glb") {
+      names.push_back(entry.path().filename().string());
+    }
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+TEST(ShippedScenesTest, AllThatTheDesignNamesAreThere) {
+  const std::vector<std::string> names = shipped_scenes();
+  for (const char* name :
+       {"ball_on_cube.gltf", "ball_on_cube_soft.gltf", "compass_on_ellipsoid.gltf",
+        "compass_on_ellipsoid_soft.gltf", "many_regions.gltf", "mallet_on_ellipsoid.gltf",
+        "mallet_on_ellipsoid_soft.gltf", "two_bodies.gltf"}) {
+    EXPECT_TRUE(std::ranges::find(names, name) != names.end()) << name;
+  }
+}
+
+class ShippedSceneTest : public testing::TestWithParam<std::string> {};
+
+TEST_P(ShippedSceneTest, LoadsPreparesAndSteps) {
+  const auto path = std::filesystem::path(TORSION_SOURCE_DIR) / "scenes" / GetParam();
+  const LoadedScene loaded = load_gltf(path);
+  ASSERT_TRUE(loaded.scene.has_value()) << to_text(loaded.problems);
+  EXPECT_GT(loaded.scene->duration, 0.0);
+  PrepareOptions options;
+  options.use_cache = false;
+  Result<Simulation> prepared = prepare(*loaded.scene, options);
+  ASSERT_TRUE(prepared.ok()) << prepared.error().text;
+  Simulation& simulation = prepared.value();
+  std::vector<Pose> poses(loaded.scene->tools.size());
+  for (int i = 0; i < 10; ++i) {
+    for (std::size_t tool = 0; tool < poses.size(); ++tool) {
+      poses[tool] = scripted_pose(loaded.scene->tools[tool].script, 1e-3 * i);
+    }
+    step(simulation, poses);
+  }
+  const Clock& clock = simulation.world.clock.at<Clock>(0);
+  EXPECT_EQ(clock.step, 10U);
+  EXPECT_EQ(clock.faults_ever, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, ShippedSceneTest, testing::ValuesIn(shipped_scenes()),
+                         [](const testing::TestParamInfo<std::string>& scene) {
+                           return scene.param.substr(0, scene.param.find('.'));
+                         });
+
+}  // namespace
+}  // namespace torsion::test

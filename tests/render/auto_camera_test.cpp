@@ -1,0 +1,42 @@
+#include "render/auto_camera.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/render/render_scenes.hpp"
+
+namespace torsion {
+namespace {
+
+TEST(AutoCameraTest, EveryVertexIsInThePicture) {
+  const FrameWorld frame =
+      make_frame_world({{box_mesh({0.5F, 0.1F, 0.2F}, 2), {glm::dvec3(3.0, 0.0, 0.0), {}}, {}}},
+                       {{sphere_mesh(0.3F, 4), {glm::dvec3(3.2, 0.5, 0.1), {}}, {}}});
+  for (const double aspect : {16.0 / 9.0, 1.0, 0.5}) {
+    const Camera camera = auto_camera(frame, aspect);
+    const glm::dmat4 to_clip = projection_matrix(camera, aspect) * view_matrix(camera);
+    for (const VertexRest& vertex : frame.body_vertices.column<VertexRest>()) {
+      const glm::dvec3 world = glm::dvec3(glm::vec3(vertex.position)) + glm::dvec3(3.0, 0.0, 0.0);
+      const glm::dvec4 clip = to_clip * glm::dvec4(world, 1.0);
+      EXPECT_LT(std::abs(clip.x), clip.w);
+      EXPECT_LT(std::abs(clip.y), clip.w);
+      EXPECT_GT(clip.z, 0.0);
+      EXPECT_LT(clip.z, clip.w);
+    }
+  }
+}
+
+TEST(AutoCameraTest, LooksDownOnTheScene) {
+  const FrameWorld frame = make_frame_world({{box_mesh(glm::vec3(1.0F), 1), {}, {}}}, {});
+  const Camera camera = auto_camera(frame, 1.5);
+  EXPECT_GT(camera.pose.position.y, 1.0);
+  const glm::dvec3 up = camera.pose.rotation * glm::dvec3(0.0, 1.0, 0.0);
+  EXPECT_GT(up.y, 0.5);
+}
+
+TEST(AutoCameraTest, AnEmptySceneGivesACamera) {
+  const Camera camera = auto_camera(make_frame_world({}, {}), 1.5);
+  EXPECT_GT(camera.far_plane, camera.near_plane);
+}
+
+}  // namespace
+}  // namespace torsion

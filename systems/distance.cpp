@@ -119,6 +119,50 @@ void nearer_of_part(const World& world, const ShapePart& part, bool first_part,
   });
 }
 
+/// Points of another frame to the part's, as x_part = turn x + shift.
+struct ColumnPlacement {
+  glm::dmat3 turn;
+  glm::dvec3 shift;  // m
+};
+
+ColumnPlacement column_placement(const Pose& part, const Pose& frame) {
+  const glm::dquat to_part = glm::conjugate(part.rotation);
+  return {glm::mat3_cast(to_part * frame.rotation), to_part * (frame.position - part.position)};
+}
+
+void load_columns(const ColumnPlacement& placement, const DistanceColumns& columns,
+                  std::size_t first, std::size_t count, Block& block) {
+  const glm::dmat3& r = placement.turn;
+  const glm::dvec3& shift = placement.shift;
+  const double* x = columns.x.data() + first;
+  const double* y = columns.y.data() + first;
+  const double* z = columns.z.data() + first;
+  for (std::size_t i = 0; i < count; ++i) {
+    block.x[i] = r[0].x * x[i] + r[1].x * y[i] + r[2].x * z[i] + shift.x;
+    block.y[i] = r[0].y * x[i] + r[1].y * y[i] + r[2].y * z[i] + shift.y;
+    block.z[i] = r[0].z * x[i] + r[1].z * y[i] + r[2].z * z[i] + shift.z;
+  }
+}
+
+/// Turns gradients back into the columns' frame and stores what is nearer than what is there.
+void store_columns(const ColumnPlacement& placement, const Block& block, bool first_part,
+                   std::size_t first, std::size_t count, const DistanceColumns& columns) {
+  const glm::dmat3& r = placement.turn;
+  double* value = columns.value.data() + first;
+  double* gx = columns.gradient_x.data() + first;
+  double* gy = columns.gradient_y.data() + first;
+  double* gz = columns.gradient_z.data() + first;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!first_part && !(block.value[i] < value[i])) {
+      continue;
+    }
+    value[i] = block.value[i];
+    gx[i] = r[0].x * block.x[i] + r[0].y * block.y[i] + r[0].z * block.z[i];
+    gy[i] = r[1].x * block.x[i] + r[1].y * block.y[i] + r[1].z * block.z[i];
+    gz[i] = r[2].x * block.x[i] + r[2].y * block.y[i] + r[2].z * block.z[i];
+  }
+}
+
 }  // namespace
 
 Distance signed_distance(const World& world, Range parts, const glm::dvec3& point) {
@@ -179,6 +223,28 @@ void signed_distances(const World& world, Range parts, std::span<const glm::dvec
   }
   for (std::uint32_t row = parts.first; row < parts.first + parts.count; ++row) {
     nearer_of_part(world, world.parts.at<ShapePart>(row), row == parts.first, points, distances);
+  }
+}
+
+void signed_distances(const World& world, std::span<const std::uint32_t> rows, const Pose& frame,
+                      const DistanceColumns& columns) {
+  const std::size_t total = columns.x.size();
+  if (rows.empty()) {
+    std::ranges::fill(columns.value, std::numeric_limits<double>::infinity());
+  }
+  Block block;
+  for (const std::uint32_t& row : rows) {
+    const ShapePart& part = world.parts.at<ShapePart>(row);
+    const bool first_part = &row == rows.data();
+    const ColumnPlacement placement = column_placement(part.pose, frame);
+    with_shape(world, part, [&](const auto& shape) {
+      for (std::size_t first = 0; first < total; first += kBlock) {
+        const std::size_t count = std::min(kBlock, total - first);
+        load_columns(placement, columns, first, count, block);
+        evaluate_block(shape, block, count);
+        store_columns(placement, block, first_part, first, count, columns);
+      }
+    });
   }
 }
 

@@ -35,4 +35,17 @@ void signed_distances(const World& world, std::span<const std::uint32_t> rows,
 void signed_distances(const World& world, Range parts, std::span<const glm::dvec3> points,
                       std::span<Distance> distances);
 
+/// Columns of one length: points, and what is found there.
+struct DistanceColumns {
+  std::span<double> x, y, z;                             // m
+  std::span<double> value;                               // m
+  std::span<double> gradient_x, gradient_y, gradient_z;  // unit
+};
+
+/// The same for columns in another frame: a step's hot loop.
+/// @param frame    the frame of points and gradients, in the owner's
+/// @param columns  in: x, y, z; out: the rest
+void signed_distances(const World& world, std::span<const std::uint32_t> rows, const Pose& frame,
+                      const DistanceColumns& columns);
+
 }  // namespace torsion

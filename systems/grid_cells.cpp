@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "systems/distance_shapes.hpp"
 #include "systems/frames.hpp"
 
 namespace torsion {
@@ -13,26 +14,28 @@ constexpr int kMostSurfaceSteps = 10;  // of Newton's method down to the tool's 
 constexpr double kSteepest =
     0.25;  // smallest |cosine| between a surface's normal and the grid's that is divided by
 
-/// The cells' centres at their present heights in the tool's frame, and the grid's axes there.
-struct ToolGrid {
-  glm::dvec3 origin, x, y, z;
-};
-
-ToolGrid grid_in_tool(const Grid& grid) {
-  const Pose tool_in_body = relative(grid.world.bodies.at<Pose>(grid.identity.body),
-                                     grid.world.tools.at<ToolPose>(grid.identity.tool).now);
-  const glm::dquat to_tool = glm::conjugate(tool_in_body.rotation);
-  return {to_inner(tool_in_body, grid.frame.origin), to_tool * grid.frame.tangent_x,
-          to_tool * grid.frame.tangent_y, to_tool * grid.frame.normal};
+/// The grid's frame in that of its body.
+Pose grid_in_body(const RegionFrame& frame) {
+  return {frame.origin, glm::quat_cast(glm::dmat3(frame.tangent_x, frame.tangent_y, frame.normal))};
 }
 
-void place_points(const Grid& grid, const ToolGrid& axes) {
+/// The same in that of its tool.
+Pose grid_in_tool(const Grid& grid) {
+  const Pose tool_in_body = relative(grid.world.bodies.at<Pose>(grid.identity.body),
+                                     grid.world.tools.at<ToolPose>(grid.identity.tool).now);
+  return relative(tool_in_body, grid_in_body(grid.frame));
+}
+
+/// The cells' centres as columns of points, in the grid's frame.
+void place_centers(const Grid& grid) {
+  const CellColumns& columns = grid.scratch.cell_columns;
   std::uint32_t cell = 0;
   for (std::uint32_t j = 0; j < grid.side; ++j) {
     for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
       const glm::dvec2 center = cell_center(grid.frame, grid.side, i, j);
-      grid.scratch.cell_points[cell] =
-          axes.origin + axes.x * center.x + axes.y * center.y + axes.z * grid.cells[cell].height;
+      columns.points.x[cell] = center.x;
+      columns.points.y[cell] = center.y;
+      columns.points.z[cell] = grid.cells[cell].height;
     }
   }
 }
@@ -41,8 +44,8 @@ void place_points(const Grid& grid, const ToolGrid& axes) {
 /// below the rest surface.
 double reach_of(const Grid& grid) {
   double deepest = 0.0;
-  for (const CellGeometry& cell : grid.cells) {
-    deepest = std::max(deepest, -cell.height);
+  for (const double height : grid.scratch.cell_columns.points.z) {
+    deepest = std::max(deepest, -height);
   }
   return glm::length(grid.frame.half_size) + deepest;
 }
@@ -60,72 +63,76 @@ void return_from_above(const Grid& grid) {
   }
 }
 
-/// Newton's method along the normal from every cell to the tool's underside. Leaves in scratch the
-/// distances at the last heights but one; the gradient there is the surface's normal.
-void find_tool_surface(const Grid& grid, const ToolGrid& axes) {
+/// One step of Newton's method along the normal from every cell to the tool's underside.
+/// @return the largest change of a height below the rest surface, m
+double step_to_surface(const DistanceColumns& points, double size) {
+  double farthest = 0.0;
+  for (std::size_t cell = 0; cell < points.z.size(); ++cell) {
+    const double slope = larger(-points.gradient_z[cell], kSteepest);
+    const double change = points.value[cell] / slope;
+    // Above the rest surface there is no contact, however far away the tool is.
+    const double height = points.z[cell] + change;
+    points.z[cell] = height < size ? height : size;
+    farthest = larger(farthest, height < 0.0 ? std::abs(change) : 0.0);
+  }
+  return farthest;
+}
+
+/// Puts the cells' heights on the tool's underside. Leaves the tool's normals of the last step but
+/// one in the columns.
+void find_tool_surface(const Grid& grid) {
+  const CellColumns& columns = grid.scratch.cell_columns;
   const double size = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
+  const Pose frame = grid_in_tool(grid);
   const auto parts =
-      parts_near(grid.world, grid.world.tools.at<OwnedRows>(grid.identity.tool).parts, axes.origin,
-                 reach_of(grid), grid.scratch.near_parts);
+      parts_near(grid.world, grid.world.tools.at<OwnedRows>(grid.identity.tool).parts,
+                 frame.position, reach_of(grid), grid.scratch.near_parts);
   const double close_enough = 0.02 * size / static_cast<double>(grid.side);
   for (int step = 0; step < kMostSurfaceSteps; ++step) {
-    place_points(grid, axes);
-    signed_distances(grid.world, parts, grid.scratch.cell_points, grid.scratch.cell_distances);
-    double farthest = 0.0;
-    for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
-      const Distance& distance = grid.scratch.cell_distances[cell];
-      const double slope = std::max(-glm::dot(distance.gradient, axes.z), kSteepest);
-      double& height = grid.cells[cell].height;
-      const double change = distance.value / slope;
-      // Above the rest surface there is no contact, however far away the tool is.
-      height = std::min(height + change, size);
-      farthest = std::max(farthest, height < 0.0 ? std::abs(change) : 0.0);
-    }
-    if (farthest < close_enough) {
+    signed_distances(grid.world, parts, frame, columns.points);
+    if (step_to_surface(columns.points, size) < close_enough) {
       break;
     }
   }
+  std::ranges::copy(columns.points.gradient_x, columns.tool_x.begin());
+  std::ranges::copy(columns.points.gradient_y, columns.tool_y.begin());
+  std::ranges::copy(columns.points.gradient_z, columns.tool_z.begin());
 }
 
-/// Depth under the body's rest surface and covered share of each cell, from the surfaces'
+/// Depth under the body's rest surface, and how much it changes across the cell, from the surfaces'
 /// first-order shape there.
-void find_depths(const Grid& grid, const ToolGrid& axes) {
-  Scratch& scratch = grid.scratch;
-  const RegionFrame& frame = grid.frame;
-  for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
-    const glm::dvec3& gradient = scratch.cell_distances[cell].gradient;
-    scratch.cell_normals[cell] = {glm::dot(gradient, axes.x), glm::dot(gradient, axes.y),
-                                  glm::dot(gradient, axes.z)};
-  }
-  std::uint32_t cell = 0;
-  for (std::uint32_t j = 0; j < grid.side; ++j) {
-    for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
-      scratch.cell_points[cell] = grid_to_body(
-          frame, glm::dvec3(cell_center(frame, grid.side, i, j), grid.cells[cell].height));
-    }
-  }
+void find_depths(const Grid& grid) {
+  const CellColumns& columns = grid.scratch.cell_columns;
+  const DistanceColumns& points = columns.points;
   const auto parts =
       parts_near(grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts,
-                 frame.origin, reach_of(grid), scratch.near_parts);
-  signed_distances(grid.world, parts, scratch.cell_points, scratch.cell_distances);
+                 grid.frame.origin, reach_of(grid), grid.scratch.near_parts);
+  signed_distances(grid.world, parts, grid_in_body(grid.frame), points);
   const glm::dvec2 half = cell_half_size(grid);
-  for (cell = 0; cell < grid.cells.size(); ++cell) {
-    const Distance& body = scratch.cell_distances[cell];
-    const glm::dvec3 body_normal = body_to_grid_direction(frame, body.gradient);
-    const glm::dvec3& tool_normal = scratch.cell_normals[cell];
-    const double over_body_slope = 1.0 / std::max(body_normal.z, kSteepest);
-    const double over_tool_slope = 1.0 / std::max(-tool_normal.z, kSteepest);
+  for (std::size_t cell = 0; cell < points.z.size(); ++cell) {
+    const double over_body_slope = 1.0 / larger(points.gradient_z[cell], kSteepest);
+    const double over_tool_slope = 1.0 / larger(-columns.tool_z[cell], kSteepest);
+    columns.depth[cell] = -points.value[cell] * over_body_slope;
+    const double change_x =
+        columns.tool_x[cell] * over_tool_slope + points.gradient_x[cell] * over_body_slope;
+    const double change_y =
+        columns.tool_y[cell] * over_tool_slope + points.gradient_y[cell] * over_body_slope;
+    columns.depth_change[cell] =
+        2.0 * (std::abs(change_x) * half.x + std::abs(change_y) * half.y) + 1e-30;
+  }
+}
+
+/// The share of each cell with depth > 0, to first order.
+void find_coverage(const Grid& grid) {
+  const CellColumns& columns = grid.scratch.cell_columns;
+  for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
+    const double depth = columns.depth[cell];
+    const double across = columns.depth_change[cell];
     CellGeometry& geometry = grid.cells[cell];
-    geometry.depth = -body.value * over_body_slope;
-    // How much the depth changes across the cell: the share of the cell with depth > 0, to first
-    // order.
-    const double change_x = tool_normal.x * over_tool_slope + body_normal.x * over_body_slope;
-    const double change_y = tool_normal.y * over_tool_slope + body_normal.y * over_body_slope;
-    const double across = 2.0 * (std::abs(change_x) * half.x + std::abs(change_y) * half.y) + 1e-30;
-    scratch.cell_depth_changes[cell] = across;
-    geometry.coverage = 2.0 * std::abs(geometry.depth) >= across
-                            ? (geometry.depth > 0.0 ? 1.0 : 0.0)
-                            : 0.5 + geometry.depth / across;
+    geometry.height = columns.points.z[cell];
+    geometry.depth = depth;
+    geometry.coverage =
+        2.0 * std::abs(depth) >= across ? (depth > 0.0 ? 1.0 : 0.0) : 0.5 + depth / across;
   }
 }
 
@@ -214,10 +221,11 @@ CellBits covered_cells(const Grid& grid) {
 }
 
 CellBits find_cells(const Grid& grid, const RegionPoints& contact) {
-  const ToolGrid axes = grid_in_tool(grid);
   return_from_above(grid);
-  find_tool_surface(grid, axes);
-  find_depths(grid, axes);
+  place_centers(grid);
+  find_tool_surface(grid);
+  find_depths(grid);
+  find_coverage(grid);
   return keep_own_cells(grid, contact);
 }
 

@@ -47,9 +47,8 @@ CellBits covered_cells(const Grid& grid);
 
 /// Finds, for every cell of the grid, the tool's surface along the normal, how deep it lies under
 /// the body's rest surface, and the share of the cell that is in contact. Cells that are not joined
-/// to the region's own contact points belong to a neighbour and get coverage 0. Leaves the body's
-/// distances at the cells' points in Scratch::cell_distances, and how much the depth changes across
-/// each cell in Scratch::cell_depth_changes [m].
+/// to the region's own contact points belong to a neighbour and get coverage 0. Leaves in
+/// Scratch::cell_columns the body's distances at the cells' points, and the depths.
 /// @return the cells with coverage
 CellBits find_cells(const Grid& grid, const RegionPoints& contact);
 

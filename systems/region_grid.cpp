@@ -183,6 +183,7 @@ double covered_depth(const CellGeometry& cell, double change_across) {
 
 /// Area, depths, pressure centre and mean normal from the cells.
 RegionGeometry summarize(const Grid& grid) {
+  const CellColumns& columns = grid.scratch.cell_columns;
   RegionGeometry geometry;
   geometry.equivalent_point = grid.frame.origin;
   geometry.rest_point = grid.frame.origin;
@@ -200,10 +201,11 @@ RegionGeometry summarize(const Grid& grid) {
       }
       const double share = row.coverage * area;
       geometry.area += share;
-      volume += share * covered_depth(row, grid.scratch.cell_depth_changes[cell]);
+      volume += share * covered_depth(row, columns.depth_change[cell]);
       geometry.largest_depth = std::max(geometry.largest_depth, row.depth);
       first_moment += share * glm::dvec3(cell_center(grid.frame, grid.side, i, j), row.height);
-      normal += share * grid.scratch.cell_distances[cell].gradient;
+      normal += share * glm::dvec3(columns.points.gradient_x[cell], columns.points.gradient_y[cell],
+                                   columns.points.gradient_z[cell]);
     }
   }
   if (geometry.area > 0.0) {
@@ -213,7 +215,8 @@ RegionGeometry summarize(const Grid& grid) {
     geometry.radius = std::sqrt(geometry.area / std::numbers::pi);
   }
   if (glm::length(normal) > 0.1 * geometry.area && geometry.area > 0.0) {
-    geometry.mean_normal = glm::normalize(normal);
+    geometry.mean_normal = glm::normalize(tangent_to_body(grid.frame, glm::dvec2(normal)) +
+                                          grid.frame.normal * normal.z);
   }
   return geometry;
 }

@@ -21,10 +21,18 @@ void Scratch::reserve(const World& world) {
   region_commands.reserve(world.regions.capacity());
   region_points.assign(world.regions.capacity(), RegionPoints{});
   const std::size_t cells = std::size_t{side} * side;
-  cell_points.assign(cells, glm::dvec3(0.0));
-  cell_distances.assign(cells, Distance{});
-  cell_normals.assign(cells, glm::dvec3(0.0));
-  cell_depth_changes.assign(cells, 0.0);
+  column_memory.assign(12 * cells, 0.0);
+  std::size_t next = 0;
+  const auto column = [&] {
+    return std::span<double>(column_memory).subspan(cells * next++, cells);
+  };
+  DistanceColumns& found = cell_columns.points;
+  for (std::span<double>* each :
+       {&found.x, &found.y, &found.z, &found.value, &found.gradient_x, &found.gradient_y,
+        &found.gradient_z, &cell_columns.tool_x, &cell_columns.tool_y, &cell_columns.tool_z,
+        &cell_columns.depth, &cell_columns.depth_change}) {
+    *each = column();
+  }
   carried_cells.assign(std::size_t{side + 2} * (side + 2), CarriedCell{});
   near_parts.assign(world.parts.size(), 0);
 }

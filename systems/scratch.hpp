@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -46,6 +47,14 @@ struct RegionPoints {
   std::uint32_t cluster = kNoRow;
 };
 
+/// The cells of one region as columns, in the grid's frame.
+struct CellColumns {
+  DistanceColumns points;                    // cells' centres on the tool's underside
+  std::span<double> tool_x, tool_y, tool_z;  // gradient of the distance to the tool
+  std::span<double> depth;                   // m, as in CellGeometry
+  std::span<double> depth_change;            // m, across the cell
+};
+
 /// What a place on the body carries from one grid to the next.
 struct CarriedCell {
   glm::dvec2 per_cell{0.0};    // Pa: traction times coverage
@@ -75,13 +84,11 @@ struct Scratch {
   std::vector<RegionPoints>
       region_points;  // (regions) by block of cells, which does not move when rows do
   // region_grids
-  std::vector<glm::dvec3> cell_points;   // (cells of one region)
-  std::vector<Distance> cell_distances;  // (cells of one region)
-  std::vector<glm::dvec3>
-      cell_normals;  // (cells of one region) gradient of the tool's distance, grid
-  std::vector<double> cell_depth_changes;  // (cells of one region) m, across the cell
+  CellColumns cell_columns;                // (cells of one region)
   std::vector<CarriedCell> carried_cells;  // (cells of one region and a border of one around them)
   std::vector<std::uint32_t> near_parts;   // (parts of all bodies and tools)
+
+  std::vector<double> column_memory;  // what cell_columns are in
 
   /// Takes all memory that a step of `world` can need.
   void reserve(const World& world);

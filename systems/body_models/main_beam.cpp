@@ -124,7 +124,7 @@ BeamDeflection deflect(const MainBeam& beam, const Elasticity& elasticity, const
 SectionMotion section_motion(const BeamDeflection& deflection, double along) {
   const double piece = deflection.length / kStations;
   // A piece owns its far end, so that `deflect` can ask for it before the next piece is there.
-  const double place = std::ceil(along / piece * (1.0 - 1e-12)) - 1.0;
+  const double place = along / piece * (1.0 - 1e-12);
   const auto k = static_cast<std::size_t>(std::clamp(place, 0.0, kStations - 1.0));
   const double start = piece * static_cast<double>(k);
   const double t = along - start;

@@ -1,4 +1,5 @@
-// Cost of signed distances: ns a point ("items" are points) for each kind of shape.
+// Cost of signed distances: ns a point ("items" are points) for each kind of shape, for the field
+// of a mesh, and for the exact distance to a mesh that fields are made from at load.
 
 #include <array>
 #include <cmath>
@@ -9,6 +10,10 @@
 #include <benchmark/benchmark.h>
 
 #include "systems/distance.hpp"
+#include "systems/distance_field_build.hpp"
+#include "systems/distance_mesh.hpp"
+#include "tests/systems/distance_meshes.hpp"
+#include "tests/systems/field_world.hpp"
 
 namespace torsion {
 namespace {
@@ -70,6 +75,69 @@ void single_point(benchmark::State& state, ShapeKind kind, glm::dvec3 half_exten
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
 }
 
+/// The same patch on the mesh of a ball of 8 * 4^levels triangles.
+void mesh_field(benchmark::State& state) {
+  const SurfaceMesh mesh = sphere_mesh(0.05, static_cast<std::uint32_t>(state.range(0)));
+  const World world = field_world(build_distance_field(mesh).value());
+  const std::vector<glm::dvec3> points = patch_points();
+  std::vector<Distance> distances(points.size());
+  for (auto _ : state) {
+    signed_distances(world, {0, 1}, points, distances);
+    benchmark::DoNotOptimize(distances.data());
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
+  state.counters["triangles"] = static_cast<double>(mesh.triangles.size());
+}
+
+void exact_distance_to_mesh(benchmark::State& state) {
+  const SurfaceMesh mesh = sphere_mesh(0.05, static_cast<std::uint32_t>(state.range(0)));
+  const Result<MeshDistance> distance = MeshDistance::build(mesh);
+  const std::vector<glm::dvec3> points = patch_points();
+  for (auto _ : state) {
+    for (const glm::dvec3& point : points) {
+      benchmark::DoNotOptimize(distance.value().closest(point));
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
+  state.counters["triangles"] = static_cast<double>(mesh.triangles.size());
+}
+
+void field_at_load(benchmark::State& state) {
+  const SurfaceMesh mesh = sphere_mesh(0.05, static_cast<std::uint32_t>(state.range(0)));
+  std::size_t bytes = 0;
+  for (auto _ : state) {
+    const Result<BuiltField> field = build_distance_field(mesh);
+    bytes = to_bytes(field.value()).size();
+  }
+  state.counters["triangles"] = static_cast<double>(mesh.triangles.size());
+  state.counters["MB"] = static_cast<double>(bytes) * 1e-6;
+}
+
+/// Ten balls in a row, and what is left of them when only those near the patch are asked.
+void union_of_ten(benchmark::State& state, bool near_only) {
+  std::vector<ShapePart> parts(10);
+  for (int i = 0; i < 10; ++i) {
+    ShapePart& part = parts[static_cast<std::size_t>(i)];
+    part.half_extent = glm::dvec3(0.05);
+    part.pose.position.x = 0.1 * i;
+  }
+  const World world = world_with(parts);
+  const std::vector<glm::dvec3> points = patch_points();
+  std::vector<Distance> distances(points.size());
+  std::array<std::uint32_t, 10> rows{};
+  for (auto _ : state) {
+    if (near_only) {
+      signed_distances(world, parts_near(world, {0, 10}, {0.0, 0.05, 0.0}, 0.012, rows), points,
+                       distances);
+    } else {
+      signed_distances(world, {0, 10}, points, distances);
+    }
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
+}
+
 const glm::dquat kUnturned(1.0, 0.0, 0.0, 0.0);
 const glm::dquat kTurned(0.5, 0.5, 0.5, 0.5);
 
@@ -84,6 +152,11 @@ BENCHMARK_CAPTURE(exact_shape, ellipsoid, ShapeKind::kEllipsoid, glm::dvec3(0.08
 BENCHMARK_CAPTURE(single_point, sphere, ShapeKind::kSphere, glm::dvec3(0.05));
 BENCHMARK_CAPTURE(single_point, box, ShapeKind::kBox, glm::dvec3(0.05));
 BENCHMARK_CAPTURE(single_point, ellipsoid, ShapeKind::kEllipsoid, glm::dvec3(0.08, 0.05, 0.06));
+BENCHMARK(mesh_field)->Arg(3)->Arg(7);
+BENCHMARK(exact_distance_to_mesh)->Arg(3)->Arg(7);
+BENCHMARK(field_at_load)->Arg(3)->Arg(7)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(union_of_ten, all, false);
+BENCHMARK_CAPTURE(union_of_ten, near_only, true);
 
 }  // namespace
 }  // namespace torsion

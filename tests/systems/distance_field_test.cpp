@@ -16,6 +16,7 @@
 #include "systems/distance_mesh.hpp"
 #include "systems/distance_shapes.hpp"
 #include "tests/systems/distance_meshes.hpp"
+#include "tests/systems/field_world.hpp"
 
 namespace torsion {
 namespace {
@@ -26,25 +27,10 @@ BuiltField built(const SurfaceMesh& mesh, const FieldOptions& options) {
   return std::move(result).value();
 }
 
-World world_with(const BuiltField& field) {
-  World world;
-  Capacities capacities;
-  capacities.fields = 1;
-  capacities.field_nodes = static_cast<std::uint32_t>(field.nodes.size());
-  capacities.field_bricks = static_cast<std::uint32_t>(field.bricks.size());
-  world.reserve(capacities, Settings{});
-  world.fields.at<DistanceField>(world.fields.append()->first) = field.header;
-  world.field_nodes.append(capacities.field_nodes);
-  world.field_bricks.append(capacities.field_bricks);
-  std::ranges::copy(field.nodes, world.field_nodes.column<DistanceNode>().begin());
-  std::ranges::copy(field.bricks, world.field_bricks.column<DistanceBrick>().begin());
-  return world;
-}
-
 /// A field ready to be asked.
 struct Field {
   Field(const SurfaceMesh& mesh, const FieldOptions& options)
-      : world(world_with(built(mesh, options))) {}
+      : world(field_world(built(mesh, options))) {}
   [[nodiscard]] Distance at(const glm::dvec3& p) const {
     return FieldDistance(world, 0)(p.x, p.y, p.z);
   }

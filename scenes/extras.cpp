@@ -109,13 +109,14 @@ std::string expected_of(const SceneKey& key, const tinygltf::Value& value) {
 }
 
 const SceneKey* find_key(std::string_view name) {
-  const auto found = std::ranges::find(kSceneKeys, name, &SceneKey::name);
+  const auto* const found = std::ranges::find(kSceneKeys, name, &SceneKey::name);
   return found == kSceneKeys.end() ? nullptr : &*found;
 }
 
 void add_unknown(const std::string& name, const tinygltf::Value& value, const std::string& where,
                  const ProblemList& problems) {
   std::vector<std::string_view> known;
+  known.reserve(kSceneKeys.size());
   for (const SceneKey& key : kSceneKeys) {
     known.push_back(key.name);
   }
@@ -129,7 +130,7 @@ std::string_view name_of(Role role) {
   if (role == Role::kPart) {
     return "a mesh below an elastic node or a tool";
   }
-  const auto found = std::ranges::find(kRoleNames, role, &RoleName::role);
+  const auto* const found = std::ranges::find(kRoleNames, role, &RoleName::role);
   return found == kRoleNames.end() ? "a node without a torsion_role" : found->name;
 }
 
@@ -229,7 +230,7 @@ Role role_of(const tinygltf::Value& extras) {
   if (!extras.IsObject() || !extras.Has("torsion_role") || !extras.Get("torsion_role").IsString()) {
     return Role::kNone;
   }
-  const auto found =
+  const auto* const found =
       std::ranges::find(kRoleNames, extras.Get("torsion_role").Get<std::string>(), &RoleName::name);
   return found == kRoleNames.end() ? Role::kNone : found->role;
 }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
+#include <system_error>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -23,7 +23,13 @@ struct OpenFile {
   }
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
+  OpenFile(OpenFile&&) = delete;
+  OpenFile& operator=(OpenFile&&) = delete;
 };
+
+std::string last_error() {
+  return std::error_code(errno, std::generic_category()).message();
+}
 
 Error cannot_read(const std::filesystem::path& path, const std::string& why) {
   return Error{path.string() + " cannot be read: " + why};
@@ -52,11 +58,11 @@ std::string decoded(const std::string& uri) {
 Result<std::vector<unsigned char>> read_file_bytes(const std::filesystem::path& path) {
   const OpenFile file(path);
   if (file.descriptor < 0) {
-    return cannot_read(path, std::strerror(errno));
+    return cannot_read(path, last_error());
   }
   struct stat status {};
   if (::fstat(file.descriptor, &status) != 0) {
-    return cannot_read(path, std::strerror(errno));
+    return cannot_read(path, last_error());
   }
   if (!S_ISREG(status.st_mode)) {
     return cannot_read(path, "it is not a regular file");
@@ -74,7 +80,7 @@ Result<std::vector<unsigned char>> read_file_bytes(const std::filesystem::path& 
       continue;
     }
     if (count <= 0) {
-      return cannot_read(path, count < 0 ? std::strerror(errno) : "it became shorter");
+      return cannot_read(path, count < 0 ? last_error() : "it became shorter");
     }
     done += static_cast<std::size_t>(count);
   }

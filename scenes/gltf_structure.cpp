@@ -146,8 +146,9 @@ void check_kinds(const json& document, const ProblemList& problems) {
       }
     });
   }
-  for (const auto& [owner, name] : kRequired) {
-    visit_json(document, owner, [&](const json& value, const std::string& place) {
+  for (const auto& required : kRequired) {
+    const std::string_view name = required[1];
+    visit_json(document, required[0], [&](const json& value, const std::string& place) {
       if (value.is_object() && !value.contains(name)) {
         problems.add("", place + "." + std::string(name), "", "is missing");
       }

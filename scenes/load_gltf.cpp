@@ -140,7 +140,7 @@ ToolDescription read_tool(const SceneReader& reader, std::size_t node) {
   tool.device = keys.text("torsion_device").value_or("animation");
   if (tool.device == "animation" && !moves) {
     reader.problems.add(reader.name(node), "animation", "", "is missing: the tool never moves",
-                        "animate the node, or set torsion_device to \"mouse\" or \"usb\"");
+                        R"(animate the node, or set torsion_device to "mouse" or "usb")");
   }
   const PhysicsExtension physics = read_physics_extension(reader.model, reader.file_node(node));
   tool.mass =

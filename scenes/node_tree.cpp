@@ -67,7 +67,8 @@ glm::dmat4 local_matrix(const tinygltf::Node& node) {
   if (node.matrix.size() == 16) {
     for (int column = 0; column < 4; ++column) {
       for (int row = 0; row < 4; ++row) {
-        matrix[column][row] = node.matrix[static_cast<std::size_t>(4 * column + row)];
+        matrix[column][row] =
+            node.matrix[4 * static_cast<std::size_t>(column) + static_cast<std::size_t>(row)];
       }
     }
     return matrix;
@@ -88,10 +89,10 @@ glm::dmat4 local_matrix(const tinygltf::Node& node) {
 std::vector<SceneNode> list_scene_nodes(const tinygltf::Model& model) {
   std::vector<SceneNode> nodes;
   std::vector<std::pair<std::size_t, std::size_t>> waiting;  // row, parent
-  const std::vector<std::size_t> roots = roots_of(model);
-  for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
-    waiting.emplace_back(*root, SIZE_MAX);
+  for (const std::size_t root : roots_of(model)) {
+    waiting.emplace_back(root, SIZE_MAX);
   }
+  std::ranges::reverse(waiting);
   while (!waiting.empty()) {
     const auto [row, parent] = waiting.back();
     waiting.pop_back();
@@ -106,9 +107,11 @@ std::vector<SceneNode> list_scene_nodes(const tinygltf::Model& model) {
     listed.owner = owns ? nodes.size() : (parent == SIZE_MAX ? SIZE_MAX : nodes[parent].owner);
     const std::size_t self = nodes.size();
     nodes.push_back(listed);
-    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
-      waiting.emplace_back(static_cast<std::size_t>(*child), self);
+    const auto siblings = static_cast<std::ptrdiff_t>(waiting.size());
+    for (const int child : node.children) {
+      waiting.emplace_back(static_cast<std::size_t>(child), self);
     }
+    std::reverse(waiting.begin() + siblings, waiting.end());
   }
   return nodes;
 }

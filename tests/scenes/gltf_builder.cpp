@@ -202,7 +202,7 @@ TestFolder::~TestFolder() {
 }
 
 std::filesystem::path TestFolder::write(const std::string& name, std::string_view bytes) const {
-  const std::filesystem::path path = path_ / name;
+  std::filesystem::path path = path_ / name;
   std::ofstream file(path, std::ios::binary);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   return path;

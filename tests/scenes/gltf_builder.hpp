@@ -72,6 +72,8 @@ class TestFolder {
   ~TestFolder();
   TestFolder(const TestFolder&) = delete;
   TestFolder& operator=(const TestFolder&) = delete;
+  TestFolder(TestFolder&&) = delete;
+  TestFolder& operator=(TestFolder&&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// Writes a file; returns its path.

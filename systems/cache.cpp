@@ -75,7 +75,7 @@ std::filesystem::path cache_folder() {
         std::getenv(name);  // NOLINT(concurrency-mt-unsafe): nobody calls setenv
     return value == nullptr ? "" : value;
   };
-  if (const std::filesystem::path chosen = variable("TORSION_CACHE_DIR"); !chosen.empty()) {
+  if (std::filesystem::path chosen = variable("TORSION_CACHE_DIR"); !chosen.empty()) {
     return chosen;
   }
   if (const std::filesystem::path base = variable("XDG_CACHE_HOME"); base.is_absolute()) {

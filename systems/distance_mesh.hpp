@@ -27,6 +27,8 @@ class MeshDistance {
   /// finite.
   static Result<MeshDistance> build(const SurfaceMesh& mesh);
 
+  MeshDistance(const MeshDistance&) = delete;
+  MeshDistance& operator=(const MeshDistance&) = delete;
   MeshDistance(MeshDistance&&) noexcept;
   MeshDistance& operator=(MeshDistance&&) noexcept;
   ~MeshDistance();

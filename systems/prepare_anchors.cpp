@@ -113,7 +113,8 @@ std::vector<glm::dvec3> candidates_of(const Body& body, const std::vector<PartDe
   for (const PartDescription& part : parts) {
     for (const glm::uvec3& triangle : part.surface.triangles) {
       area += triangle_area(part.surface, triangle);
-      for (; next < area; next += spacing) {
+      while (next < area) {
+        next += spacing;
         glm::dvec2 weights = even_point(k++);
         if (weights.x + weights.y > 1.0) {
           weights = glm::dvec2(1.0) - weights;

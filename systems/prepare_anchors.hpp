@@ -19,12 +19,12 @@ inline constexpr std::uint32_t kAnchorsPerBody = 48;
 /// Spreads anchors over a body's rest surface, away from what is fixed, and cuts the straight beam
 /// from the fixed point to each of them. Load time only; the same input gives the same bits.
 /// Returns nothing (empty vectors) only for a body whose whole surface is fixed.
-/// @param body   the description: surfaces (m, body frame) and the fixed region
+/// @param description  surfaces (m, body frame) and the fixed region
 /// @param world  read: parts, fields, field_nodes, field_bricks, fixed_volumes
 /// @param parts  the body's rows in world.parts
 /// @param volumes  the body's rows in world.fixed_volumes
 /// @param count  how many anchors, 8 to 60
-PreparedAnchors prepare_anchors(const BodyDescription& body, const World& world, Range parts,
+PreparedAnchors prepare_anchors(const BodyDescription& description, const World& world, Range parts,
                                 Range volumes, std::uint32_t count = kAnchorsPerBody);
 
 }  // namespace torsion

@@ -168,11 +168,11 @@ FrameWorld prepare_frame(const SceneDescription& scene, const World& world) {
   for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
     append_body(scene.bodies[body], world, centers[body], frame);
   }
-  for (std::size_t tool = 0; tool < scene.tools.size(); ++tool) {
+  for (const ToolDescription& tool : scene.tools) {
     const std::uint32_t row = append_rows(frame.tools, 1).first;
     frame.tools.at<Pose>(row) = world.tools.at<ToolPose>(row).now;
     frame.tools.at<DrawRange>(row) =
-        append_mesh(scene.tools[tool].draw, frame.tool_vertices, frame.tool_triangles);
+        append_mesh(tool.draw, frame.tool_vertices, frame.tool_triangles);
   }
   return frame;
 }

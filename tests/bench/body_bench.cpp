@@ -64,7 +64,7 @@ BENCHMARK(anchors_and_sections_at_load)->Unit(benchmark::kMillisecond);
 struct Frame {
   explicit Frame(std::int64_t vertices) {
     std::uint32_t cells = 1;
-    while (6 * (cells + 1) * (cells + 1) < vertices) {
+    while (std::int64_t{6} * (cells + 1) * (cells + 1) < vertices) {
       ++cells;
     }
     scene.bodies.push_back(exact_body(ShapeKind::kBox, glm::dvec3(0.05), FixedKind::kFace, cells));

@@ -150,6 +150,7 @@ TEST_F(CacheTest, ManyWritersAtOnceLeaveOneWholeEntry) {
   const CacheKey key = key_of({bytes_of(8, 1)});
   const std::vector<Bytes> contents{bytes_of(50'000, 1), bytes_of(70'000, 2), bytes_of(10, 3)};
   std::vector<std::jthread> writers;
+  writers.reserve(contents.size());
   for (const Bytes& content : contents) {
     writers.emplace_back([&key, &content] {
       for (int i = 0; i < 50; ++i) {

@@ -183,11 +183,13 @@ TEST(MeshDistanceTest, ThreadsMayAskAtOnce) {
   const MeshDistance distance = built(torus_mesh(0.04, 0.015, 48, 24));
   const std::vector<glm::dvec3> points = points_in_box(0.08, 400, 5);
   std::vector<double> alone;
+  alone.reserve(points.size());
   for (const glm::dvec3& p : points) {
     alone.push_back(distance.closest(p).distance.value);
   }
   std::vector<std::vector<double>> together(4);
   std::vector<std::jthread> threads;
+  threads.reserve(together.size());
   for (std::vector<double>& found : together) {
     threads.emplace_back([&] {
       for (const glm::dvec3& p : points) {

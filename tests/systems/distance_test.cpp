@@ -207,6 +207,7 @@ TEST(ExactShapeTest, EllipsoidNeverExceedsTheDistanceAnywhereOutside) {
   const glm::dvec3 axes = part.half_extent;
   Random random(17);
   std::vector<glm::dvec3> surface;
+  surface.reserve(4000);
   for (int i = 0; i < 4000; ++i) {
     surface.push_back(axes * random_direction(random));
   }
@@ -278,6 +279,7 @@ TEST(UnionTest, ManyPointsAtOnceGiveWhatSinglePointsGive) {
   const World world = world_with(mallet());
   Random random(29);
   std::vector<glm::dvec3> points;
+  points.reserve(100);
   for (int i = 0; i < 100; ++i) {  // no multiple of a block
     points.push_back(random_in_box(random, glm::dvec3(0.2)));
   }

@@ -48,13 +48,17 @@ void with_shape(const World& world, const ShapePart& part, F&& f) {
 
 /// Replaces x, y, z of `block` by the gradient.
 template <class Shape>
-void evaluate_block(const Shape& shape, Block& block, std::size_t count) {
+void evaluate_block(Shape shape, Block& block, std::size_t count) {
+  double* __restrict x = block.x.data();
+  double* __restrict y = block.y.data();
+  double* __restrict z = block.z.data();
+  double* __restrict value = block.value.data();
   for (std::size_t i = 0; i < count; ++i) {
-    const Distance distance = shape(block.x[i], block.y[i], block.z[i]);
-    block.value[i] = distance.value;
-    block.x[i] = distance.gradient.x;
-    block.y[i] = distance.gradient.y;
-    block.z[i] = distance.gradient.z;
+    const Distance distance = shape(x[i], y[i], z[i]);
+    value[i] = distance.value;
+    x[i] = distance.gradient.x;
+    y[i] = distance.gradient.y;
+    z[i] = distance.gradient.z;
   }
 }
 
@@ -130,36 +134,63 @@ ColumnPlacement column_placement(const Pose& part, const Pose& frame) {
   return {glm::mat3_cast(to_part * frame.rotation), to_part * (frame.position - part.position)};
 }
 
+// The loops below vectorise only where the compiler knows that what they write is nothing that they
+// read: hence the local copies and __restrict.
+
 void load_columns(const ColumnPlacement& placement, const DistanceColumns& columns,
                   std::size_t first, std::size_t count, Block& block) {
-  const glm::dmat3& r = placement.turn;
-  const glm::dvec3& shift = placement.shift;
-  const double* x = columns.x.data() + first;
-  const double* y = columns.y.data() + first;
-  const double* z = columns.z.data() + first;
+  const glm::dmat3 r = placement.turn;
+  const glm::dvec3 shift = placement.shift;
+  const double* __restrict x = columns.x.data() + first;
+  const double* __restrict y = columns.y.data() + first;
+  const double* __restrict z = columns.z.data() + first;
+  double* __restrict part_x = block.x.data();
+  double* __restrict part_y = block.y.data();
+  double* __restrict part_z = block.z.data();
   for (std::size_t i = 0; i < count; ++i) {
-    block.x[i] = r[0].x * x[i] + r[1].x * y[i] + r[2].x * z[i] + shift.x;
-    block.y[i] = r[0].y * x[i] + r[1].y * y[i] + r[2].y * z[i] + shift.y;
-    block.z[i] = r[0].z * x[i] + r[1].z * y[i] + r[2].z * z[i] + shift.z;
+    part_x[i] = r[0].x * x[i] + r[1].x * y[i] + r[2].x * z[i] + shift.x;
+    part_y[i] = r[0].y * x[i] + r[1].y * y[i] + r[2].y * z[i] + shift.y;
+    part_z[i] = r[0].z * x[i] + r[1].z * y[i] + r[2].z * z[i] + shift.z;
   }
 }
 
-/// Turns gradients back into the columns' frame and stores what is nearer than what is there.
-void store_columns(const ColumnPlacement& placement, const Block& block, bool first_part,
-                   std::size_t first, std::size_t count, const DistanceColumns& columns) {
-  const glm::dmat3& r = placement.turn;
+/// Turns gradients back into the columns' frame.
+void turn_back(const ColumnPlacement& placement, std::size_t count, Block& block) {
+  const glm::dmat3 r = placement.turn;
+  double* __restrict x = block.x.data();
+  double* __restrict y = block.y.data();
+  double* __restrict z = block.z.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double gx = x[i];
+    const double gy = y[i];
+    const double gz = z[i];
+    x[i] = r[0].x * gx + r[0].y * gy + r[0].z * gz;
+    y[i] = r[1].x * gx + r[1].y * gy + r[1].z * gz;
+    z[i] = r[2].x * gx + r[2].y * gy + r[2].z * gz;
+  }
+}
+
+/// Stores what is nearer than what is there; all of it for the first part.
+void store_columns(const Block& block, bool first_part, std::size_t first, std::size_t count,
+                   const DistanceColumns& columns) {
   double* value = columns.value.data() + first;
   double* gx = columns.gradient_x.data() + first;
   double* gy = columns.gradient_y.data() + first;
   double* gz = columns.gradient_z.data() + first;
+  if (first_part) {
+    std::copy_n(block.value.begin(), count, value);
+    std::copy_n(block.x.begin(), count, gx);
+    std::copy_n(block.y.begin(), count, gy);
+    std::copy_n(block.z.begin(), count, gz);
+    return;
+  }
   for (std::size_t i = 0; i < count; ++i) {
-    if (!first_part && !(block.value[i] < value[i])) {
-      continue;
+    if (block.value[i] < value[i]) {
+      value[i] = block.value[i];
+      gx[i] = block.x[i];
+      gy[i] = block.y[i];
+      gz[i] = block.z[i];
     }
-    value[i] = block.value[i];
-    gx[i] = r[0].x * block.x[i] + r[0].y * block.y[i] + r[0].z * block.z[i];
-    gy[i] = r[1].x * block.x[i] + r[1].y * block.y[i] + r[1].z * block.z[i];
-    gz[i] = r[2].x * block.x[i] + r[2].y * block.y[i] + r[2].z * block.z[i];
   }
 }
 
@@ -242,7 +273,8 @@ void signed_distances(const World& world, std::span<const std::uint32_t> rows, c
         const std::size_t count = std::min(kBlock, total - first);
         load_columns(placement, columns, first, count, block);
         evaluate_block(shape, block, count);
-        store_columns(placement, block, first_part, first, count, columns);
+        turn_back(placement, count, block);
+        store_columns(block, first_part, first, count, columns);
       }
     });
   }

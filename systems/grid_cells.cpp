@@ -66,16 +66,18 @@ void return_from_above(const Grid& grid) {
 /// One step of Newton's method along the normal from every cell to the tool's underside.
 /// @return the largest change of a height below the rest surface, m
 double step_to_surface(const DistanceColumns& points, double size) {
-  double farthest = 0.0;
-  for (std::size_t cell = 0; cell < points.z.size(); ++cell) {
-    const double slope = larger(-points.gradient_z[cell], kSteepest);
-    const double change = points.value[cell] / slope;
+  const std::size_t count = points.z.size();
+  const double* __restrict normal = points.gradient_z.data();
+  double* __restrict value = points.value.data();
+  double* __restrict z = points.z.data();
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    const double change = value[cell] / larger(-normal[cell], kSteepest);
+    const double height = z[cell] + change;
     // Above the rest surface there is no contact, however far away the tool is.
-    const double height = points.z[cell] + change;
-    points.z[cell] = height < size ? height : size;
-    farthest = larger(farthest, height < 0.0 ? std::abs(change) : 0.0);
+    z[cell] = height < size ? height : size;
+    value[cell] = height < 0.0 ? std::abs(change) : 0.0;
   }
-  return farthest;
+  return *std::ranges::max_element(points.value);
 }
 
 /// Puts the cells' heights on the tool's underside. Leaves the tool's normals of the last step but
@@ -109,16 +111,23 @@ void find_depths(const Grid& grid) {
                  grid.frame.origin, reach_of(grid), grid.scratch.near_parts);
   signed_distances(grid.world, parts, grid_in_body(grid.frame), points);
   const glm::dvec2 half = cell_half_size(grid);
-  for (std::size_t cell = 0; cell < points.z.size(); ++cell) {
-    const double over_body_slope = 1.0 / larger(points.gradient_z[cell], kSteepest);
-    const double over_tool_slope = 1.0 / larger(-columns.tool_z[cell], kSteepest);
-    columns.depth[cell] = -points.value[cell] * over_body_slope;
-    const double change_x =
-        columns.tool_x[cell] * over_tool_slope + points.gradient_x[cell] * over_body_slope;
-    const double change_y =
-        columns.tool_y[cell] * over_tool_slope + points.gradient_y[cell] * over_body_slope;
-    columns.depth_change[cell] =
-        2.0 * (std::abs(change_x) * half.x + std::abs(change_y) * half.y) + 1e-30;
+  const std::size_t count = points.z.size();
+  const double* __restrict value = points.value.data();
+  const double* __restrict body_x = points.gradient_x.data();
+  const double* __restrict body_y = points.gradient_y.data();
+  const double* __restrict body_z = points.gradient_z.data();
+  const double* __restrict tool_x = columns.tool_x.data();
+  const double* __restrict tool_y = columns.tool_y.data();
+  const double* __restrict tool_z = columns.tool_z.data();
+  double* __restrict depth = columns.depth.data();
+  double* __restrict depth_change = columns.depth_change.data();
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    const double over_body_slope = 1.0 / larger(body_z[cell], kSteepest);
+    const double over_tool_slope = 1.0 / larger(-tool_z[cell], kSteepest);
+    depth[cell] = -value[cell] * over_body_slope;
+    const double change_x = tool_x[cell] * over_tool_slope + body_x[cell] * over_body_slope;
+    const double change_y = tool_y[cell] * over_tool_slope + body_y[cell] * over_body_slope;
+    depth_change[cell] = 2.0 * (std::abs(change_x) * half.x + std::abs(change_y) * half.y) + 1e-30;
   }
 }
 

@@ -35,7 +35,7 @@ def part(gltf, tool, name, mesh, shape, translation, rotation=(0.0, 0.0, 0.0, 1.
 
 def ball_on_cube(name, material, depth, degrees):
     radius = 0.03
-    gltf = start("ball_on_cube.bin", (0.195, 0.275, 0.31), (0.0, 0.066, 0.0))
+    gltf = start("ball_on_cube.bin", (0.2, 0.285, 0.32), (0.0, 0.073, 0.0))
     body(gltf, "cube", shapes.box((0.05, 0.05, 0.05), 34), (0.0, 0.05, 0.0), "box", material)
     top = (0.0, 0.1 + radius, 0.0)
     ball = gltf.node("ball", mesh=gltf.mesh("ball", shapes.grooved_ball(radius, 64),
@@ -53,7 +53,7 @@ def elastic_ellipsoid(gltf, material):
 
 
 def mallet_on_ellipsoid(name, material, depth, degrees):
-    gltf = start("mallet_on_ellipsoid.bin", (0.17, 0.25, 0.28), (0.0, 0.075, 0.0))
+    gltf = start("mallet_on_ellipsoid.bin", (0.2, 0.29, 0.33), (0.0, 0.083, 0.0))
     elastic_ellipsoid(gltf, material)
     top = (0.0, 0.1, 0.0)
     mallet = gltf.node("mallet", translation=top,
@@ -68,7 +68,7 @@ def mallet_on_ellipsoid(name, material, depth, degrees):
 
 
 def compass_on_ellipsoid(name, material, depth, degrees):
-    gltf = start("compass_on_ellipsoid.bin", (0.17, 0.26, 0.29), (0.0, 0.085, 0.0))
+    gltf = start("compass_on_ellipsoid.bin", (0.2, 0.3, 0.34), (0.0, 0.1, 0.0))
     elastic_ellipsoid(gltf, material)
     # The tips stand 36 mm apart on the ellipsoid, 8 mm below its top.
     spread = 0.022

@@ -127,7 +127,8 @@ double torsion_constant(const std::vector<glm::dvec2>& polygon) {
   double harmonic = weights(0) * integrals[0].real();
   for (int n = 1; n <= kHarmonicDegree; ++n) {
     const Complex& integral = integrals[static_cast<std::size_t>(n)];
-    harmonic += weights(2 * n - 1) * integral.real() + weights(2 * n) * integral.imag();
+    const Eigen::Index imaginary = Eigen::Index{2} * n;
+    harmonic += weights(imaginary - 1) * integral.real() + weights(imaginary) * integral.imag();
   }
   const double fourth = radius * radius * radius * radius;
   return 2.0 * harmonic * fourth - (moments.xx + moments.yy);

@@ -103,14 +103,15 @@ void choose_bricks(const MeshDistance& mesh, std::uint32_t threads, BuiltField& 
   field.bricks.assign(std::size_t{grid.cells.x} * grid.cells.y * grid.cells.z, DistanceBrick{});
   for_each_row(grid.cells.y * grid.cells.z, threads, [&](std::uint32_t row) {
     RowWalk walk(mesh);
+    const std::uint32_t y = row % grid.cells.y;
+    const std::uint32_t z = row / grid.cells.y;
     for (std::uint32_t x = 0; x < grid.cells.x; ++x) {
-      const std::size_t corner =
-          (std::size_t{row / grid.cells.y} * nodes.y + row % grid.cells.y) * nodes.x + x;
+      const std::size_t corner = (std::size_t{z} * nodes.y + y) * nodes.x + x;
       const float at_corner = field.nodes[corner].gradient_and_distance.w;
       if (std::abs(static_cast<double>(at_corner)) > reach + half_diagonal * (1.0 + 1e-6)) {
         continue;
       }
-      const glm::dvec3 step(x + 0.5, row % grid.cells.y + 0.5, row / grid.cells.y + 0.5);
+      const glm::dvec3 step(x + 0.5, y + 0.5, z + 0.5);
       const DistanceNode center = walk.node_at(grid.origin + grid.spacing * step);
       if (std::abs(static_cast<double>(center.gradient_and_distance.w)) <= reach) {
         field.bricks[std::size_t{row} * grid.cells.x + x].first_node = 0;

@@ -159,7 +159,9 @@ struct MeshDistance::Tree {
 
   Tree() = default;
   Tree(const Tree&) = delete;
+  Tree(Tree&&) = delete;
   Tree& operator=(const Tree&) = delete;
+  Tree& operator=(Tree&&) = delete;
   ~Tree() {
     if (scene != nullptr) {
       rtcReleaseScene(scene);
@@ -248,7 +250,7 @@ bool MeshDistance::Tree::build_boxes(const SurfaceMesh& mesh) {
     return false;
   }
   scene = rtcNewScene(device);
-  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* const vertices = static_cast<float*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                               3 * sizeof(float), mesh.positions.size()));

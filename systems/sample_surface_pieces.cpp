@@ -87,23 +87,23 @@ void add_face(const ShapePart& shape, std::uint32_t part, int axis, double side,
   const int u = (axis + 1) % 3;
   const int v = (axis + 2) % 3;
   const auto cuts = [&](int along) {
-    return std::clamp(std::ceil(2.0 * box[along] / step), 4.0, 1024.0);
+    return static_cast<int>(std::clamp(std::ceil(2.0 * box[along] / step), 4.0, 1024.0));
   };
-  const double cuts_u = cuts(u);
-  const double cuts_v = cuts(v);
-  const auto corner = [&](double i, double j) {
+  const int cuts_u = cuts(u);
+  const int cuts_v = cuts(v);
+  const auto corner = [&](int i, int j) {
     glm::dvec3 p(0.0);
     p[axis] = side * box[axis];
     p[u] = box[u] * (2.0 * i / cuts_u - 1.0);
     p[v] = box[v] * (2.0 * j / cuts_v - 1.0);
     return shape.pose.position + shape.pose.rotation * from_box_to_shape(shape, p);
   };
-  for (double j = 0.0; j < cuts_v; j += 1.0) {
-    for (double i = 0.0; i < cuts_u; i += 1.0) {
+  for (int j = 0; j < cuts_v; ++j) {
+    for (int i = 0; i < cuts_u; ++i) {
       const glm::dvec3 a = corner(i, j);
-      const glm::dvec3 b = corner(i + 1.0, j);
-      const glm::dvec3 c = corner(i + 1.0, j + 1.0);
-      const glm::dvec3 d = corner(i, j + 1.0);
+      const glm::dvec3 b = corner(i + 1, j);
+      const glm::dvec3 c = corner(i + 1, j + 1);
+      const glm::dvec3 d = corner(i, j + 1);
       for (std::array<glm::dvec3, 3> triangle : {std::array{a, b, c}, std::array{a, c, d}}) {
         if (side < 0.0) {
           std::swap(triangle[1], triangle[2]);

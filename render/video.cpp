@@ -27,6 +27,43 @@ std::string tail_of(int file) {
   return count > 0 ? std::string(text.data(), static_cast<std::size_t>(count)) : std::string();
 }
 
+/// What ffmpeg is told: raw pictures from standard input, an .mp4 that any player takes.
+std::vector<std::string> ffmpeg_words(std::uint32_t width, std::uint32_t height,
+                                      double frames_per_second, const std::string& out) {
+  const std::string size = std::to_string(width) + "x" + std::to_string(height);
+  std::array<char, 40> rate{};
+  std::snprintf(rate.data(), rate.size(), "%.9g", frames_per_second);
+  return {"ffmpeg",
+          "-y",
+          "-loglevel",
+          "error",
+          "-f",
+          "rawvideo",
+          "-pixel_format",
+          "rgba",
+          "-video_size",
+          size,
+          "-framerate",
+          rate.data(),
+          "-i",
+          "-",
+          "-vf",
+          "crop=trunc(iw/2)*2:trunc(ih/2)*2",
+          "-c:v",
+          "libx264",
+          "-preset",
+          "medium",
+          "-crf",
+          "18",
+          "-pix_fmt",
+          "yuv420p",
+          "-movflags",
+          "+faststart",
+          "-f",
+          "mp4",
+          out};
+}
+
 void close_if_open(int& file) {
   if (file >= 0) {
     ::close(file);
@@ -74,38 +111,8 @@ struct VideoWriter::Encoder {
 };
 
 Result<Done> VideoWriter::Encoder::start(double frames_per_second) {
-  const std::string size = std::to_string(width) + "x" + std::to_string(height);
-  std::array<char, 40> rate{};
-  std::snprintf(rate.data(), rate.size(), "%.9g", frames_per_second);
-  std::vector<std::string> words = {"ffmpeg",
-                                    "-y",
-                                    "-loglevel",
-                                    "error",
-                                    "-f",
-                                    "rawvideo",
-                                    "-pixel_format",
-                                    "rgba",
-                                    "-video_size",
-                                    size,
-                                    "-framerate",
-                                    rate.data(),
-                                    "-i",
-                                    "-",
-                                    "-vf",
-                                    "crop=trunc(iw/2)*2:trunc(ih/2)*2",
-                                    "-c:v",
-                                    "libx264",
-                                    "-preset",
-                                    "medium",
-                                    "-crf",
-                                    "18",
-                                    "-pix_fmt",
-                                    "yuv420p",
-                                    "-movflags",
-                                    "+faststart",
-                                    "-f",
-                                    "mp4",
-                                    temporary.string()};
+  std::vector<std::string> words =
+      ffmpeg_words(width, height, frames_per_second, temporary.string());
   std::vector<char*> arguments;
   for (std::string& word : words) {
     arguments.push_back(word.data());

@@ -37,8 +37,10 @@ Role checked_role(const SceneReader& reader, std::size_t node) {
   return part ? Role::kPart : listed.role;
 }
 
+/// @param triangles  the node's mesh in the owner's frame
 void add_exact_part(const SceneReader& reader, std::size_t node, ShapeKind kind,
-                    const glm::dmat4& to_owner, std::vector<PartDescription>& parts) {
+                    const MeshTriangles& triangles, const glm::dmat4& to_owner,
+                    std::vector<PartDescription>& parts) {
   const std::string where = reader.name(node);
   const std::optional<NodeTransform> transform = split_transform(to_owner);
   if (!transform) {
@@ -49,8 +51,6 @@ void add_exact_part(const SceneReader& reader, std::size_t node, ShapeKind kind,
   glm::dvec3 low(1e300);
   glm::dvec3 high(-1e300);
   const glm::dmat4 to_mesh = glm::inverse(to_owner);
-  const MeshTriangles triangles =
-      read_mesh(reader.model, *reader.mesh(node), to_owner, where, reader.problems);
   for (const glm::dvec3& position : triangles.positions) {
     const glm::dvec3 in_mesh(to_mesh * glm::dvec4(position, 1.0));
     low = glm::min(low, in_mesh);
@@ -75,7 +75,7 @@ void add_part(const SceneReader& reader, std::size_t node, OwnerShape& owner) {
   append_draw_mesh(triangles, owner.draw);
   const ShapeKind kind = shape_kind(reader.keys[node].text("torsion_shape").value_or("mesh"));
   if (kind != ShapeKind::kMesh) {
-    add_exact_part(reader, node, kind, to_owner, owner.parts);
+    add_exact_part(reader, node, kind, triangles, to_owner, owner.parts);
     return;
   }
   PartDescription part;

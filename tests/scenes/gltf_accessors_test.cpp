@@ -48,7 +48,8 @@ TEST(GltfAccessorsTest, EveryComponentTypeIsReadAsItsNumber) {
   EXPECT_EQ(scalars<std::int16_t>({-32768, 32767}, 5122, false), (Numbers{-32768, 32767}));
   EXPECT_EQ(scalars<std::uint16_t>({0, 65535}, 5123, false), (Numbers{0, 65535}));
   EXPECT_EQ(scalars<std::uint32_t>({0, 4294967295U}, 5125, false), (Numbers{0, 4294967295.0}));
-  EXPECT_EQ(scalars<float>({-0.5F, 1e30F}, 5126, false), (Numbers{-0.5, double{1e30F}}));
+  EXPECT_EQ(scalars<float>({-0.5F, 1e30F}, 5126, false),
+            (Numbers{-0.5, static_cast<double>(1e30F)}));
 }
 
 TEST(GltfAccessorsTest, NormalisedIntegersGoFromMinusOneToOne) {

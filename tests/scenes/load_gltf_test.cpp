@@ -187,6 +187,26 @@ TEST(LoadGltfTest, PhysicsExtensionGivesMassAndFrictionWhereKeysDoNot) {
   EXPECT_EQ(scene_of(loaded).bodies[0].friction.dynamic_friction, 0.25);
 }
 
+TEST(LoadGltfTest, OpenMeshIsFineWhereAnExactShapeIsFelt) {
+  GltfBuilder builder = good_scene();
+  builder.document["accessors"][1]["count"] = 30;  // without the face at z = +0.05
+  builder.node("cube")["extras"]["torsion_shape"] = "box";
+  const LoadedScene loaded = load_text(builder.text());
+  ASSERT_EQ(scene_of(loaded).bodies.size(), 1U);
+  EXPECT_EQ(scene_of(loaded).bodies[0].draw.triangles.size(), 10U);
+  expect_near(scene_of(loaded).bodies[0].parts[0].shape.half_extent, glm::dvec3(0.05),
+              kFloatTolerance);
+}
+
+TEST(LoadGltfTest, FaultOfAMeshIsSaidOnceWhateverTheShape) {
+  GltfBuilder builder = good_scene();
+  nlohmann::json& primitives = builder.document["meshes"][0]["primitives"];
+  primitives.push_back(primitives[0]);
+  primitives[1]["mode"] = 1;
+  builder.node("cube")["extras"]["torsion_shape"] = "box";
+  EXPECT_EQ(load_text(builder.text()).problems.size(), 1U);
+}
+
 TEST(LoadGltfTest, CameraIsReadWithItsPlaceInTheTree) {
   GltfBuilder builder = good_scene();
   builder.document["cameras"] = {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "ecs/state_io.hpp"
 #include "render/auto_camera.hpp"
 #include "systems/surface_field.hpp"
 
@@ -39,6 +40,11 @@ double rounded_angle(double radians) {
   return rounded_up(degrees) * std::numbers::pi / 180.0;
 }
 
+/// What a picture says of a size on a scale: what is left of a sum of rounding errors is zero.
+double shown(double size, double full_scale) {
+  return size < 1e-6 * full_scale ? 0.0 : size;
+}
+
 /// The largest sum of twist angles of any vertex.
 double largest_twist(const FrameWorld& frame) {
   double largest = 0.0;
@@ -64,8 +70,10 @@ double largest_pressure(const World& world) {
 
 }  // namespace
 
-PictureScales find_scales(Session session, std::uint64_t steps, std::uint64_t stride) {
-  const World& world = session.simulation.world;
+Result<PictureScales> find_scales(Session& session, std::uint64_t steps, std::uint64_t stride,
+                                  Progress& progress) {
+  World& world = session.simulation.world;
+  const std::vector<std::byte> start = to_bytes(world);
   FrameWorld frame = prepare_frame(session.scene, world);
   Snapshot snapshot;
   snapshot.reserve(world);
@@ -81,10 +89,16 @@ PictureScales find_scales(Session session, std::uint64_t steps, std::uint64_t st
       capture(world, snapshot);
       surface_field(world, snapshot, frame);
       scales.twist = std::max(scales.twist, largest_twist(frame));
+      progress.show(static_cast<double>(i) / static_cast<double>(steps));
     }
   }
-  return {rounded_angle(scales.twist), rounded_up(scales.pressure), rounded_up(scales.force),
-          rounded_up(scales.torque)};
+  Result<World> again = from_bytes(start, session.scene.path);
+  if (!again) {
+    return again.error();
+  }
+  world = std::move(again).value();
+  return PictureScales{rounded_angle(scales.twist), rounded_up(scales.pressure),
+                       rounded_up(scales.force), rounded_up(scales.torque)};
 }
 
 Result<Camera> choose_camera(const Session& session, const FrameWorld& frame,
@@ -116,8 +130,7 @@ PictureRun::PictureRun(FrameWorld frame, Snapshot snapshot, Camera camera, Optio
       font_(std::move(font)),
       renderer_(std::move(renderer)) {}
 
-Result<PictureRun> PictureRun::create(const Session& session, const Options& options,
-                                      const PictureScales& scales) {
+Result<PictureRun> PictureRun::create(const Session& session, const Options& options) {
   const World& world = session.simulation.world;
   FrameWorld frame = prepare_frame(session.scene, world);
   Snapshot snapshot;
@@ -138,13 +151,15 @@ Result<PictureRun> PictureRun::create(const Session& session, const Options& opt
   if (!renderer) {
     return renderer.error();
   }
-  Options filled = options;
-  filled.draw.heat_limit =
-      options.draw.heat_map == HeatMap::kPressure ? scales.pressure : scales.twist;
-  filled.draw.full_force = scales.force;
-  filled.draw.full_torque = scales.torque;
-  return PictureRun(std::move(frame), std::move(snapshot), camera.value(), std::move(filled),
-                    std::move(font), std::move(renderer).value());
+  return PictureRun(std::move(frame), std::move(snapshot), camera.value(), options, std::move(font),
+                    std::move(renderer).value());
+}
+
+void PictureRun::set_scales(const PictureScales& scales) {
+  DrawOptions& draw = options_.draw;
+  draw.heat_limit = draw.heat_map == HeatMap::kPressure ? scales.pressure : scales.twist;
+  draw.full_force = scales.force;
+  draw.full_torque = scales.torque;
 }
 
 OverlayContent PictureRun::content_of(const Session& session) const {
@@ -155,8 +170,10 @@ OverlayContent PictureRun::content_of(const Session& session) const {
                    fmt::format("time {:.3f} s", clock.time)};
   for (std::uint32_t tool = 0; tool < world.tools.size(); ++tool) {
     const Wrench& wrench = world.tools.at<ToolWrench>(tool).total;
-    content.lines.push_back(fmt::format("force {:.3g} N", glm::length(wrench.force)));
-    content.lines.push_back(fmt::format("torque {:.3g} N m", glm::length(wrench.torque)));
+    content.lines.push_back(
+        fmt::format("force {:.3g} N", shown(glm::length(wrench.force), options_.draw.full_force)));
+    content.lines.push_back(fmt::format(
+        "torque {:.3g} N m", shown(glm::length(wrench.torque), options_.draw.full_torque)));
   }
   content.lines.push_back(fmt::format("regions {}", world.regions.size()));
   content.heat_map = options_.draw.heat_map;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "app/progress.hpp"
 #include "app/session.hpp"
 #include "ecs/frame_world.hpp"
 #include "render/camera.hpp"
@@ -21,9 +22,11 @@ struct PictureScales {
   double torque = 0.0;    // N m
 };
 
-/// Runs `steps` steps to find what the scales must hold, looking every `stride` steps. Ends each
-/// scale at 1, 2 or 5 times a power of ten (twist: at a round number of degrees).
-PictureScales find_scales(Session session, std::uint64_t steps, std::uint64_t stride);
+/// Runs `steps` steps to find what the scales must hold, looking every `stride` steps, and leaves
+/// the world as it was. Ends each scale at 1, 2 or 5 times a power of ten (twist: at a round number
+/// of degrees). Fails only if that world cannot be taken back.
+Result<PictureScales> find_scales(Session& session, std::uint64_t steps, std::uint64_t stride,
+                                  Progress& progress);
 
 /// The camera of that node; the file's first where `node` is empty; else one that shows everything.
 Result<Camera> choose_camera(const Session& session, const FrameWorld& frame,
@@ -36,11 +39,12 @@ class PictureRun {
     std::uint32_t width = 1280;  // pixels
     std::uint32_t height = 720;  // pixels
     std::string camera;          // node; empty: as choose_camera
-    DrawOptions draw;            // scales are filled in from `scales`
+    DrawOptions draw;            // its scales are filled in by set_scales
     bool overlay = true;
   };
-  static Result<PictureRun> create(const Session& session, const Options& options,
-                                   const PictureScales& scales);
+  static Result<PictureRun> create(const Session& session, const Options& options);
+
+  void set_scales(const PictureScales& scales);
 
   /// The picture of the session as its last step left it.
   Result<Image> draw(const Session& session);

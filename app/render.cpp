@@ -136,18 +136,22 @@ Result<Done> draw_all(Session& session, const RenderOptions& options, double sec
   return sink.finish();
 }
 
+/// The scales of the whole animation also for one moment, so that single pictures compare.
+Result<PictureScales> scales_of_run(Session& session, const RenderOptions& options,
+                                    double seconds) {
+  Progress progress("finding the scales", options.quiet);
+  const double end = one_picture(options) ? std::max(options.at, session.scene.duration) : seconds;
+  return find_scales(session, steps_in(session, end) + 1, kScaleStride, progress);
+}
+
 int render(const RenderOptions& options) {
   Result<Session> opened = open_session(options.scene.scene, options.scene.prepare_options());
-  Result<Session> rehearsal = open_session(options.scene.scene, options.scene.prepare_options());
-  if (!opened || !rehearsal) {
+  if (!opened) {
     return fail(opened.error().text);
   }
   Session& session = opened.value();
-  const double seconds = options.seconds < 0.0 ? session.scene.duration : options.seconds;
-  const double end = one_picture(options) ? std::max(options.at, session.scene.duration) : seconds;
-  const PictureScales scales =
-      find_scales(std::move(rehearsal).value(), steps_in(session, end) + 1, kScaleStride);
-  Result<PictureRun> run = PictureRun::create(session, options.picture, scales);
+  // What can fail without a step taken comes first.
+  Result<PictureRun> run = PictureRun::create(session, options.picture);
   if (!run) {
     return fail(run.error().text);
   }
@@ -155,6 +159,12 @@ int render(const RenderOptions& options) {
   if (!sink) {
     return fail(sink.error().text);
   }
+  const double seconds = options.seconds < 0.0 ? session.scene.duration : options.seconds;
+  const Result<PictureScales> scales = scales_of_run(session, options, seconds);
+  if (!scales) {
+    return fail(scales.error().text);
+  }
+  run.value().set_scales(scales.value());
   const Result<Done> done = draw_all(session, options, seconds, run.value(), *sink.value());
   if (!done) {
     return fail(done.error().text);
@@ -184,7 +194,16 @@ int read_and_render(RenderOptions& options) {
     fmt::print(stderr, "--size {}: expected WIDTHxHEIGHT in pixels, 16 to 16384\n", options.size);
     return kUsage;
   }
-  const std::string extension = std::filesystem::path(options.out).extension().string();
+  const std::filesystem::path out(options.out);
+  const std::string extension = out.extension().string();
+  if (extension != ".png" && extension != ".mp4" && !extension.empty() &&
+      !std::filesystem::is_directory(out)) {
+    fmt::print(stderr,
+               "--out {}: expected NAME.png, NAME.mp4, or a folder: there, or ending in /, or "
+               "without a dot in its name\n",
+               options.out);
+    return kUsage;
+  }
   if ((extension == ".png") != one_picture(options)) {
     fmt::print(stderr, "--out {}: a .png needs --at, and --at needs a .png\n", options.out);
     return kUsage;

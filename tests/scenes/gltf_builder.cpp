@@ -203,6 +203,7 @@ TestFolder::~TestFolder() {
 
 std::filesystem::path TestFolder::write(const std::string& name, std::string_view bytes) const {
   std::filesystem::path path = path_ / name;
+  std::filesystem::remove(path);  // a file that is cut and written again is flushed to the disk
   std::ofstream file(path, std::ios::binary);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   return path;

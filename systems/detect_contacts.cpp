@@ -42,6 +42,7 @@ void find_candidates(Search& search) {
         const std::uint32_t sample = search.tool.samples.first + ball.sample;
         scratch.sample_distance[sample] = distance;
         scratch.sample_stamp[sample] = scratch.stamp;
+        scratch.sample_point[sample] = kNoRow;
         scratch.candidates.push_back({sample, distance});
       }
       row += 1;
@@ -101,9 +102,29 @@ ContactPoint descend(const Search& search, const Candidate& start) {
   return {to_outer(pose, point), -to_body.value, 0};
 }
 
-void add_point(Scratch& scratch, const ContactPoint& point) {
+void add_point(Scratch& scratch, std::uint32_t sample, const ContactPoint& point) {
   if (scratch.points.size() < scratch.points.capacity()) {
+    scratch.sample_point[sample] = static_cast<std::uint32_t>(scratch.points.size());
     scratch.points.push_back(point);
+  }
+}
+
+/// Pairs of contact points whose samples are neighbours, with rows counted from `first`.
+void pair_neighbours(const Search& search, std::uint32_t first) {
+  Scratch& scratch = search.scratch;
+  for (const Candidate& candidate : scratch.candidates) {
+    const std::uint32_t point = scratch.sample_point[candidate.sample];
+    if (point == kNoRow) {
+      continue;
+    }
+    const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(candidate.sample);
+    for (const std::uint32_t neighbour : sample.neighbours) {
+      const std::uint32_t row = search.tool.samples.first + neighbour;
+      if (neighbour != kNoRow && scratch.sample_stamp[row] == scratch.stamp &&
+          scratch.sample_point[row] != kNoRow) {
+        scratch.near_pairs.push_back({point - first, scratch.sample_point[row] - first});
+      }
+    }
   }
 }
 
@@ -125,11 +146,12 @@ void find_points(Search& search) {
     if (candidate.distance < 0.0) {
       const glm::dvec3& position =
           search.world.samples.at<SurfaceSample>(candidate.sample).position;
-      add_point(scratch, {to_outer(search.tool_in_body, position), -candidate.distance, 0});
+      add_point(scratch, candidate.sample,
+                {to_outer(search.tool_in_body, position), -candidate.distance, 0});
     } else if (is_local_minimum(search, candidate)) {
       const ContactPoint lowest = descend(search, candidate);
       if (lowest.depth > 0.0) {
-        add_point(scratch, lowest);
+        add_point(scratch, candidate.sample, lowest);
       }
     }
   }
@@ -141,6 +163,7 @@ void detect_contacts(StepContext& context) {
   World& world = context.world;
   Scratch& scratch = context.scratch;
   scratch.points.clear();
+  scratch.near_pairs.clear();
   scratch.pairs.clear();
   for (std::uint32_t tool = 0; tool < world.tools.size(); ++tool) {
     for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
@@ -150,7 +173,11 @@ void detect_contacts(StepContext& context) {
                     relative(world.bodies.at<Pose>(body), world.tools.at<ToolPose>(tool).now)};
       find_points(search);
       const Range points{first, static_cast<std::uint32_t>(scratch.points.size()) - first};
-      scratch.pairs.push_back({tool, body, points, 0});
+      const auto first_near = static_cast<std::uint32_t>(scratch.near_pairs.size());
+      pair_neighbours(search, first);
+      const Range near{first_near,
+                       static_cast<std::uint32_t>(scratch.near_pairs.size()) - first_near};
+      scratch.pairs.push_back({tool, body, points, near, 0});
       if (too_deep(search, world.bodies.at<Bounds>(body),
                    {scratch.points.data() + first, points.count})) {
         raise(world.clock.at<Clock>(0), Fault::kTooDeep);
@@ -171,8 +198,10 @@ void group_contact_points(StepContext& context) {
     const std::span<std::uint32_t> order(scratch.order);
     const std::span<std::uint32_t> groups = order.subspan(order.size() / 2);
     const double threshold = context.world.bodies.at<BodyModels>(pair.body).region_threshold;
-    pair.clusters = group_points(scratch.cluster_points, threshold, order.first(order.size() / 2),
-                                 scratch.parent, groups);
+    const std::span<const NearPair> near(scratch.near_pairs.data() + pair.near.first,
+                                         pair.near.count);
+    pair.clusters = group_points(scratch.cluster_points, near, threshold,
+                                 order.first(order.size() / 2), scratch.parent, groups);
     for (std::size_t i = 0; i < points.size(); ++i) {
       points[i].cluster = groups[i];
     }

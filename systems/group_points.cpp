@@ -39,28 +39,18 @@ int longest_axis(std::span<const glm::dvec3> points) {
   return size.y >= size.z ? 1 : 2;
 }
 
-}  // namespace
-
-std::uint32_t group_points(std::span<const glm::dvec3> points, double threshold,
-                           std::span<std::uint32_t> order, std::span<std::uint32_t> parent,
-                           std::span<std::uint32_t> groups) {
-  const auto count = static_cast<std::uint32_t>(points.size());
-  if (count == 0) {
-    return 0;
-  }
-  TORSION_ASSERT(order.size() >= count && parent.size() >= count && groups.size() >= count);
-  const auto sorted = order.first(count);
+/// Links all pairs closer than `threshold`: sorted along the longest axis, only points within
+/// `threshold` along it can be.
+void link_by_sweep(std::span<const glm::dvec3> points, double threshold,
+                   std::span<std::uint32_t> sorted, std::span<std::uint32_t> parent) {
   std::iota(sorted.begin(), sorted.end(), 0U);
-  std::iota(parent.begin(), parent.begin() + count, 0U);
-
-  // Sweep along the longest axis: only points within `threshold` along it can be linked.
   const int axis = longest_axis(points);
   std::ranges::sort(sorted, [&](std::uint32_t a, std::uint32_t b) {
     return points[a][axis] < points[b][axis] || (points[a][axis] == points[b][axis] && a < b);
   });
-  for (std::uint32_t first = 0; first < count; ++first) {
+  for (std::size_t first = 0; first < sorted.size(); ++first) {
     const glm::dvec3& point = points[sorted[first]];
-    for (std::uint32_t second = first + 1; second < count; ++second) {
+    for (std::size_t second = first + 1; second < sorted.size(); ++second) {
       const glm::dvec3 gap = points[sorted[second]] - point;
       if (gap[axis] >= threshold) {
         break;
@@ -70,13 +60,40 @@ std::uint32_t group_points(std::span<const glm::dvec3> points, double threshold,
       }
     }
   }
+}
 
+/// @return the number of groups that the links make
+std::uint32_t number_groups(std::span<std::uint32_t> parent, std::uint32_t count,
+                            std::span<std::uint32_t> groups) {
   std::uint32_t group_count = 0;
   for (std::uint32_t point = 0; point < count; ++point) {
     const std::uint32_t root = root_of(parent, point);
     groups[point] = root == point ? group_count++ : groups[root];
   }
   return group_count;
+}
+
+}  // namespace
+
+std::uint32_t group_points(std::span<const glm::dvec3> points, std::span<const NearPair> near,
+                           double threshold, std::span<std::uint32_t> order,
+                           std::span<std::uint32_t> parent, std::span<std::uint32_t> groups) {
+  const auto count = static_cast<std::uint32_t>(points.size());
+  if (count == 0) {
+    return 0;
+  }
+  TORSION_ASSERT(order.size() >= count && parent.size() >= count && groups.size() >= count);
+  std::iota(parent.begin(), parent.begin() + count, 0U);
+  for (const NearPair& pair : near) {
+    const glm::dvec3 gap = points[pair.second] - points[pair.first];
+    if (glm::dot(gap, gap) < threshold * threshold) {
+      link(parent, pair.first, pair.second);
+    }
+  }
+  if (number_groups(parent, count, groups) > 1) {
+    link_by_sweep(points, threshold, order.first(count), parent);
+  }
+  return number_groups(parent, count, groups);
 }
 
 }  // namespace torsion

@@ -8,10 +8,12 @@ void Scratch::reserve(const World& world) {
   const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
   sample_distance.assign(samples, 0.0);
   sample_stamp.assign(samples, 0);
+  sample_point.assign(samples, kNoRow);
   candidates.reserve(samples);
   // Every sample of every tool may be inside every body.
   const std::size_t most_points = std::size_t{samples} * bodies;
   points.reserve(most_points);
+  near_pairs.reserve(most_points * kSampleNeighbours);
   pairs.reserve(std::size_t{world.tools.size()} * bodies);
   order.assign(2 * std::size_t{samples}, 0);
   parent.assign(samples, 0);

@@ -10,6 +10,7 @@
 #include "ecs/components.hpp"
 #include "ecs/world.hpp"
 #include "systems/distance.hpp"
+#include "systems/group_points.hpp"
 
 namespace torsion {
 
@@ -25,6 +26,7 @@ struct ContactPair {
   std::uint32_t tool = 0;
   std::uint32_t body = 0;
   Range points;  // in Scratch::points
+  Range near;    // in Scratch::near_pairs, rows counted from points.first
   std::uint32_t clusters = 0;
 };
 
@@ -69,9 +71,11 @@ struct Scratch {
   std::vector<double>
       sample_distance;  // (samples) distance to the current body; valid where stamped
   std::vector<std::uint32_t> sample_stamp;  // (samples)
+  std::vector<std::uint32_t> sample_point;  // (samples) its row in `points`, or kNoRow; likewise
   std::uint32_t stamp = 0;
   std::vector<Candidate> candidates;
   std::vector<ContactPoint> points;
+  std::vector<NearPair> near_pairs;  // points of neighbouring samples
   std::vector<ContactPair> pairs;
   // group_points
   std::vector<std::uint32_t> order;

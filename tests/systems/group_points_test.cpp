@@ -15,11 +15,12 @@ struct Groups {
   std::vector<std::uint32_t> of;
 };
 
-Groups grouped(const std::vector<glm::dvec3>& points, double threshold) {
+Groups grouped(const std::vector<glm::dvec3>& points, double threshold,
+               const std::vector<NearPair>& near = {}) {
   std::vector<std::uint32_t> order(points.size());
   std::vector<std::uint32_t> parent(points.size());
   Groups groups{0, std::vector<std::uint32_t>(points.size())};
-  groups.count = group_points(points, threshold, order, parent, groups.of);
+  groups.count = group_points(points, near, threshold, order, parent, groups.of);
   return groups;
 }
 
@@ -92,6 +93,25 @@ TEST(GroupPointsTest, AgreesWithTheDefinitionOnRandomPoints) {
       }
     }
   }
+}
+
+TEST(GroupPointsTest, KnownNeighboursChangeNothing) {
+  // A row of ten with a gap of one and a half in its middle, threshold 1.2.
+  std::vector<glm::dvec3> points;
+  for (int i = 0; i < 10; ++i) {
+    points.emplace_back(i + (i < 5 ? 0.0 : 0.5), 0.0, 0.0);
+  }
+  const Groups without = grouped(points, 1.2);
+  ASSERT_EQ(without.count, 2U);
+  // Some true links, one that is too long, and a repeated one.
+  const Groups with = grouped(points, 1.2, {{0, 1}, {3, 2}, {4, 5}, {8, 9}, {0, 1}, {0, 9}});
+  EXPECT_EQ(with.count, without.count);
+  EXPECT_EQ(with.of, without.of);
+}
+
+TEST(GroupPointsTest, NeighboursThatJoinAllAreEnough) {
+  const std::vector<glm::dvec3> points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  EXPECT_EQ(grouped(points, 1.2, {{0, 1}, {1, 2}}).count, 1U);
 }
 
 }  // namespace

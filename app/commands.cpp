@@ -1,16 +1,34 @@
 #include "app/commands.hpp"
 
+#include <algorithm>
+#include <vector>
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace torsion {
+namespace {
+
+/// Takes the models that this version has and names them where another is asked for.
+CLI::Validator model_among(const std::vector<std::string>& names) {
+  return {[names](const std::string& name) -> std::string {
+            return std::ranges::find(names, name) != names.end()
+                       ? ""
+                       : fmt::format("this version has no model \"{}\"; it has {}", name,
+                                     fmt::join(names, ", "));
+          },
+          fmt::format("{}", fmt::join(names, "|"))};
+}
+
+}  // namespace
 
 void SceneOptions::add_to(CLI::App& subcommand) {
   subcommand.add_option("SCENE", scene, "A .gltf or .glb by the conventions of docs/scenes.md")
       ->required();
-  subcommand.add_option("--contact-model", contact_model, "auto or paper")
-      ->check(CLI::IsMember({"auto", "paper"}));
-  subcommand.add_option("--body-model", body_model, "auto, none or skeleton")
-      ->check(CLI::IsMember({"auto", "none", "skeleton"}));
+  subcommand.add_option("--contact-model", contact_model, "How a contact gives force and torque")
+      ->check(model_among({"auto", "paper"}));
+  subcommand.add_option("--body-model", body_model, "How a body deforms away from the contact")
+      ->check(model_among({"auto", "none", "skeleton"}));
   subcommand.add_option("--rate", rate, "Steps a second (Hz), 1000 unless said")
       ->check(CLI::Range(1.0, 1e6));
 }

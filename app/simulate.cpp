@@ -32,6 +32,10 @@ int simulate(const SimulateOptions& options) {
     return fail(opened.error().text);
   }
   Session& session = opened.value();
+  if (options.seconds < 0.0 && session.scene.duration <= 0.0) {
+    return fail(session.scene.path +
+                ": no animation moves a tool, so there is no end to run to; say --seconds");
+  }
   std::optional<TraceWriter> trace;
   if (!options.trace.empty()) {
     Result<TraceWriter> created = TraceWriter::create(options.trace, tool_names(session.scene));

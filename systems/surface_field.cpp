@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <glm/geometric.hpp>
 
@@ -189,27 +190,31 @@ const Slot& nearest_slot(std::span<const Slot> slots, std::uint32_t tool, const 
 
 /// How far a point inside the tool must go along `direction` (tool frame) to come out: Newton's
 /// method on the distance, bracketed, because interior distances of tools that are not convex are
-/// not monotone.
+/// not monotone; where the distance hardly changes on the way, steps that double.
 double way_out(const World& world, const Toucher& toucher, const glm::dvec3& start,
                const glm::dvec3& direction, Distance distance) {
-  const double size = glm::length(toucher.bounds.highest - toucher.bounds.lowest);
-  const double tolerance = 1e-7 * size;
+  const double tolerance = 1e-7 * glm::length(toucher.bounds.highest - toucher.bounds.lowest);
+  constexpr double kSlopeOfNewton = 0.1;
   double inside = 0.0;
-  double outside = size;  // a line leaves the tool's box within its diagonal
+  double outside = std::numeric_limits<double>::infinity();
+  double stride = tolerance;
   double t = 0.0;
   for (int i = 0; i < 60 && (distance.value < 0.0 || distance.value > tolerance); ++i) {
     (distance.value < 0.0 ? inside : outside) = t;
     const double slope = glm::dot(distance.gradient, direction);
-    // Aim for half the tolerance outside, so that rounding to float leaves the point out.
-    double next = slope > 0.1 ? t + (0.5 * tolerance - distance.value) / slope
-                              : t + std::abs(distance.value) + tolerance;
-    if (next <= inside || next >= outside) {
-      next = 0.5 * (inside + outside);
+    if (slope > kSlopeOfNewton) {
+      // Aim for half the tolerance outside, so that rounding to float leaves the point out.
+      t += (0.5 * tolerance - distance.value) / slope;
+    } else {
+      stride = std::max(2.0 * stride, std::abs(distance.value));
+      t += stride;
     }
-    t = next;
+    if (t <= inside || t >= outside) {
+      t = 0.5 * (inside + std::min(outside, 2.0 * inside + stride));
+    }
     distance = signed_distance(world, toucher.parts, start + direction * t);
   }
-  return distance.value < 0.0 ? outside : t;
+  return distance.value < 0.0 && std::isfinite(outside) ? outside : t;
 }
 
 /// Which way the body yields to a tool at a point: against the outward normals of the tool's
@@ -228,7 +233,8 @@ glm::dvec3 way_into_body(const BodyField& field, std::uint32_t tool, const glm::
   return length > 0.0 ? sum / length : -nearest_slot(field.slots, tool, point).dent.normal;
 }
 
-/// Pushes a point that is still inside a tool out of it, into the body.
+/// Pushes a point that is still inside a tool out of it: half-way between into the body and the
+/// nearest way out, so that a point beside a steep wall goes to the wall, not down all of it.
 glm::dvec3 push_out(const BodyField& field, const glm::dvec3& rest_place, const glm::dvec3& place) {
   glm::dvec3 pushed = place;
   for (const Toucher& toucher : field.touchers) {
@@ -241,8 +247,11 @@ glm::dvec3 push_out(const BodyField& field, const glm::dvec3& rest_place, const 
       continue;
     }
     const glm::dvec3 inward = way_into_body(field, toucher.tool, rest_place);
-    const glm::dvec3 direction = glm::conjugate(toucher.in_body.rotation) * inward;
-    pushed += inward * way_out(field.world, toucher, in_tool, direction, distance);
+    const glm::dvec3 both = inward + toucher.in_body.rotation * distance.gradient;
+    const double length = glm::length(both);
+    const glm::dvec3 way = length > 0.1 ? both / length : inward;
+    const glm::dvec3 in_tool_way = glm::conjugate(toucher.in_body.rotation) * way;
+    pushed += way * way_out(field.world, toucher, in_tool, in_tool_way, distance);
   }
   return pushed;
 }

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "systems/distance.hpp"
 #include "systems/frames.hpp"
 #include "tests/systems/drawn_body.hpp"
 
@@ -94,6 +95,38 @@ TEST(SurfaceFieldTest, NoVertexIsInsideTheTool) {
       touching += gap < 1e-4 ? 1 : 0;
     }
     EXPECT_GT(touching, 0);
+  }
+}
+
+TEST(SurfaceFieldTest, BesideASteepWallVerticesGoToTheWallNotDownAllOfIt) {
+  // A pin of radius 5 mm, 12 mm deep: vertices from 1 um inside its wall on inwards.
+  BodyDescription body = exact_body(ShapeKind::kBox, glm::dvec3(0.05), FixedKind::kFace, 20);
+  body.models.body = BodyModel::kNone;
+  const std::size_t first = body.draw.positions.size();
+  for (int i = 0; i < 400; ++i) {
+    const double inside = 1e-6 * std::pow(1.02, i);  // m, up to 2.7 mm
+    body.draw.positions.emplace_back(glm::vec3(0.005 - inside, 0.05, 0.0));
+    body.draw.normals.emplace_back(glm::vec3(0.0F, 1.0F, 0.0F));
+    body.draw.fixed.push_back(false);
+  }
+  Drawn drawn(body);
+  ShapePart& pin = drawn.world.parts.at<ShapePart>(1);
+  pin.kind = ShapeKind::kCapsule;
+  pin.half_extent = glm::dvec3(0.005, 0.03, 0.005);
+  drawn.world.tools.at<Bounds>(0) = {-pin.half_extent, pin.half_extent};
+  const double depth = 0.012;
+  drawn.world.tools.at<ToolPose>(0).now.position = glm::dvec3(0.0, 0.05 + 0.03 - depth, 0.0);
+  add_region(drawn.world, {.point = {0.0, 0.05, 0.0}, .radius = 0.005, .depth = depth});
+  drawn.draw();
+  for (std::uint32_t v = 0; v < drawn.vertices(); ++v) {
+    // Pushed out of the pin, but never farther than its tip is deep.
+    EXPECT_LT(glm::distance(drawn.moved(v), drawn.rest(v)), 1.01 * depth);
+    const glm::dvec3 in_tool = to_inner(drawn.world.tools.at<ToolPose>(0).now, drawn.moved(v));
+    EXPECT_GT(signed_distance(drawn.world, {1, 1}, in_tool).value, -1e-7);
+  }
+  for (auto v = static_cast<std::uint32_t>(first + 1); v < drawn.vertices(); ++v) {
+    // The wall holds neighbours: the surface is stretched along it, not torn.
+    EXPECT_LT(glm::distance(drawn.moved(v), drawn.moved(v - 1)), 0.05 * depth);
   }
 }
 

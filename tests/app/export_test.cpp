@@ -1,0 +1,128 @@
+// The exported glTF, read back and looked at as any other program would.
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <gtest/gtest.h>
+#include <tiny_gltf.h>
+
+#include "tests/app/program.hpp"
+
+namespace torsion {
+namespace {
+
+using test::Folder;
+using test::Ran;
+using test::run_torsion;
+using test::scene;
+
+tinygltf::Model exported(const std::string& name, const std::string& time,
+                         const std::string& file) {
+  const Folder folder;
+  const Ran ran = run_torsion({"export", scene(name), "--at", time, "--out", folder / file});
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  tinygltf::Model model;
+  tinygltf::TinyGLTF reader;
+  std::string errors;
+  std::string warnings;
+  const bool binary = file.ends_with(".glb");
+  EXPECT_TRUE(binary ? reader.LoadBinaryFromFile(&model, &errors, &warnings, folder / file)
+                     : reader.LoadASCIIFromFile(&model, &errors, &warnings, folder / file))
+      << errors;
+  EXPECT_EQ(warnings, "");
+  return model;
+}
+
+const tinygltf::Accessor& attribute(const tinygltf::Model& model, std::size_t mesh,
+                                    const std::string& name) {
+  const auto& attributes = model.meshes.at(mesh).primitives.at(0).attributes;
+  return model.accessors.at(static_cast<std::size_t>(attributes.at(name)));
+}
+
+template <class Row>
+std::vector<Row> rows_of(const tinygltf::Model& model, const tinygltf::Accessor& accessor) {
+  const auto& view = model.bufferViews.at(static_cast<std::size_t>(accessor.bufferView));
+  std::vector<Row> rows(accessor.count);
+  EXPECT_EQ(view.byteLength, rows.size() * sizeof(Row));
+  std::memcpy(rows.data(), model.buffers.at(0).data.data() + view.byteOffset, view.byteLength);
+  return rows;
+}
+
+/// What the validator asks of any mesh: bounds that are those of the positions, unit normals, as
+/// many rows in each attribute, indices in range.
+void expect_sound(const tinygltf::Model& model, std::size_t mesh) {
+  const tinygltf::Accessor& position = attribute(model, mesh, "POSITION");
+  glm::dvec3 lowest(1e9);
+  glm::dvec3 highest(-1e9);
+  for (const glm::vec3& row : rows_of<glm::vec3>(model, position)) {
+    lowest = glm::min(lowest, glm::dvec3(row));
+    highest = glm::max(highest, glm::dvec3(row));
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(position.minValues.at(i), lowest[static_cast<int>(i)]);
+    EXPECT_EQ(position.maxValues.at(i), highest[static_cast<int>(i)]);
+  }
+  for (const glm::vec3& normal : rows_of<glm::vec3>(model, attribute(model, mesh, "NORMAL"))) {
+    // Three roundings of float in a length of 1.
+    ASSERT_NEAR(glm::length(normal), 1.0F, 4e-7F);
+  }
+  const tinygltf::Primitive& primitive = model.meshes[mesh].primitives[0];
+  for (const auto& [name, row] : primitive.attributes) {
+    EXPECT_EQ(model.accessors.at(static_cast<std::size_t>(row)).count, position.count) << name;
+  }
+  const auto& indices = model.accessors.at(static_cast<std::size_t>(primitive.indices));
+  for (const std::uint32_t index : rows_of<std::uint32_t>(model, indices)) {
+    ASSERT_LT(index, position.count);
+  }
+}
+
+TEST(ExportTest, BinaryFileHoldsTheTwistedBodyAndItsRestShape) {
+  const tinygltf::Model model = exported("ball_on_cube_soft", "2.0", "d.glb");
+  ASSERT_EQ(model.nodes.size(), 2U);
+  expect_sound(model, 0);
+  expect_sound(model, 1);
+  const auto rest = rows_of<glm::vec3>(model, attribute(model, 0, "_REST_POSITION"));
+  const auto moved = rows_of<glm::vec3>(model, attribute(model, 0, "POSITION"));
+  const auto twist = rows_of<float>(model, attribute(model, 0, "_TWIST_ANGLE"));
+  double largest = 0.0;
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    const glm::vec3 size = glm::abs(rest[i]);
+    EXPECT_NEAR(std::max({size.x, size.y, size.z}), 0.05F, 1e-7F);  // on the cube of 0.1 m
+    if (rest[i] == glm::vec3(0.0F, -0.05F, 0.0F)) {
+      EXPECT_EQ(moved[i], rest[i]);  // the fixed point
+    }
+    if (rest[i] == glm::vec3(0.0F, 0.05F, 0.0F)) {
+      EXPECT_NEAR(moved[i].y, 0.04F, 1e-4F);  // below the ball, which is 10 mm into the cube
+    }
+    largest = std::max(largest, static_cast<double>(std::abs(twist[i])));
+  }
+  // The ball sticks and has turned by 60 degrees: nothing turns farther, what it touches nearly so.
+  const double turned = std::numbers::pi / 3.0;
+  EXPECT_GT(largest, 0.98 * turned);
+  EXPECT_LT(largest, turned + 1e-6);
+}
+
+TEST(ExportTest, TextFileOfSeveralBodiesAndATool) {
+  const tinygltf::Model model = exported("two_bodies", "1.5", "d.gltf");
+  ASSERT_EQ(model.nodes.size(), 3U);
+  EXPECT_EQ(model.nodes[0].name, "firm cube");
+  EXPECT_EQ(model.nodes[2].name, "bar");
+  for (std::size_t mesh = 0; mesh < 3; ++mesh) {
+    expect_sound(model, mesh);
+  }
+  EXPECT_FALSE(model.meshes[2].primitives[0].attributes.contains("_TWIST_ANGLE"));
+}
+
+TEST(ExportTest, BeforeContactTheBodyIsAtRest) {
+  const tinygltf::Model model = exported("compass_on_ellipsoid", "0", "d.glb");
+  EXPECT_EQ(rows_of<glm::vec3>(model, attribute(model, 0, "POSITION")),
+            rows_of<glm::vec3>(model, attribute(model, 0, "_REST_POSITION")));
+}
+
+}  // namespace
+}  // namespace torsion

@@ -1,8 +1,8 @@
 #include "app/output_file.hpp"
 
 #include <cerrno>
-#include <cstring>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +13,11 @@ namespace {
 
 Error cannot_write(const std::filesystem::path& path, const std::string& why) {
   return Error{path.string() + ": cannot be written: " + why + "; choose another place or free it"};
+}
+
+/// What a code of errno means.
+std::string said_by_system(int code) {
+  return std::error_code(code, std::generic_category()).message();
 }
 
 }  // namespace
@@ -41,7 +46,7 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
   temporary += fmt::format(".{}.tmp", ::getpid());
   std::FILE* file = std::fopen(temporary.c_str(), "wb");
   if (file == nullptr) {
-    return cannot_write(path, std::strerror(errno));
+    return cannot_write(path, said_by_system(errno));
   }
   return OutputFile(path, std::move(temporary), file);
 }
@@ -88,7 +93,7 @@ Result<Done> OutputFile::commit() {
     std::error_code ignored;
     std::filesystem::remove(temporary_, ignored);
     return cannot_write(path_, renaming ? renaming.message()
-                                        : (why != 0 ? std::strerror(why) : "the disk is full"));
+                                        : (why != 0 ? said_by_system(why) : "the disk is full"));
   }
   return Done{};
 }

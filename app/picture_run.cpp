@@ -164,7 +164,7 @@ void PictureRun::set_scales(const PictureScales& scales) {
 
 OverlayContent PictureRun::content_of(const Session& session) const {
   const World& world = session.simulation.world;
-  const Clock& clock = world.clock.at<Clock>(0);
+  const auto& clock = world.clock.at<Clock>(0);
   OverlayContent content;
   content.lines = {std::filesystem::path(session.scene.path).stem().string(),
                    fmt::format("time {:.3f} s", clock.time)};

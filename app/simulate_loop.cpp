@@ -2,10 +2,10 @@
 
 #include <atomic>
 #include <chrono>
+#include <ctime>
 #include <thread>
 
 #include <sys/prctl.h>
-#include <time.h>
 
 #include "ecs/ring.hpp"
 

@@ -37,7 +37,7 @@ std::string summary_text(const Session& session, const RunStatistics& statistics
       statistics.contact_steps, statistics.most_regions, statistics.peak_force,
       statistics.peak_torque);
   for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
-    const BodyModels& models = world.bodies.at<BodyModels>(body);
+    const auto& models = world.bodies.at<BodyModels>(body);
     text += fmt::format("body     {}: contact model {}, body model {}\n",
                         session.scene.bodies[body].node, model_name(models.contact),
                         model_name(models.body));
@@ -79,7 +79,7 @@ std::string summary_json(const Session& session, const RunStatistics& statistics
                                  {"world_hash", fmt::format("{:016x}", hash(world))},
                                  {"faults", nlohmann::json::array()}};
   for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
-    const BodyModels& models = world.bodies.at<BodyModels>(body);
+    const auto& models = world.bodies.at<BodyModels>(body);
     json["bodies"].push_back({{"node", session.scene.bodies[body].node},
                               {"contact_model", model_name(models.contact)},
                               {"body_model", model_name(models.body)}});

@@ -1,63 +1,52 @@
 #include "app/output_file.hpp"
 
-#include <fstream>
-#include <iterator>
-
 #include <gtest/gtest.h>
-#include <unistd.h>
+
+#include "tests/app/program.hpp"
 
 namespace torsion {
 namespace {
 
-class OutputFileTest : public testing::Test {
- protected:
-  OutputFileTest()
-      : folder_(std::filesystem::temp_directory_path() /
-                ("torsion_output_" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~OutputFileTest() override { std::filesystem::remove_all(folder_); }
+using test::Folder;
+using test::read_text;
+using test::write_text;
 
-  [[nodiscard]] std::string text(const std::filesystem::path& path) const {
-    std::ifstream file(path);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  }
-
-  std::filesystem::path folder_;
-};
-
-TEST_F(OutputFileTest, AppearsWholeWithItsFolders) {
-  const std::filesystem::path path = folder_ / "a" / "b" / "file.txt";
+TEST(OutputFileTest, AppearsWholeWithItsFolders) {
+  const Folder folder;
+  const std::string path = folder / "a/b/file.txt";
   Result<OutputFile> file = OutputFile::create(path);
   ASSERT_TRUE(file.ok());
   file.value().write("first ");
   file.value().write("second");
   EXPECT_FALSE(std::filesystem::exists(path));
   EXPECT_TRUE(file.value().commit().ok());
-  EXPECT_EQ(text(path), "first second");
+  EXPECT_EQ(read_text(path), "first second");
 }
 
-TEST_F(OutputFileTest, LeavesTheOldFileWhenItIsNotCommitted) {
-  const std::filesystem::path path = folder_ / "file.txt";
-  std::ofstream(path) << "old";
+TEST(OutputFileTest, LeavesTheOldFileWhenItIsNotCommitted) {
+  const Folder folder;
+  const std::string path = folder / "file.txt";
+  write_text(path, "old");
   {
     Result<OutputFile> file = OutputFile::create(path);
     ASSERT_TRUE(file.ok());
     file.value().write("new");
   }
-  EXPECT_EQ(text(path), "old");
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+  EXPECT_EQ(read_text(path), "old");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
-TEST_F(OutputFileTest, RefusesTheNameOfAFolder) {
-  const Result<OutputFile> folder = OutputFile::create(folder_);
-  ASSERT_FALSE(folder.ok());
-  EXPECT_NE(folder.error().text.find("it is a folder"), std::string::npos);
+TEST(OutputFileTest, RefusesTheNameOfAFolder) {
+  const Folder folder;
+  const Result<OutputFile> file = OutputFile::create(folder.path());
+  ASSERT_FALSE(file.ok());
+  EXPECT_NE(file.error().text.find("it is a folder"), std::string::npos);
 }
 
-TEST_F(OutputFileTest, RefusesAFolderBelowAFile) {
-  std::ofstream(folder_ / "file") << "x";
-  const Result<OutputFile> file = OutputFile::create(folder_ / "file" / "below.txt");
+TEST(OutputFileTest, RefusesAFolderBelowAFile) {
+  const Folder folder;
+  write_text(folder / "file", "x");
+  const Result<OutputFile> file = OutputFile::create(folder / "file/below.txt");
   ASSERT_FALSE(file.ok());
   EXPECT_NE(file.error().text.find("cannot be written"), std::string::npos);
 }

@@ -9,8 +9,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-extern char** environ;
-
 namespace torsion::test {
 
 Ran run_torsion(const std::vector<std::string>& words) {
@@ -20,6 +18,7 @@ Ran run_torsion(const std::vector<std::string>& words) {
   std::vector<std::string> all = {std::string(TORSION_BINARY_DIR) + "/torsion"};
   all.insert(all.end(), words.begin(), words.end());
   std::vector<char*> arguments;
+  arguments.reserve(all.size() + 1);
   for (std::string& word : all) {
     arguments.push_back(word.data());
   }

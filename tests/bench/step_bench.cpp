@@ -129,7 +129,7 @@ std::string write_large_scene(const std::filesystem::path& folder) {
   json["nodes"][0]["extras"]["torsion_role"] = "elastic";
   json["nodes"][1]["extras"] = {
       {"torsion_role", "tool"}, {"torsion_device", "mouse"}, {"torsion_shape", "sphere"}};
-  const std::string path = (folder / "large.gltf").string();
+  std::string path = (folder / "large.gltf").string();
   std::ofstream(path) << json.dump();
   return path;
 }
@@ -138,7 +138,8 @@ void load_large_scene(benchmark::State& state, bool cached) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("torsion_bench_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
-  ::setenv("TORSION_CACHE_DIR", (folder / "cache").c_str(), 1);
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): one thread
+  setenv("TORSION_CACHE_DIR", (folder / "cache").c_str(), 1);
   const std::string path = write_large_scene(folder);
   std::size_t triangles = 0;
   for (auto _ : state) {
@@ -153,7 +154,7 @@ void load_large_scene(benchmark::State& state, bool cached) {
     triangles = frame.body_triangles.size();
   }
   state.counters["triangles"] = static_cast<double>(triangles);
-  ::unsetenv("TORSION_CACHE_DIR");
+  unsetenv("TORSION_CACHE_DIR");  // NOLINT(concurrency-mt-unsafe): one thread
   std::filesystem::remove_all(folder);
 }
 

@@ -131,17 +131,45 @@ void find_depths(const Grid& grid) {
   }
 }
 
-/// The share of each cell with depth > 0, to first order.
+/// The share of a cell with depth > 0, to first order.
+/// @param across  m: how much the depth changes across the cell
+double share_below(double depth, double across) {
+  return 2.0 * std::abs(depth) >= across ? (depth > 0.0 ? 1.0 : 0.0) : 0.5 + depth / across;
+}
+
+/// Beside an edge of the body its side is nearest: that says how much of the cell is over the body,
+/// but the depth is the one under the face that the tool presses on, here its tangent plane.
+void take_depth_from_plane(const Grid& grid, std::size_t cell, double facing) {
+  const CellColumns& columns = grid.scratch.cell_columns;
+  const glm::dvec2 half = cell_half_size(grid);
+  const double over_slope = 1.0 / larger(-columns.tool_z[cell], kSteepest);
+  const double across =
+      2.0 * over_slope *
+          (std::abs(columns.tool_x[cell]) * half.x + std::abs(columns.tool_y[cell]) * half.y) +
+      1e-30;
+  CellGeometry& geometry = grid.cells[cell];
+  const double below = share_below(-geometry.height, across);
+  const double mean = below < 1.0 ? 0.5 * below * across : -geometry.height;
+  geometry.depth = facing * geometry.depth - (1.0 - facing) * geometry.height;
+  geometry.coverage *= facing + (1.0 - facing) * below;
+  if (geometry.coverage > 0.0) {
+    // What makes the mean over the covered part of a cell that is partly covered be `mean`.
+    columns.depth_change[cell] =
+        facing * columns.depth_change[cell] + (1.0 - facing) * 2.0 * mean / geometry.coverage;
+  }
+}
+
 void find_coverage(const Grid& grid) {
   const CellColumns& columns = grid.scratch.cell_columns;
   for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
-    const double depth = columns.depth[cell];
-    const double across = columns.depth_change[cell];
     CellGeometry& geometry = grid.cells[cell];
     geometry.height = columns.points.z[cell];
-    geometry.depth = depth;
-    geometry.coverage =
-        2.0 * std::abs(depth) >= across ? (depth > 0.0 ? 1.0 : 0.0) : 0.5 + depth / across;
+    geometry.depth = columns.depth[cell];
+    geometry.coverage = share_below(geometry.depth, columns.depth_change[cell]);
+    const double facing = facing_share(columns.points.gradient_z[cell]);
+    if (facing < 1.0 && geometry.coverage > 0.0) {
+      take_depth_from_plane(grid, cell, facing);
+    }
   }
 }
 

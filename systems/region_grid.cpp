@@ -204,8 +204,11 @@ RegionGeometry summarize(const Grid& grid) {
       volume += share * covered_depth(row, columns.depth_change[cell]);
       geometry.largest_depth = std::max(geometry.largest_depth, row.depth);
       first_moment += share * glm::dvec3(cell_center(grid.frame, grid.side, i, j), row.height);
-      normal += share * glm::dvec3(columns.points.gradient_x[cell], columns.points.gradient_y[cell],
-                                   columns.points.gradient_z[cell]);
+      // Of cells whose centre is over the body, and of the face that is pressed.
+      const double counted = std::max(2.0 * row.coverage - 1.0, 0.0) * area;
+      normal += counted * facing_share(columns.points.gradient_z[cell]) *
+                glm::dvec3(columns.points.gradient_x[cell], columns.points.gradient_y[cell],
+                           columns.points.gradient_z[cell]);
     }
   }
   if (geometry.area > 0.0) {

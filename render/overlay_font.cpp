@@ -15,7 +15,6 @@
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
 #pragma GCC diagnostic ignored "-Wcast-align"
-#pragma GCC diagnostic ignored "-Wuseless-cast"
 #include <stb/stb_truetype.h>
 #pragma GCC diagnostic pop
 
@@ -40,7 +39,8 @@ __asm__(
 namespace torsion {
 namespace {
 
-constexpr int kAtlasSide = 1024;
+constexpr int kAtlasSide = 1024;  // texels
+constexpr std::size_t kAtlasTexels = std::size_t{kAtlasSide} * kAtlasSide;
 constexpr char32_t kDegree = 0xB0;
 
 /// The next character of UTF-8 text; what is cut off or not UTF-8 counts as '?'.
@@ -65,7 +65,7 @@ char32_t next_letter(std::string_view& text) {
 
 OverlayFont::OverlayFont(double height) {
   const float size = static_cast<float>(std::clamp(height, 8.0, 128.0)) / 1.2F;
-  atlas_ = {kAtlasSide, kAtlasSide, std::vector<std::uint8_t>(kAtlasSide * kAtlasSide, 0)};
+  atlas_ = {kAtlasSide, kAtlasSide, std::vector<std::uint8_t>(kAtlasTexels, 0)};
   std::array<stbtt_packedchar, kCount> packed{};
   stbtt_pack_context context;
   stbtt_PackBegin(&context, atlas_.alpha.data(), kAtlasSide, kAtlasSide, 0, 2, nullptr);
@@ -83,8 +83,9 @@ OverlayFont::OverlayFont(double height) {
                        from.xadvance});
   }
   // A solid patch in the last corner, which the packing leaves free.
-  for (int row = kAtlasSide - 4; row < kAtlasSide; ++row) {
-    std::fill_n(atlas_.alpha.begin() + row * kAtlasSide + kAtlasSide - 4, 4, std::uint8_t{255});
+  for (std::size_t row = 1; row <= 4; ++row) {
+    std::fill_n(atlas_.alpha.end() - static_cast<std::ptrdiff_t>((row - 1) * kAtlasSide + 4), 4,
+                std::uint8_t{255});
   }
   solid_u_ = solid_v_ = 1.0F - 2.0F / static_cast<float>(kAtlasSide);
   line_height_ = 1.2 * static_cast<double>(size);

@@ -19,6 +19,8 @@ class VideoWriter {
   static Result<VideoWriter> create(const std::filesystem::path& path, std::uint32_t width,
                                     std::uint32_t height, double frames_per_second);
 
+  VideoWriter(const VideoWriter&) = delete;
+  VideoWriter& operator=(const VideoWriter&) = delete;
   VideoWriter(VideoWriter&&) noexcept;
   VideoWriter& operator=(VideoWriter&&) noexcept;
   ~VideoWriter();  // without finish(): ends ffmpeg and takes away what it wrote

@@ -73,7 +73,7 @@ CarriedCell between(std::span<const CarriedCell> old, std::uint32_t side, glm::d
   const auto j = static_cast<std::uint32_t>(place.y);
   const double x = place.x - static_cast<double>(i);
   const double y = place.y - static_cast<double>(j);
-  const CarriedCell* at = old.data() + j * (side + 2) + i;
+  const CarriedCell* at = &old[std::size_t{j} * (side + 2) + i];
   const CarriedCell low = mix(at[0], at[1], x);
   const CarriedCell high = mix(at[side + 2], at[side + 3], x);
   return mix(low, high, y);

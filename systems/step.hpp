@@ -25,6 +25,8 @@ std::vector<System<StepContext>> step_systems();
 /// A world with the schedule that moves it and the memory that the schedule needs.
 struct Simulation {
   Simulation();
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();

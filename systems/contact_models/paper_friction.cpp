@@ -162,10 +162,11 @@ struct CellSums {
   double area = 0.0;
   double stuck_area = 0.0;
   glm::dvec2 force{0.0};
-  double couple = 0.0;      // N m about the normal through p_eq
-  glm::dvec2 plastic{0.0};  // m, mean: translation that the elastic limit cut off
-  double moved = 0.0;       // m, largest
-  double twist = 0.0;       // rad, mean over the stuck area after division
+  double couple = 0.0;           // N m about the normal through p_eq
+  glm::dvec2 plastic{0.0};       // m, mean: translation that the elastic limit cut off
+  double moved = 0.0;            // m, largest
+  double stuck_couple = 0.0;     // N m about the pivot, of the cells that stick
+  double stuck_stiffness = 0.0;  // N m/rad, of the same
 };
 
 CellSums update_cells(World& world, std::uint32_t region, const BrushState& brush) {
@@ -204,16 +205,13 @@ CellSums update_cells(World& world, std::uint32_t region, const BrushState& brus
       const double arm_squared = glm::dot(turning_arm, turning_arm);
       if (tractions[cell].sticks != 0 && arm_squared > 0.0) {
         sums.stuck_area += area;
-        sums.twist -=
-            (turning_arm.x * force.y - turning_arm.y * force.x) / (twist_stiffness * arm_squared);
+        sums.stuck_couple += turning_arm.x * force.y - turning_arm.y * force.x;
+        sums.stuck_stiffness += twist_stiffness * arm_squared * area;
       }
     }
   }
   const double plastic_stiffness = brush.translation_stiffness * sums.area;
   sums.plastic = plastic_stiffness > 0.0 ? sums.plastic / plastic_stiffness : glm::dvec2(0.0);
-  if (sums.stuck_area > 0.0) {
-    sums.twist /= sums.stuck_area;
-  }
   return sums;
 }
 
@@ -242,8 +240,10 @@ void set_stick_radius(const BrushState& brush, const CellSums& sums, const Regio
   const double limit_arc =
       limit * motion.lever / brush.shear_modulus;  // m: r phi that the limit stands for
   if (sums.stuck_area > 0.0) {
-    const double twist = std::abs(sums.twist);
-    friction.stick_turn = sums.twist;
+    // What the springs of the cells that stick are turned by, all together: of tractions that the
+    // region's sliding left in them little is left.
+    friction.stick_turn = -sums.stuck_couple / sums.stuck_stiffness;
+    const double twist = std::abs(friction.stick_turn);
     friction.stick_radius =
         twist * geometry.radius > limit_arc ? limit_arc / twist : geometry.radius;
     return;

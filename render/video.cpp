@@ -4,8 +4,8 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <fcntl.h>
@@ -17,6 +17,11 @@ extern char** environ;
 
 namespace torsion {
 namespace {
+
+/// strerror() shares its text between threads; this does not.
+std::string error_text(int number) {
+  return std::generic_category().message(number);
+}
 
 /// The last lines that a process left in a file.
 std::string tail_of(int file) {
@@ -82,6 +87,11 @@ struct VideoWriter::Encoder {
   int pipe = -1;      // to ffmpeg
   int messages = -1;  // an unnamed file with what ffmpeg says
 
+  Encoder() = default;
+  Encoder(const Encoder&) = delete;
+  Encoder& operator=(const Encoder&) = delete;
+  Encoder(Encoder&&) = delete;
+  Encoder& operator=(Encoder&&) = delete;
   ~Encoder() {
     close_if_open(pipe);
     if (process > 0) {
@@ -114,13 +124,14 @@ Result<Done> VideoWriter::Encoder::start(double frames_per_second) {
   std::vector<std::string> words =
       ffmpeg_words(width, height, frames_per_second, temporary.string());
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) {
     arguments.push_back(word.data());
   }
   arguments.push_back(nullptr);
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
-    return failure(std::strerror(errno));
+    return failure(error_text(errno));
   }
   messages = ::open("/tmp", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   posix_spawn_file_actions_t actions;
@@ -137,7 +148,7 @@ Result<Done> VideoWriter::Encoder::start(double frames_per_second) {
   pipe = ends[1];
   if (failed != 0) {
     process = -1;
-    return failure(std::string("ffmpeg does not start: ") + std::strerror(failed) +
+    return failure(std::string("ffmpeg does not start: ") + error_text(failed) +
                    "; install the package ffmpeg, or name a folder to get pictures");
   }
   return Done{};
@@ -177,7 +188,7 @@ Result<Done> VideoWriter::add(const Image& image) {
       continue;
     }
     if (count < 0) {
-      return encoder_->failure(std::string("ffmpeg stopped: ") + std::strerror(errno));
+      return encoder_->failure(std::string("ffmpeg stopped: ") + error_text(errno));
     }
     done += static_cast<std::size_t>(count);
   }

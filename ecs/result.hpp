@@ -16,7 +16,7 @@ template <class T>
 class [[nodiscard]] Result {
  public:
   Result(T value) : content_(std::move(value)) {}  // NOLINT(google-explicit-constructor): return v;
-  Result(Error error)  // NOLINT(google-explicit-constructor): return e;
+  Result(Error error)                              // NOLINT(google-explicit-constructor): return e;
       : content_(std::move(error)) {}
 
   [[nodiscard]] bool ok() const { return content_.index() == 0; }

@@ -45,8 +45,8 @@ using CellBits = std::array<std::uint64_t, kMaxGridSide>;
 /// The cells with coverage.
 CellBits covered_cells(const Grid& grid);
 
-/// How much a cell's nearest face of the body counts as the one that the tool presses on: 1 while it
-/// faces the grid, 0 where it is the body's side, beside an edge or deep down.
+/// How much a cell's nearest face of the body counts as the one that the tool presses on: 1 while
+/// it faces the grid, 0 where it is the body's side, beside an edge or deep down.
 /// @param slope  cosine between that face's normal and the grid's
 inline double facing_share(double slope) {
   const double t = slope < 0.25 ? 0.0 : slope > 0.5 ? 1.0 : 4.0 * slope - 1.0;

@@ -114,6 +114,8 @@ TEST(SimulateTest, RealtimeRunsOnTheClock) {
   EXPECT_GE(summary["wall_s"].get<double>(), 0.498);
   EXPECT_LE(summary["rate_Hz"].get<double>(), 1005.0);
   EXPECT_TRUE(summary.contains("missed_deadlines"));
+  const Ran fast = run_torsion({"simulate", scene("ball_on_cube"), "--seconds", "0.5", "--json"});
+  EXPECT_EQ(json::parse(fast.out)["world_hash"], summary["world_hash"]);
 }
 
 TEST(SimulateTest, SeveralToolsWouldHaveColumnsOfTheirOwnAndBodiesShareOneTool) {

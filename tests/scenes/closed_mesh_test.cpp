@@ -1,6 +1,5 @@
 #include "scenes/closed_mesh.hpp"
 
-
 #include <gtest/gtest.h>
 
 #include "scenes/exact_shapes.hpp"

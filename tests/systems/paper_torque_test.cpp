@@ -122,8 +122,8 @@ TEST(PaperTorqueTest, ErrorFallsWithTheNumberOfCells) {
   };
   const double coarse = worst_error(8);
   const double fine = worst_error(32);
-  // The area of cells with a covered share errs by less than their size squared, and the torque goes with a^4 at most:
-  // second order would give a factor of 16 from 8 to 32, first order 4.
+  // The area of cells with a covered share errs by less than their size squared, and the torque
+  // goes with a^4 at most: second order would give a factor of 16 from 8 to 32, first order 4.
   EXPECT_LT(fine, coarse / 8.0);
   EXPECT_LT(fine, 8.0 / (32.0 * 32.0));
 }

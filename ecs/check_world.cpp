@@ -41,6 +41,8 @@ void check_sizes(const World& world, Findings& findings) {
   findings.require(side >= 1 && side <= kMaxGridSide, "settings", 0, "grid_side must be 1 to 64");
   findings.require(world.cells.capacity() >= world.regions.capacity() * side * side, "cells", 0,
                    "there must be room for one grid a region");
+  findings.require(world.patch_cells.size() == 0 || world.patch_cells.size() == world.cells.size(),
+                   "patch_cells", 0, "there must be as many as cells, or none");
 }
 
 void check_fields(const World& world, Findings& findings) {
@@ -98,6 +100,8 @@ void check_owned_rows(const World& world, std::string_view table, const OwnedRow
   findings.require(inside(owned.balls, world.balls.size()), table, row, "its balls are not there");
   findings.require(inside(owned.anchors, world.anchors.size()), table, row,
                    "its anchors are not there");
+  findings.require(inside(owned.influences, world.influences.size()), table, row,
+                   "its influence tables are not there");
 }
 
 void check_owners(const World& world, Findings& findings) {

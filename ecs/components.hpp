@@ -144,7 +144,7 @@ struct FixedVolume {
   std::uint32_t padding = 0;
 };
 
-enum class ContactModel : std::uint32_t { kAuto, kPaper };
+enum class ContactModel : std::uint32_t { kAuto, kPaper, kMdr, kPatch };
 enum class BodyModel : std::uint32_t { kAuto, kNone, kSkeleton };
 
 /// What the scene asked for and, once prepared, what runs (never kAuto). Written by: load.
@@ -157,10 +157,11 @@ struct BodyModels {
 
 /// Which rows of other tables belong to a tool or body. Written by: load.
 struct OwnedRows {
-  Range parts;    // in `parts`
-  Range samples;  // in `samples`; tools only
-  Range balls;    // in `balls`; tools only
-  Range anchors;  // in `anchors`; bodies only
+  Range parts;       // in `parts`
+  Range samples;     // in `samples`; tools only
+  Range balls;       // in `balls`; tools only
+  Range anchors;     // in `anchors`; bodies only
+  Range influences;  // in `influences`; bodies with contact model patch only
 };
 
 /// Axis-aligned box of the rest shape in the owner's frame. Written by: load.
@@ -231,6 +232,14 @@ struct RegionFrame {
   glm::dvec2 half_size{0.0};            // m: the grid covers origin +- half_size
 };
 
+/// How the material under the region has moved from where the rest shape has it, as a rigid body.
+/// Contact is found against the rest shape, so the tool is seen from the moved material. Written
+/// by: the contact model; zero for `paper`.
+struct RegionCarrier {
+  glm::dvec3 translation{0.0};  // m, body, of the grid's origin
+  glm::dvec3 rotation{0.0};     // rad, body: rotation vector
+};
+
 /// Where the tractions are: the grid as it was when they were last carried over to it, moved since
 /// with the material where that sticks; half_size 0 before the first time. Written by:
 /// group_regions and carry_tractions.
@@ -276,6 +285,19 @@ struct RegionFriction {
   double stick_share = 0.0;    // of the area that sticks: there the body moves with the tool
 };
 
+/// How the contact model `patch` stands in a region. Written by: patch_forces.
+struct PatchState {
+  glm::dvec2 slide{0.0};      // m, grid: motion of the last step, as in RegionMotion
+  double spin = 0.0;          // rad, likewise
+  double deepened = 0.0;      // m: change of the largest depth in the last step
+  double depth = 0.0;         // m: the largest depth
+  double residual = 0.0;      // of the pressures and tractions, relative to the mean pressure
+  std::uint32_t sweeps = 0;   // in the last step
+  std::uint32_t started = 0;  // 0: no solution yet
+  std::uint32_t moved = 0;    // 1: the grid has moved, displacements must be found anew
+  std::uint32_t padding = 0;
+};
+
 /// Written by: region_wrenches.
 struct RegionWrench {
   Wrench on_tool;            // world, about the tool's mass centre, as let out
@@ -304,6 +326,30 @@ struct CellTraction {
   double coverage = 0.0;       // share of the cell that the traction acts on
   std::uint32_t sticks = 0;    // 1: sticks, 0: slips or carries nothing
   std::uint32_t padding = 0;
+};
+
+/// One value of the influence tables that fill_influences
+/// (systems/contact_models/influence.hpp) makes. Written by: load.
+struct Influence {
+  double value = 0.0;
+};
+
+/// The body's surface under one cell of a region with contact model `patch`. Written by:
+/// patch_forces.
+struct PatchCell {
+  glm::dvec2 displacement{0.0};  // m, grid: of the local half-space, tangential
+  double depression = 0.0;       // m: into the body
+  glm::dvec2 held{0.0};          // m, grid: the displacement at which friction holds or has left it
+  std::uint32_t known = 0;       // 0: `held` is what the displacement is
+  std::uint32_t padding = 0;
+};
+
+/// What the last step changed of it, from which the next one starts. Written by: patch_forces.
+struct PatchChange {
+  glm::dvec2 traction{0.0};      // Pa, grid, on the body
+  double pressure = 0.0;         // Pa
+  glm::dvec2 displacement{0.0};  // m, grid
+  double depression = 0.0;       // m
 };
 
 // ------------------------------------------------------------------------------------------------------

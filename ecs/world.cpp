@@ -11,12 +11,14 @@ void World::reserve(const Capacities& capacities, const Settings& chosen) {
   fixed_volumes.reserve(capacities.fixed_volumes);
   samples.reserve(capacities.samples);
   balls.reserve(capacities.balls);
+  influences.reserve(capacities.influences);
   sections.reserve(capacities.anchors * kBeamStations);
   clock.reserve(1);
   bodies.reserve(capacities.bodies);
   tools.reserve(capacities.tools);
   regions.reserve(capacities.regions);
   cells.reserve(capacities.regions * chosen.grid_side * chosen.grid_side);
+  patch_cells.reserve(capacities.influences > 0 ? cells.capacity() : 0);
   anchors.reserve(capacities.anchors);
   body_handles.reserve(capacities.bodies);
   tool_handles.reserve(capacities.tools);

@@ -22,6 +22,7 @@ struct Capacities {
   std::uint32_t balls = 0;
   std::uint32_t anchors = 0;
   std::uint32_t regions = 0;
+  std::uint32_t influences = 0;  // 0 when no body has contact model patch
 };
 
 /// What can go wrong in a step. The step still ends; the tools' wrenches fade to zero while a fault
@@ -52,7 +53,7 @@ inline constexpr std::uint32_t kMaxGridSide = 64;
 struct Settings {
   std::uint32_t grid_side = 16;  // cells along one side of a region's grid, 1 to kMaxGridSide; 16
                                  // gives about 200 in a round contact
-  std::uint32_t padding = 0;
+  std::uint32_t sweeps = 2;      // over the cells of a region with contact model patch in one step
 };
 
 // Parallel columns of each table. What a column means is said at its struct in ecs/components.hpp.
@@ -60,9 +61,10 @@ using BodyTable =
     Table<Entity, Pose, Elasticity, Friction, FixedRegion, BodyModels, OwnedRows, Bounds>;
 using ToolTable =
     Table<Entity, ToolPose, ToolMotion, MassProperties, ToolWrench, OwnedRows, Bounds>;
-using RegionTable = Table<RegionIdentity, RegionFrame, TractionFrame, RegionGeometry, RegionMotion,
-                          RegionNormal, RegionFriction, RegionWrench>;
+using RegionTable = Table<RegionIdentity, RegionFrame, RegionCarrier, TractionFrame, RegionGeometry,
+                          RegionMotion, RegionNormal, RegionFriction, PatchState, RegionWrench>;
 using CellTable = Table<CellGeometry, CellTraction>;
+using PatchCellTable = Table<PatchCell, PatchChange>;
 using AnchorTable = Table<AnchorRest, AnchorMotion>;
 
 /// The physics world: everything that one step knows. A step is a pure function of it and of the
@@ -77,6 +79,7 @@ struct World {
   Table<FixedVolume> fixed_volumes;
   Table<SurfaceSample> samples;
   Table<SurfaceBall> balls;
+  Table<Influence> influences;
   Table<BeamSection> sections;  // kBeamStations rows an anchor, in the order of `anchors`
   // written by the step
   Table<Clock> clock;
@@ -84,6 +87,7 @@ struct World {
   ToolTable tools;
   RegionTable regions;
   CellTable cells;  // blocks of grid_side^2 rows, one for each row that `regions` can hold
+  PatchCellTable patch_cells;  // the same rows as `cells`; none without contact model patch
   AnchorTable anchors;
   // handles
   EntityPool body_handles;
@@ -95,11 +99,13 @@ struct World {
 
   [[nodiscard]] auto tables() {
     return std::tie(settings, parts, fields, field_nodes, field_bricks, fixed_volumes, samples,
-                    balls, sections, clock, bodies, tools, regions, cells, anchors);
+                    balls, influences, sections, clock, bodies, tools, regions, cells, patch_cells,
+                    anchors);
   }
   [[nodiscard]] auto tables() const {
     return std::tie(settings, parts, fields, field_nodes, field_bricks, fixed_volumes, samples,
-                    balls, sections, clock, bodies, tools, regions, cells, anchors);
+                    balls, influences, sections, clock, bodies, tools, regions, cells, patch_cells,
+                    anchors);
   }
   [[nodiscard]] auto pools() { return std::tie(body_handles, tool_handles, region_handles); }
   [[nodiscard]] auto pools() const { return std::tie(body_handles, tool_handles, region_handles); }

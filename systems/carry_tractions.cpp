@@ -146,7 +146,10 @@ void carry(StepContext& context, std::uint32_t region) {
 
 void carry_tractions(StepContext& context) {
   for (std::uint32_t region = 0; region < context.world.regions.size(); ++region) {
-    carry(context, region);
+    const std::uint32_t body = context.world.regions.at<RegionIdentity>(region).body;
+    if (context.world.bodies.at<BodyModels>(body).contact == ContactModel::kPaper) {
+      carry(context, region);
+    }
   }
 }
 

@@ -19,11 +19,23 @@ Pose grid_in_body(const RegionFrame& frame) {
   return {frame.origin, glm::quat_cast(glm::dmat3(frame.tangent_x, frame.tangent_y, frame.normal))};
 }
 
+/// Where the material under the grid has gone, in the frame of its body.
+Pose moved_grid_in_body(const Grid& grid) {
+  const RegionCarrier& carrier = grid.carrier;
+  Pose moved = grid_in_body(grid.frame);
+  const double angle = glm::length(carrier.rotation);
+  if (angle > 0.0) {
+    moved.rotation = glm::angleAxis(angle, carrier.rotation / angle) * moved.rotation;
+  }
+  moved.position += carrier.translation;
+  return moved;
+}
+
 /// The same in that of its tool.
 Pose grid_in_tool(const Grid& grid) {
   const Pose tool_in_body = relative(grid.world.bodies.at<Pose>(grid.identity.body),
                                      grid.world.tools.at<ToolPose>(grid.identity.tool).now);
-  return relative(tool_in_body, grid_in_body(grid.frame));
+  return relative(tool_in_body, moved_grid_in_body(grid));
 }
 
 /// The cells' centres as columns of points, in the grid's frame.

@@ -15,6 +15,7 @@ struct Grid {
   Scratch& scratch;
   RegionIdentity identity;
   RegionFrame& frame;
+  const RegionCarrier& carrier;
   std::uint32_t side;
   std::span<CellGeometry> cells;
 };
@@ -26,6 +27,7 @@ inline Grid grid_of(StepContext& context, std::uint32_t region) {
           context.scratch,
           identity,
           world.regions.at<RegionFrame>(region),
+          world.regions.at<RegionCarrier>(region),
           world.settings.at<Settings>(0).grid_side,
           world.cells.rows<CellGeometry>(identity.cells)};
 }

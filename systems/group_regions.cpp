@@ -91,6 +91,10 @@ void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t c
   clock.regions_formed += 1;
   std::ranges::fill(world.cells.rows<CellGeometry>(cells), CellGeometry{});
   std::ranges::fill(world.cells.rows<CellTraction>(cells), CellTraction{});
+  if (!world.patch_cells.empty()) {
+    std::ranges::fill(world.patch_cells.rows<PatchCell>(cells), PatchCell{});
+    std::ranges::fill(world.patch_cells.rows<PatchChange>(cells), PatchChange{});
+  }
   place_new_grid(context, row, {pair.points, cluster});
   world.regions.at<RegionWrench>(row).event_now =
       1;  // on_tool is zero: what it exerts at birth fades in

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "systems/contact_models/influence.hpp"
 #include "systems/distance_field_build.hpp"
 #include "systems/frames.hpp"
 #include "systems/prepare_anchors.hpp"
@@ -66,12 +67,27 @@ Result<Built> build(const SceneDescription& scene, const PrepareOptions& options
   return built;
 }
 
-Capacities capacities_of(const SceneDescription& scene, const Built& built) {
+/// What `auto` means, and what the caller insists on.
+BodyModels choose_models(const BodyDescription& body, const PrepareOptions& options) {
+  BodyModels models = body.models;
+  models.contact =
+      options.contact_model != ContactModel::kAuto ? options.contact_model : models.contact;
+  models.body = options.body_model != BodyModel::kAuto ? options.body_model : models.body;
+  models.contact = models.contact == ContactModel::kAuto ? ContactModel::kPaper : models.contact;
+  models.body = models.body == BodyModel::kAuto ? BodyModel::kSkeleton : models.body;
+  return models;
+}
+
+Capacities capacities_of(const SceneDescription& scene, const PrepareOptions& options,
+                         const Built& built) {
   Capacities needed;
   needed.bodies = static_cast<std::uint32_t>(scene.bodies.size());
   needed.tools = static_cast<std::uint32_t>(scene.tools.size());
   for (const BodyDescription& body : scene.bodies) {
     needed.parts += static_cast<std::uint32_t>(body.parts.size());
+    if (choose_models(body, options).contact == ContactModel::kPatch) {
+      needed.influences += static_cast<std::uint32_t>(influence_count(options.settings.grid_side));
+    }
     needed.fixed_volumes += static_cast<std::uint32_t>(body.fixed_volumes.size());
   }
   for (const ToolDescription& tool : scene.tools) {
@@ -136,17 +152,6 @@ Bounds bounds_of(std::span<const PartDescription> parts) {
   return bounds;
 }
 
-/// What `auto` means while there is one contact model, and what the caller insists on.
-BodyModels choose_models(const BodyDescription& body, const PrepareOptions& options) {
-  BodyModels models = body.models;
-  models.contact =
-      options.contact_model != ContactModel::kAuto ? options.contact_model : models.contact;
-  models.body = options.body_model != BodyModel::kAuto ? options.body_model : models.body;
-  models.contact = models.contact == ContactModel::kAuto ? ContactModel::kPaper : models.contact;
-  models.body = models.body == BodyModel::kAuto ? BodyModel::kSkeleton : models.body;
-  return models;
-}
-
 double default_threshold(const World& world) {
   const auto samples = world.samples.column<SurfaceSample>();
   const double sum =
@@ -184,6 +189,14 @@ void append_body(World& world, const BodyDescription& body, const PrepareOptions
     owned.anchors = append_rows<AnchorRest>(world.anchors, prepared.anchors);
     append_rows<BeamSection>(world.sections, prepared.sections);
   }
+  if (models.contact == ContactModel::kPatch) {
+    const std::uint32_t side = options.settings.grid_side;
+    owned.influences = *world.influences.append(static_cast<std::uint32_t>(influence_count(side)));
+    std::vector<double> values(owned.influences.count);
+    fill_influences(body.elasticity.poisson_ratio, side, values);
+    std::ranges::transform(values, world.influences.rows<Influence>(owned.influences).begin(),
+                           [](double value) { return Influence{value}; });
+  }
   const std::uint32_t row = world.bodies.append()->first;
   world.bodies.at<Entity>(row) = *world.body_handles.create(row);
   world.bodies.at<Pose>(row) = body.pose;
@@ -212,7 +225,7 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
   }
   Simulation simulation;
   World& world = simulation.world;
-  world.reserve(capacities_of(scene, built.value()), options.settings);
+  world.reserve(capacities_of(scene, options, built.value()), options.settings);
   world.clock.at<Clock>(0).dt = 1.0 / options.rate;
   std::size_t next_field = 0;
   for (const BodyDescription& body : scene.bodies) {
@@ -225,6 +238,7 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
     models.region_threshold = std::max(models.region_threshold, default_threshold(world));
   }
   TORSION_ASSERT(world.cells.append(world.cells.capacity()).has_value());
+  TORSION_ASSERT(world.patch_cells.append(world.patch_cells.capacity()).has_value());
   simulation.scratch->reserve(world);
   simulation.schedule =
       Schedule<StepContext>(step_systems(), StepContext{world, {}, *simulation.scratch});

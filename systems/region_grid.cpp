@@ -8,6 +8,7 @@
 
 #include "systems/frames.hpp"
 #include "systems/grid_cells.hpp"
+#include "systems/patch_grid.hpp"
 
 namespace torsion {
 namespace {
@@ -74,8 +75,11 @@ PlaneBox covered_box(const Grid& grid, const CellBits& covered) {
 
 /// Half the sides of the grid that suits a contact. A sliver is given a tenth of its length in
 /// width, so that no cell degenerates.
-glm::dvec2 half_size_for(const PlaneBox& box) {
+glm::dvec2 half_size_for(const Grid& grid, const PlaneBox& box) {
   const glm::dvec2 half = 0.5 * (box.highest - box.lowest);
+  if (has_patch(grid.world, grid.identity)) {
+    return patch_half_size(kMargin * glm::max(half, glm::dvec2(kSmallestHalf)));
+  }
   const double least = std::max(0.1 * std::max(half.x, half.y), kSmallestHalf);
   return kMargin * glm::max(half, glm::dvec2(least));
 }
@@ -83,7 +87,7 @@ glm::dvec2 half_size_for(const PlaneBox& box) {
 /// Puts the grid around `box` (of its own plane) and its origin back on the body's rest surface.
 void fit(const Grid& grid, const PlaneBox& box) {
   RegionFrame& frame = grid.frame;
-  frame.half_size = half_size_for(box);
+  frame.half_size = half_size_for(grid, box);
   frame.origin += tangent_to_body(frame, 0.5 * (box.lowest + box.highest));
   const Distance surface = signed_distance(
       grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts, frame.origin);
@@ -148,7 +152,7 @@ void restart_heights(const Grid& grid, double depth) {
 
 /// True when a further pass would leave the grid where it is.
 bool settled(const Grid& grid, const PlaneBox& box) {
-  const glm::dvec2 change = glm::abs(half_size_for(box) - grid.frame.half_size);
+  const glm::dvec2 change = glm::abs(half_size_for(grid, box) - grid.frame.half_size);
   const glm::dvec2 shift = glm::abs(0.5 * (box.lowest + box.highest));
   const glm::dvec2 off = glm::max(change, shift) / grid.frame.half_size;
   return std::max(off.x, off.y) < kSettled;
@@ -274,6 +278,11 @@ void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoin
 void follow_contact(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const Grid grid = grid_of(context, region);
   contact_of(context, grid.identity) = contact;
+  if (has_patch(context.world, grid.identity)) {
+    follow_patch(context, region, contact);
+    turn_to(grid.frame, context.world.regions.at<RegionGeometry>(region).mean_normal);
+    return;
+  }
   follow_material(context.world, region);
   PlaneBox box = covered_box(grid, covered_cells(grid));
   include_points(grid, contact, box);
@@ -287,10 +296,16 @@ void region_grids(StepContext& context) {
   for (std::uint32_t region = 0; region < context.world.regions.size(); ++region) {
     const Grid grid = grid_of(context, region);
     const RegionPoints& contact = contact_of(context, grid.identity);
-    glm::dvec3 deepest(0.0);
-    const double depth = deepest_point(points_of(grid.scratch, contact), contact.cluster, deepest);
-    find_contact(grid, contact, depth,
-                 context.world.regions.at<RegionWrench>(region).event_now != 0);
+    if (has_patch(context.world, grid.identity) &&
+        context.world.regions.at<PatchState>(region).started != 0) {
+      find_cells(grid, contact);
+    } else {
+      glm::dvec3 deepest(0.0);
+      const double depth =
+          deepest_point(points_of(grid.scratch, contact), contact.cluster, deepest);
+      find_contact(grid, contact, depth,
+                   context.world.regions.at<RegionWrench>(region).event_now != 0);
+    }
     context.world.regions.at<RegionGeometry>(region) = summarize(grid);
   }
 }

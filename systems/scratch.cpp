@@ -23,7 +23,8 @@ void Scratch::reserve(const World& world) {
   region_commands.reserve(world.regions.capacity());
   region_points.assign(world.regions.capacity(), RegionPoints{});
   const std::size_t cells = std::size_t{side} * side;
-  column_memory.assign(12 * cells, 0.0);
+  const bool patches = !world.patch_cells.empty();
+  column_memory.assign((patches ? 23 : 12) * cells, 0.0);
   std::size_t next = 0;
   const auto column = [&] {
     return std::span<double>(column_memory).subspan(cells * next++, cells);
@@ -34,6 +35,17 @@ void Scratch::reserve(const World& world) {
         &found.gradient_z, &cell_columns.tool_x, &cell_columns.tool_y, &cell_columns.tool_z,
         &cell_columns.depth, &cell_columns.depth_change}) {
     *each = column();
+  }
+  if (patches) {
+    PatchColumns& patch = patch_columns;
+    for (std::span<double>* each :
+         {&patch.depth, &patch.friction, &patch.target_x, &patch.target_y, &patch.pressure,
+          &patch.traction_x, &patch.traction_y, &patch.depression, &patch.moved_x, &patch.moved_y,
+          &patch.slips}) {
+      *each = column();
+    }
+    patch_before.assign(cells, PatchCell{});
+    tractions_before.assign(cells, CellTraction{});
   }
   carried_cells.assign(std::size_t{side + 2} * (side + 2), CarriedCell{});
   near_parts.assign(world.parts.size(), 0);

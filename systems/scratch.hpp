@@ -9,6 +9,7 @@
 #include "ecs/commands.hpp"
 #include "ecs/components.hpp"
 #include "ecs/world.hpp"
+#include "systems/contact_models/patch_solver.hpp"
 #include "systems/distance.hpp"
 #include "systems/group_points.hpp"
 
@@ -92,7 +93,12 @@ struct Scratch {
   std::vector<CarriedCell> carried_cells;  // (cells of one region and a border of one around them)
   std::vector<std::uint32_t> near_parts;   // (parts of all bodies and tools)
 
-  std::vector<double> column_memory;  // what cell_columns are in
+  // patch_forces
+  PatchColumns patch_columns;           // (cells of one region)
+  std::vector<PatchCell> patch_before;  // (cells of one region) while its grid moves
+  std::vector<CellTraction> tractions_before;
+
+  std::vector<double> column_memory;  // what cell_columns and patch_columns are in
 
   /// Takes all memory that a step of `world` can need.
   void reserve(const World& world);

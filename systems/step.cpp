@@ -5,6 +5,7 @@
 #include "systems/body_models/skeleton.hpp"
 #include "systems/carry_tractions.hpp"
 #include "systems/contact_models/paper.hpp"
+#include "systems/contact_models/patch.hpp"
 #include "systems/couple_tools.hpp"
 #include "systems/detect_contacts.hpp"
 #include "systems/group_regions.hpp"
@@ -41,6 +42,10 @@ bool any_friction(const StepContext& context) {
          });
 }
 
+bool any_moving(const StepContext& context) {
+  return any_friction(context) || any_contact_model<ContactModel::kPatch>(context);
+}
+
 bool any_paper_friction(const StepContext& context) {
   return any_friction(context) && any_contact_model<ContactModel::kPaper>(context);
 }
@@ -59,12 +64,14 @@ std::vector<System<StepContext>> step_systems() {
        any_tool_and_body, group_regions},
       {"region_grids", "finds depth and area cell by cell", "a tool and a body", any_tool_and_body,
        region_grids},
-      {"carry_tractions", "keeps tractions at their place on the body", "a body with friction",
-       any_friction, carry_tractions},
+      {"carry_tractions", "keeps tractions at their place on the body",
+       "a body with contact model paper and friction", any_paper_friction, carry_tractions},
       {"paper_normal_forces", "normal force f = k1 x + k3 x^3", "a body with contact model paper",
        any_contact_model<ContactModel::kPaper>, paper_normal_forces},
-      {"region_motion", "slide, spin and axis of every region", "a body with friction",
-       any_friction, region_motion},
+      {"region_motion", "slide, spin and axis of every region", "a body with friction", any_moving,
+       region_motion},
+      {"patch_forces", "elastic half-space cell by cell: pressure, friction and torque",
+       "a body with contact model patch", any_contact_model<ContactModel::kPatch>, patch_forces},
       {"paper_friction_forces", "friction and contact torque, equations (2)-(9), (14)",
        "a body with contact model paper and friction", any_paper_friction, paper_friction_forces},
       {"region_wrenches", "force and torque of every region, equation (1)", "a tool and a body",

@@ -1,16 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/contact_models/friction_decay.hpp"
 #include "systems/contact_models/paper.hpp"
 #include "systems/frames.hpp"
 
 namespace torsion {
 namespace {
-
-// A cell that slips comes down from mu_s to mu_d over this share of its elastic deflection: short
-// enough to be the paper's switch (4) -> (5) within the accuracy of 200 cells, long enough that the
-// force does not jump.
-constexpr double kSlipLength = 0.05;
 
 /// What the cells of one region share in one step. Tractions are per area, on the tool, in the
 /// grid's plane.
@@ -44,25 +40,6 @@ void set_levers(const FixedRegion& fixed, const RegionFrame& frame, const Region
   brush.lever_origin = glm::dot(frame.origin - fixed.point, direction);
   brush.lever_slope = body_to_grid_direction(frame, direction);
   brush.least_lever = radius;
-}
-
-/// (exp(x) - 1) / x to third order in x: the reciprocal of the exponential's series makes a decay
-/// that is monotone, within 4e-6 of exp(-x) up to a tenth, and the same bits with every mathematics
-/// library.
-double growth(double x) {
-  return 1.0 + x * (0.5 + x / 6.0);
-}
-
-/// 1 - exp(-path / scale): approaches 1 as `path` is travelled.
-double travelled(double path, double inverse_scale) {
-  const double x = path * inverse_scale;
-  const double grown = x * growth(x);
-  return grown / (1.0 + grown);
-}
-
-/// 1 / scale, with 1 / 0 so large that any path is the whole way and none is none.
-double inverse_of(double scale) {
-  return scale > 0.0 ? 1.0 / scale : 1e60;
 }
 
 /// True when another region of the same tool lies on the same body.

@@ -49,8 +49,8 @@ void mend_owners(World& world) {
     world.balls.at<SurfaceBall>(row).sample = row % 2 == 0 ? kNoRow : row % 20 / 2;
   }
   for (std::uint32_t row = 0; row < 2; ++row) {
-    world.tools.at<OwnedRows>(row) = {{row, 1}, {row * 10, 10}, {row * 20, 20}, {}};
-    world.bodies.at<OwnedRows>(row) = {{row + 1, 1}, {}, {}, {row * 3, 3}};
+    world.tools.at<OwnedRows>(row) = {{row, 1}, {row * 10, 10}, {row * 20, 20}, {}, {}};
+    world.bodies.at<OwnedRows>(row) = {{row + 1, 1}, {}, {}, {row * 3, 3}, {}};
     world.bodies.at<FixedRegion>(row).volumes = {row, 1};
     auto& region = world.regions.at<RegionIdentity>(row);
     region.body = row;

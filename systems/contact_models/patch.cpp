@@ -1,0 +1,364 @@
+#include "systems/contact_models/patch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "systems/contact_models/friction_decay.hpp"
+#include "systems/frames.hpp"
+#include "systems/patch_grid.hpp"
+#include "systems/scratch.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kNoContact = -1e30;  // m: depth of a cell that cannot touch
+constexpr std::uint32_t kSweepsAnew =
+    40;                                 // at most, of a region that begins or whose grid has moved
+constexpr double kSkipAnew = 1e-3;      // the residual that will do then; later steps go on
+constexpr double kMostForesight = 1.5;  // of the last step's change
+
+/// One region at work.
+struct Patch {
+  World& world;
+  const PatchColumns& columns;
+  std::uint32_t region = 0;
+  std::uint32_t side = 0;
+  RegionFrame frame;
+  RegionMotion motion;
+  std::span<const CellGeometry> geometry;
+  std::span<CellTraction> tractions;
+  std::span<PatchCell> cells;
+  std::span<PatchChange> changes;
+  PatchState& state;
+  PatchProblem problem;
+};
+
+Patch patch_of(StepContext& context, std::uint32_t region) {
+  World& world = context.world;
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const Settings& settings = world.settings.at<Settings>(0);
+  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const auto influences =
+      world.influences.rows<Influence>(world.bodies.at<OwnedRows>(identity.body).influences);
+  static_assert(sizeof(Influence) == sizeof(double));
+  PatchProblem problem;
+  problem.influences = influence_tables({&influences.front().value, influences.size()},
+                                        settings.grid_side, patch_aspect(frame.half_size));
+  problem.compliance = 2.0 * frame.half_size.x /
+                       (static_cast<double>(settings.grid_side) * elasticity.shear_modulus());
+  problem.coupled = elasticity.poisson_ratio < 0.5;
+  problem.sweeps = settings.sweeps;
+  return {world,
+          context.scratch.patch_columns,
+          region,
+          settings.grid_side,
+          frame,
+          world.regions.at<RegionMotion>(region),
+          world.cells.rows<CellGeometry>(identity.cells),
+          world.cells.rows<CellTraction>(identity.cells),
+          world.patch_cells.rows<PatchCell>(identity.cells),
+          world.patch_cells.rows<PatchChange>(identity.cells),
+          world.regions.at<PatchState>(region),
+          problem};
+}
+
+/// How much of the last step's change to expect again: the motion of this step along that of the
+/// last one.
+double foresight(const Patch& patch, double deepened) {
+  const double radius = patch.world.regions.at<RegionGeometry>(patch.region).radius;
+  const PatchState& last = patch.state;
+  const double spin = last.spin * radius;
+  const double square =
+      glm::dot(last.slide, last.slide) + spin * spin + last.deepened * last.deepened;
+  const double along = glm::dot(last.slide, patch.motion.slide) +
+                       spin * patch.motion.spin * radius + last.deepened * deepened;
+  return square > 0.0 ? std::clamp(along / square, 0.0, kMostForesight) : 0.0;
+}
+
+double friction_of(const Friction& friction, double kinetic_share) {
+  return friction.static_friction +
+         kinetic_share * (friction.dynamic_friction - friction.static_friction);
+}
+
+double deepest(const Patch& patch) {
+  double depth = 0.0;
+  for (const CellGeometry& cell : patch.geometry) {
+    depth = std::max(depth, cell.coverage > 0.0 ? cell.depth : 0.0);
+  }
+  return depth;
+}
+
+/// Fills the columns: what the last step left, carried on by `share` of what it changed.
+void load(const Patch& patch, double share) {
+  const PatchColumns& columns = patch.columns;
+  const std::uint32_t body = patch.world.regions.at<RegionIdentity>(patch.region).body;
+  const Friction& friction = patch.world.bodies.at<Friction>(body);
+  for (std::size_t cell = 0; cell < patch.cells.size(); ++cell) {
+    const CellGeometry& geometry = patch.geometry[cell];
+    const CellTraction& traction = patch.tractions[cell];
+    const PatchCell& held = patch.cells[cell];
+    const PatchChange& change = patch.changes[cell];
+    columns.depth[cell] = geometry.coverage >= 0.5 ? geometry.depth : kNoContact;
+    columns.friction[cell] = friction_of(friction, traction.kinetic_share);
+    columns.pressure[cell] = traction.pressure + share * change.pressure;
+    columns.traction_x[cell] = share * change.traction.x - traction.traction.x;
+    columns.traction_y[cell] = share * change.traction.y - traction.traction.y;
+    columns.depression[cell] = held.depression + share * change.depression;
+    columns.moved_x[cell] = held.displacement.x + share * change.displacement.x;
+    columns.moved_y[cell] = held.displacement.y + share * change.displacement.y;
+  }
+}
+
+/// Where the cells go if they stick: on from where they are held, with the tool.
+void set_targets(const Patch& patch) {
+  const PatchColumns& columns = patch.columns;
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < patch.side; ++j) {
+    for (std::uint32_t i = 0; i < patch.side; ++i, ++cell) {
+      const PatchCell& at = patch.cells[cell];
+      const glm::dvec2 held = at.known != 0 ? at.held : at.displacement;
+      const glm::dvec2 arm = cell_center(patch.frame, patch.side, i, j) - patch.motion.pivot;
+      columns.target_x[cell] = held.x + patch.motion.slide.x - patch.motion.spin * arm.y;
+      columns.target_y[cell] = held.y + patch.motion.slide.y + patch.motion.spin * arm.x;
+    }
+  }
+}
+
+/// Cells outside the contact keep no tractions, those that foresight has made pull are let go.
+void let_go(const Patch& patch) {
+  for (std::uint32_t cell = 0; cell < patch.cells.size(); ++cell) {
+    const PatchColumns& columns = patch.columns;
+    const bool loaded = columns.pressure[cell] != 0.0 || columns.traction_x[cell] != 0.0 ||
+                        columns.traction_y[cell] != 0.0;
+    if (loaded && (columns.pressure[cell] <= 0.0 || columns.depth[cell] == kNoContact)) {
+      unload_cell(patch.problem, columns, cell);
+    }
+  }
+}
+
+/// After the grid has moved, or at a region's beginning: displacements of the tractions that are
+/// there.
+void start_anew(Patch& patch) {
+  const PatchColumns& columns = patch.columns;
+  for (std::uint32_t cell = 0; cell < patch.cells.size(); ++cell) {
+    if (columns.pressure[cell] <= 0.0 || columns.depth[cell] == kNoContact) {
+      columns.pressure[cell] = 0.0;
+      columns.traction_x[cell] = 0.0;
+      columns.traction_y[cell] = 0.0;
+    }
+  }
+  displace_patch(patch.problem, columns);
+  for (std::size_t cell = 0; cell < patch.cells.size(); ++cell) {
+    patch.cells[cell].displacement = {columns.moved_x[cell], columns.moved_y[cell]};
+    patch.cells[cell].depression = columns.depression[cell];
+  }
+  patch.problem.sweeps = std::max(patch.problem.sweeps, kSweepsAnew);
+  patch.problem.skip = kSkipAnew;
+}
+
+/// A pressure to measure changes by: the mean of what is there, or what the depth will ask for.
+double reference_pressure(const Patch& patch, double depth) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const double pressure : patch.columns.pressure) {
+    sum += pressure;
+    count += pressure > 0.0 ? 1.0 : 0.0;
+  }
+  if (count > 0.0) {
+    return sum / count;
+  }
+  const double reach = std::max(patch.frame.half_size.x, patch.frame.half_size.y);
+  return depth / (reach * patch.problem.compliance * static_cast<double>(patch.side)) * reach;
+}
+
+/// Static friction gives way to dynamic with the path slipped, and comes back with the elastic
+/// path.
+void update_kinetic_shares(const Patch& patch, double force) {
+  const RegionIdentity& identity = patch.world.regions.at<RegionIdentity>(patch.region);
+  const Friction& friction = patch.world.bodies.at<Friction>(identity.body);
+  if (friction.static_friction == friction.dynamic_friction) {
+    return;
+  }
+  const Elasticity& elasticity = patch.world.bodies.at<Elasticity>(identity.body);
+  const double radius = patch.world.regions.at<RegionGeometry>(patch.region).radius;
+  // Displacement of a disc at its friction limit: stiffness 8 G a / (2 - nu).
+  const double stiffness =
+      8.0 * elasticity.shear_modulus() * radius / (2.0 - elasticity.poisson_ratio);
+  const double inverse =
+      inverse_of(stiffness > 0.0 ? friction.static_friction * force / stiffness : 0.0);
+  const PatchColumns& columns = patch.columns;
+  for (std::size_t cell = 0; cell < patch.cells.size(); ++cell) {
+    double& share = patch.tractions[cell].kinetic_share;
+    const glm::dvec2 moved(columns.moved_x[cell], columns.moved_y[cell]);
+    if (columns.pressure[cell] <= 0.0) {
+      share = 0.0;
+    } else if (columns.slips[cell] != 0.0) {
+      const glm::dvec2 target(columns.target_x[cell], columns.target_y[cell]);
+      share += (1.0 - share) * travelled(glm::distance(target, moved), inverse / kSlipLength);
+    } else if (share > 0.0) {
+      share *= 1.0 - travelled(glm::distance(moved, patch.cells[cell].displacement), inverse);
+    }
+  }
+}
+
+/// Puts the columns back into the tables.
+void store(const Patch& patch) {
+  const PatchColumns& columns = patch.columns;
+  for (std::size_t cell = 0; cell < patch.cells.size(); ++cell) {
+    PatchCell& at = patch.cells[cell];
+    CellTraction& traction = patch.tractions[cell];
+    const glm::dvec2 on_body(columns.traction_x[cell], columns.traction_y[cell]);
+    const glm::dvec2 moved(columns.moved_x[cell], columns.moved_y[cell]);
+    const bool sticks = columns.slips[cell] == 0.0;
+    patch.changes[cell] = {on_body + traction.traction, columns.pressure[cell] - traction.pressure,
+                           moved - at.displacement, columns.depression[cell] - at.depression};
+    at.displacement = moved;
+    at.depression = columns.depression[cell];
+    at.held = sticks ? glm::dvec2(columns.target_x[cell], columns.target_y[cell]) : moved;
+    at.known = 1;
+    traction.traction = -on_body;
+    traction.pressure = columns.pressure[cell];
+    traction.coverage = columns.pressure[cell] > 0.0 ? 1.0 : 0.0;
+    traction.sticks = sticks ? 1U : 0U;
+  }
+}
+
+/// Sums over the cells with pressure, in the grid's frame.
+struct PatchSums {
+  double force = 0.0;            // N
+  glm::dvec3 first_moment{0.0};  // N m: pressure times place on the tool
+  double depth_moment = 0.0;     // N m: pressure times depth
+  glm::dvec2 friction{0.0};      // N, on the tool
+  double couple = 0.0;           // N m about the grid's origin
+  double area = 0.0;             // m^2
+  double stuck_area = 0.0;       // m^2
+  glm::dvec2 moved{0.0};         // N m: pressure times displacement
+};
+
+PatchSums sum_cells(const Patch& patch) {
+  PatchSums sums;
+  const double area = cell_area(patch.frame, patch.side);
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < patch.side; ++j) {
+    for (std::uint32_t i = 0; i < patch.side; ++i, ++cell) {
+      const double load = patch.columns.pressure[cell] * area;
+      if (load <= 0.0) {
+        continue;
+      }
+      const glm::dvec2 place = cell_center(patch.frame, patch.side, i, j);
+      const glm::dvec2 friction = area * patch.tractions[cell].traction;
+      sums.force += load;
+      sums.first_moment += load * glm::dvec3(place, patch.geometry[cell].height);
+      sums.depth_moment += load * patch.geometry[cell].depth;
+      sums.friction += friction;
+      sums.couple += place.x * friction.y - place.y * friction.x;
+      sums.area += area;
+      sums.stuck_area += patch.tractions[cell].sticks != 0 ? area : 0.0;
+      sums.moved += load * patch.cells[cell].displacement;
+    }
+  }
+  return sums;
+}
+
+/// Mean turn of the surface under the pressure about `center`, rad.
+double mean_turn(const Patch& patch, const glm::dvec2& center, const glm::dvec2& moved) {
+  double moment = 0.0;
+  double second_moment = 0.0;
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < patch.side; ++j) {
+    for (std::uint32_t i = 0; i < patch.side; ++i, ++cell) {
+      const double load = patch.columns.pressure[cell];
+      const glm::dvec2 arm = cell_center(patch.frame, patch.side, i, j) - center;
+      const glm::dvec2 relative = patch.cells[cell].displacement - moved;
+      moment += load * (arm.x * relative.y - arm.y * relative.x);
+      second_moment += load * glm::dot(arm, arm);
+    }
+  }
+  return second_moment > 0.0 ? moment / second_moment : 0.0;
+}
+
+/// What the region's components become.
+void summarize(const Patch& patch, const PatchSums& sums) {
+  World& world = patch.world;
+  RegionFriction& friction = world.regions.at<RegionFriction>(patch.region);
+  RegionNormal& normal = world.regions.at<RegionNormal>(patch.region);
+  RegionCarrier& carrier = world.regions.at<RegionCarrier>(patch.region);
+  friction = RegionFriction{};
+  normal = RegionNormal{};
+  if (sums.force <= 0.0) {
+    carrier = RegionCarrier{};
+    return;
+  }
+  RegionGeometry& geometry = world.regions.at<RegionGeometry>(patch.region);
+  const std::uint32_t body = world.regions.at<RegionIdentity>(patch.region).body;
+  const glm::dvec3 center = sums.first_moment / sums.force;
+  const glm::dvec2 moved = sums.moved / sums.force;
+  geometry.equivalent_point = grid_to_body(patch.frame, center);
+  geometry.area = sums.area;
+  geometry.radius = std::sqrt(sums.area / std::numbers::pi);
+  geometry.mean_depth = sums.depth_moment / sums.force;
+  geometry.rest_point = geometry.equivalent_point + patch.frame.normal * geometry.mean_depth;
+  normal.force = sums.force;
+  normal.stiffness = 2.0 * world.bodies.at<Elasticity>(body).contact_modulus() * geometry.radius;
+  friction.force = sums.friction;
+  friction.couple = sums.couple - (center.x * sums.friction.y - center.y * sums.friction.x);
+  friction.stick_share = sums.stuck_area / sums.area;
+  friction.stick_radius = std::sqrt(sums.stuck_area / std::numbers::pi);
+  friction.stick_turn = mean_turn(patch, glm::dvec2(center), moved);
+  const double turn = friction.stick_turn;
+  // About the grid's origin, which is not the pressure's centre.
+  const glm::dvec2 of_origin = moved - turn * glm::dvec2(-center.y, center.x);
+  carrier.translation = tangent_to_body(patch.frame, of_origin);
+  carrier.rotation = patch.frame.normal * turn;
+}
+
+void solve_region(StepContext& context, std::uint32_t region) {
+  Patch patch = patch_of(context, region);
+  const double depth = deepest(patch);
+  const double deepened = depth - patch.state.depth;
+  const bool anew = patch.state.started == 0 || patch.state.moved != 0;
+  load(patch, anew ? 0.0 : foresight(patch, deepened));
+  if (anew) {
+    start_anew(patch);
+  } else {
+    let_go(patch);
+  }
+  set_targets(patch);
+  patch.problem.reference = reference_pressure(patch, depth);
+  const PatchOutcome outcome = solve_patch(patch.problem, patch.columns);
+  const bool started = patch.state.started != 0;
+  double force = 0.0;
+  for (const double pressure : patch.columns.pressure) {
+    force += pressure * cell_area(patch.frame, patch.side);
+  }
+  update_kinetic_shares(patch, force);
+  store(patch);
+  if (!started) {
+    std::ranges::fill(patch.changes, PatchChange{});
+  }
+  patch.state = {patch.motion.slide,
+                 patch.motion.spin,
+                 deepened,
+                 depth,
+                 outcome.residual,
+                 outcome.sweeps,
+                 1,
+                 0,
+                 0};
+  summarize(patch, sum_cells(patch));
+}
+
+}  // namespace
+
+void patch_forces(StepContext& context) {
+  World& world = context.world;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    if (has_patch(world, world.regions.at<RegionIdentity>(region))) {
+      solve_region(context, region);
+    }
+  }
+}
+
+}  // namespace torsion

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.optimize import brentq
 
 STIFFNESS = 300.0
 UP = np.array([0.0, 0.0, 1.0])
@@ -47,7 +48,7 @@ class Points:
     sample: sp.csr_matrix  # (3 n, 3 c): contact displacements -> displacements of the points
 
 
-def integration_points(body):
+def integration_points(body, onto):
     weights, barycentric = quadrature()
     functions = shape_functions(barycentric)
     corners = body.nodes[body.surface[:, :3]]
@@ -61,6 +62,7 @@ def integration_points(body):
                             (np.broadcast_to(point, shape).ravel(),
                              np.broadcast_to(rows_of[:, None], shape).ravel())),
                            shape=(len(position), len(body.contact)))
+    position = onto(position)
     return Points(position, np.outer(area, weights).ravel(), sp.kron(scalar, sp.eye(3)).tocsr())
 
 
@@ -73,10 +75,11 @@ class Side:
     friction: np.ndarray  # (n, 3) [Pa], the part of it along the surface
 
 
-def evaluate(side, points, displacement, tool, pose, last_phi, friction, stiffness):
+def evaluate(side, points, displacement, tool, pose, last_phi, limit, stiffness):
     """Tractions on the body for trial displacements of the points.
 
-    @param pose  depth [m] and phi [rad] of the tool
+    @param pose   depth [m] and phi [rad] of the tool
+    @param limit  (n) the greatest shear traction [Pa]
     @return a Side, the resistance -d traction / d displacement (n, 3, 3) [Pa/m]"""
     depth, phi = pose
     gap, normal = tool(points.position, displacement, depth, side.sign * phi)
@@ -87,17 +90,14 @@ def evaluate(side, points, displacement, tool, pose, last_phi, friction, stiffne
     slipped = displacement - side.displacement - carried
     trial = np.einsum("nij,nj->ni", across, side.friction - stiffness * slipped)
     size = np.linalg.norm(trial, axis=1)
-    slips = size > friction * pressure
+    slips = size > limit
     direction = trial / np.maximum(size, 1e-300)[:, None]
-    shear = np.where(slips[:, None], friction * pressure[:, None] * direction, trial)
+    share = np.where(slips, limit / np.maximum(size, 1e-300), 1.0)[:, None]
+    shear = share * trial
     shear[~touching] = 0.0
 
-    both = normal[:, :, None] * normal[:, None, :]
-    sticking = both + across
-    share = (friction * pressure / np.maximum(size, 1e-300))[:, None, None]
-    sliding = both + friction * direction[:, :, None] * normal[:, None, :] + share * (
-        across - direction[:, :, None] * direction[:, None, :])
-    resistance = stiffness * np.where(slips[:, None, None], sliding, sticking)
+    sliding = across - slips[:, None, None] * direction[:, :, None] * direction[:, None, :]
+    resistance = stiffness * (normal[:, :, None] * normal[:, None, :] + share[:, None] * sliding)
     resistance[~touching] = 0.0
     return (Side(side.sign, displacement, pressure[:, None] * normal + shear, shear), resistance)
 
@@ -105,15 +105,16 @@ def evaluate(side, points, displacement, tool, pose, last_phi, friction, stiffne
 class Contact:
     """A body with the tool against it; `move` brings the tool to the next pose."""
 
-    def __init__(self, body, tool, friction, youngs_modulus, element_size):
+    def __init__(self, body, tool, friction, youngs_modulus, element_size, onto):
         self.body, self.tool, self.friction = body, tool, friction
         self.stiffness = STIFFNESS * youngs_modulus / element_size
-        self.points = integration_points(body)
+        self.points = integration_points(body, onto)
         zero = np.zeros_like(self.points.position)
         self.sides = [Side(sign, zero, zero, zero) for sign in (1.0, -1.0)]
         self.phi = 0.0
         self.even, self.odd = body.free["even"], body.free["odd"]
         self.unknown = np.zeros(len(self.even) + len(self.odd))
+        self.force = np.zeros_like(self.unknown)
         self.iterations = 0
 
     def side_displacements(self, unknown):
@@ -128,67 +129,90 @@ class Contact:
         return np.concatenate([self.body.compliance["even"] @ force[:count],
                                self.body.compliance["odd"] @ force[count:]])
 
-    def trial(self, unknown, pose):
-        """Sides, forces on the unknowns and their resistance (sparse) for trial unknowns."""
+    def trial(self, unknown, pose, limits):
+        """The two sides for trial unknowns, the forces on the unknowns and their resistance."""
         sample, area = self.points.sample, self.points.area
         sides, forces, blocks = [], [], []
-        for side, nodal in zip(self.sides, self.side_displacements(unknown)):
+        for side, limit, nodal in zip(self.sides, limits, self.side_displacements(unknown)):
             new, resistance = evaluate(side, self.points, (sample @ nodal).reshape(-1, 3),
-                                       self.tool, pose, self.phi, self.friction, self.stiffness)
-            weighted = sp.bsr_matrix((resistance * area[:, None, None], np.arange(len(area)),
-                                      np.arange(len(area) + 1)))
+                                       self.tool, pose, self.phi, limit, self.stiffness)
             sides.append(new)
             forces.append(sample.T @ (new.traction * area[:, None]).ravel())
-            blocks.append((sample.T @ weighted @ sample).tocsr())
+            blocks.append(resistance * area[:, None, None])
         # The quarter's even and odd parts each carry half of what acts on the two sides.
         total, rest = 0.5 * (forces[0] + forces[1]), 0.5 * (forces[0] - forces[1])
-        mean, half = 0.5 * (blocks[0] + blocks[1]), 0.5 * (blocks[0] - blocks[1])
-        resistance = sp.bmat([[mean[self.even][:, self.even], half[self.even][:, self.odd]],
-                              [half[self.odd][:, self.even], mean[self.odd][:, self.odd]]])
-        return sides, np.concatenate([total[self.even], rest[self.odd]]), resistance.tocsr()
+        return sides, np.concatenate([total[self.even], rest[self.odd]]), blocks
 
-    def newton_step(self, residual, resistance):
-        """Solves (1 + C K) step = -residual; only unknowns that meet the tool are in the matrix."""
+    def assemble(self, blocks):
+        """The resistance of the unknowns (sparse) from the blocks that trial gives."""
+        sample = self.points.sample
+        rows = np.arange(len(self.points.area) + 1)
+        plus, minus = (sample.T @ sp.bsr_matrix((block, rows[:-1], rows)) @ sample
+                       for block in blocks)
+        mean, half = (0.5 * (plus + minus)).tocsr(), (0.5 * (plus - minus)).tocsr()
+        matrix = sp.bmat([[mean[self.even][:, self.even], half[self.even][:, self.odd]],
+                          [half[self.odd][:, self.even], mean[self.odd][:, self.odd]]]).tocsr()
+        matrix.eliminate_zeros()
+        return matrix
+
+    def newton_step(self, missing, resistance):
+        """Steps of the unknowns and of the forces on them that bring `missing` forces [N] in:
+        step = C change, change = missing - K step. Only what meets the tool is in the matrix."""
         active = np.flatnonzero(np.diff(resistance.indptr))
+        free_step = self.compliant(missing)
         if len(active) == 0:
-            return -residual
+            return free_step, missing
         split = np.searchsorted(active, len(self.even))
-        parts = (active[:split], active[split:] - len(self.even))
         local = resistance[active][:, active]
         small = np.eye(len(active))
-        for rows, place in zip(parts, (slice(0, split), slice(split, None))):
-            compliance = self.body.compliance["even" if place.start == 0 else "odd"]
-            small[place] += (local[place].T @ compliance[np.ix_(rows, rows)].T).T
-        step = np.linalg.solve(small, -residual[active])
-        forces = np.zeros(len(residual))
-        forces[active] = local @ step
-        return -residual - self.compliant(forces)
+        for parity, place, first in (("even", slice(0, split), 0),
+                                     ("odd", slice(split, None), len(self.even))):
+            rows = active[place] - first
+            compliance = self.body.compliance[parity][np.ix_(rows, rows)]
+            small[place] += (local[place].T @ compliance).T
+        change = missing.copy()
+        change[active] -= local @ np.linalg.solve(small, free_step[active])
+        return self.compliant(change), change
 
-    def move(self, depth, phi, tolerance=1e-7, most=60):
+    def solve(self, pose, limits, tolerance):
+        """The equilibrium for given limits of the shear: the minimum of a convex energy, by
+        Newton's method with a line search for the zero of its slope. Starts from self.unknown
+        and self.force, which obey unknown = C force."""
+        for iteration in range(60):
+            sides, met, blocks = self.trial(self.unknown, pose, limits)
+            missing = met - self.force
+            if np.linalg.norm(missing) <= tolerance * np.linalg.norm(met):
+                return sides
+            self.iterations += 1
+            step, change = self.newton_step(missing, self.assemble(blocks))
+
+            def slope(share):
+                met = self.trial(self.unknown + share * step, pose, limits)[1]
+                return step @ (self.force + share * change - met)
+
+            share = 1.0
+            begin, end = slope(0.0), slope(1.0)
+            if end > -0.5 * begin:
+                share = brentq(slope, 0.0, 1.0, rtol=0.1)
+            self.unknown = self.unknown + share * step
+            self.force = self.force + share * change
+        raise RuntimeError(f"no equilibrium at depth, phi = {pose}")
+
+    def move(self, depth, phi, tolerance=1e-6):
+        """Coulomb's law by fixed point: the shear is limited by the pressure found before."""
         pose = (depth, phi)
-        unknown = self.unknown
-        # A predictor that sticks everywhere: from it only the ring that slips has to be found.
-        friction, self.friction = self.friction, min(self.friction, 1.0) * 1e6
-        sides, force, resistance = self.trial(unknown, pose)
-        self.friction = friction
-        residual = unknown - self.compliant(force)
-        for self.iterations in range(1, most + 1):
-            step = self.newton_step(residual, resistance)
-            share, before = 1.0, np.linalg.norm(residual)
-            while True:
-                new = unknown + share * step
-                sides, force, resistance = self.trial(new, pose)
-                residual = new - self.compliant(force)
-                if np.linalg.norm(residual) < before or share < 2:
-                    break
-                share *= 0.5
-            unknown = new
-            if globals().get("DEBUG"): print(self.iterations, share, before, np.linalg.norm(residual), [int((np.abs(s.traction).sum(1)>0).sum()) for s in sides])
-            if np.linalg.norm(residual) < tolerance * np.linalg.norm(unknown):
-                break
-        else:
-            raise RuntimeError(f"no convergence at depth {depth} m, phi {phi} rad")
-        self.unknown, self.sides, self.phi = unknown, sides, phi
+        self.iterations = 0
+        sides = self.sides
+        limits = None
+        for _ in range(40):
+            pressed = [np.linalg.norm(side.traction - side.friction, axis=1) for side in sides]
+            before, limits = limits, [self.friction * pressure for pressure in pressed]
+            if before is not None and np.linalg.norm(np.subtract(limits, before)) <= (
+                    10 * tolerance * np.linalg.norm(limits)):
+                self.sides, self.phi = sides, phi
+                return
+            sides = self.solve(pose, limits, tolerance)
+        raise RuntimeError(f"no fixed point of the friction at depth, phi = {pose}")
 
     def loads(self):
         """Force the body bears [N], torque that turns it [N m], radius of a disc of the area [m]."""
@@ -200,6 +224,16 @@ class Contact:
             torque += 2.0 * side.sign * moment[:, 2].sum()
             area += 2.0 * self.points.area[np.any(side.traction != 0.0, axis=1)].sum()
         return force, torque, np.sqrt(area / np.pi)
+
+    def reaches_the_border(self):
+        """Whether the contact may have wanted to grow beyond the triangles that may touch."""
+        edges = np.sort(self.body.surface[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        kinds, first, count = np.unique(edges, axis=0, return_index=True, return_counts=True)
+        x, y, _ = self.body.nodes.T
+        inner = ((x[kinds] < 1e-9).all(axis=1)) | ((y[kinds] < 1e-9).all(axis=1))
+        triangles = np.unique(first[(count == 1) & ~inner] // 3)
+        size = len(self.points.area) // len(self.body.surface)
+        return any(side.traction.reshape(-1, size, 3)[triangles].any() for side in self.sides)
 
     def twist_along_x(self):
         """Turn of the surface about z along the x axis: x (n) [m], u_y / x (n) [rad]."""

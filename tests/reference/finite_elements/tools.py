@@ -20,3 +20,24 @@ class Ball:
         height = self.radius - np.sqrt(self.radius ** 2 - square)
         normal = np.broadcast_to([0.0, 0.0, -1.0], position.shape)
         return height - depth - displacement[:, 2], normal
+
+
+class Rod:
+    """A round rod with round ends, its middle line from -end to end: the true distance from the
+    points where they went, in the frame of the turned rod. A ball where the ends coincide."""
+    moved = 1.0
+
+    def __init__(self, radius, start, end):
+        self.radius = radius
+        self.start, self.end = np.array(start), np.array(end)
+
+    def __call__(self, position, displacement, depth, phi):
+        cosine, sine = np.cos(phi), np.sin(phi)
+        turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+        points = (position + displacement + [0.0, 0.0, depth]) @ turn  # turned back by phi
+        along = self.end - self.start
+        length = along @ along
+        share = (points - self.start) @ along / length if length > 0.0 else np.zeros(len(points))
+        away = points - self.start - np.clip(share, 0.0, 1.0)[:, None] * along
+        distance = np.linalg.norm(away, axis=1)
+        return distance - self.radius, (away / distance[:, None]) @ turn.T

@@ -146,8 +146,7 @@ TEST(LimitSurfaceTest, IsTheIntegralOfFrictionOverTheDisc) {
     constexpr int kDirections = 512;
     for (int i = 0; i < kDirections; ++i) {
       const double direction = 2.0 * kPi * i / kDirections;
-      // The centre is at (0, -x), so that the middle moves along the first axis. p sqrt-shaped
-      // along the ray s.
+      // Seen from the centre of rotation the middle of the disc is at (0, x).
       const double along = -x * std::sin(direction);
       const double to_rim = -along + std::sqrt(along * along + 1.0 - x * x);
       const auto p = [&](double s) {

@@ -43,6 +43,9 @@ void check_sizes(const World& world, Findings& findings) {
                    "there must be room for one grid a region");
   findings.require(world.patch_cells.size() == 0 || world.patch_cells.size() == world.cells.size(),
                    "patch_cells", 0, "there must be as many as cells, or none");
+  const std::uint64_t layers = std::uint64_t{world.regions.capacity()} * kMdrLayers;
+  findings.require(world.mdr_layers.empty() || world.mdr_layers.size() == layers, "mdr_layers", 0,
+                   "there must be a row for each layer of each region, or none");
 }
 
 void check_fields(const World& world, Findings& findings) {

@@ -298,6 +298,12 @@ struct PatchState {
   std::uint32_t padding = 0;
 };
 
+/// How the contact model `mdr` stands in a region. Written by: mdr_forces.
+struct MdrState {
+  double radius = 0.0;         // m: a of the last step, 0 before the first
+  double kinetic_share = 0.0;  // 0: mu_s, 1: mu_d
+};
+
 /// Written by: region_wrenches.
 struct RegionWrench {
   Wrench on_tool;            // world, about the tool's mass centre, as let out
@@ -350,6 +356,15 @@ struct PatchChange {
   double pressure = 0.0;         // Pa
   glm::dvec2 displacement{0.0};  // m, grid
   double depression = 0.0;       // m
+};
+
+inline constexpr std::uint32_t kMdrLayers = 32;
+
+/// One layer of springs of a region with contact model `mdr`: how far the tool has deflected it.
+/// Written by: mdr_forces.
+struct MdrLayer {
+  glm::dvec2 shift{0.0};  // m, grid
+  double turn = 0.0;      // rad
 };
 
 // ------------------------------------------------------------------------------------------------------

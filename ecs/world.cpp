@@ -19,6 +19,7 @@ void World::reserve(const Capacities& capacities, const Settings& chosen) {
   regions.reserve(capacities.regions);
   cells.reserve(capacities.regions * chosen.grid_side * chosen.grid_side);
   patch_cells.reserve(capacities.influences > 0 ? cells.capacity() : 0);
+  mdr_layers.reserve(capacities.mdr_bodies > 0 ? capacities.regions * kMdrLayers : 0);
   anchors.reserve(capacities.anchors);
   body_handles.reserve(capacities.bodies);
   tool_handles.reserve(capacities.tools);

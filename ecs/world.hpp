@@ -22,6 +22,7 @@ struct Capacities {
   std::uint32_t balls = 0;
   std::uint32_t anchors = 0;
   std::uint32_t regions = 0;
+  std::uint32_t mdr_bodies = 0;  // with contact model mdr
   std::uint32_t influences = 0;  // 0 when no body has contact model patch
 };
 
@@ -61,10 +62,12 @@ using BodyTable =
     Table<Entity, Pose, Elasticity, Friction, FixedRegion, BodyModels, OwnedRows, Bounds>;
 using ToolTable =
     Table<Entity, ToolPose, ToolMotion, MassProperties, ToolWrench, OwnedRows, Bounds>;
-using RegionTable = Table<RegionIdentity, RegionFrame, RegionCarrier, TractionFrame, RegionGeometry,
-                          RegionMotion, RegionNormal, RegionFriction, PatchState, RegionWrench>;
+using RegionTable =
+    Table<RegionIdentity, RegionFrame, RegionCarrier, TractionFrame, RegionGeometry, RegionMotion,
+          RegionNormal, RegionFriction, PatchState, MdrState, RegionWrench>;
 using CellTable = Table<CellGeometry, CellTraction>;
 using PatchCellTable = Table<PatchCell, PatchChange>;
+using MdrLayerTable = Table<MdrLayer>;
 using AnchorTable = Table<AnchorRest, AnchorMotion>;
 
 /// The physics world: everything that one step knows. A step is a pure function of it and of the
@@ -88,6 +91,7 @@ struct World {
   RegionTable regions;
   CellTable cells;  // blocks of grid_side^2 rows, one for each row that `regions` can hold
   PatchCellTable patch_cells;  // the same rows as `cells`; none without contact model patch
+  MdrLayerTable mdr_layers;    // kMdrLayers rows a block of cells; none without contact model mdr
   AnchorTable anchors;
   // handles
   EntityPool body_handles;
@@ -100,12 +104,12 @@ struct World {
   [[nodiscard]] auto tables() {
     return std::tie(settings, parts, fields, field_nodes, field_bricks, fixed_volumes, samples,
                     balls, influences, sections, clock, bodies, tools, regions, cells, patch_cells,
-                    anchors);
+                    mdr_layers, anchors);
   }
   [[nodiscard]] auto tables() const {
     return std::tie(settings, parts, fields, field_nodes, field_bricks, fixed_volumes, samples,
                     balls, influences, sections, clock, bodies, tools, regions, cells, patch_cells,
-                    anchors);
+                    mdr_layers, anchors);
   }
   [[nodiscard]] auto pools() { return std::tie(body_handles, tool_handles, region_handles); }
   [[nodiscard]] auto pools() const { return std::tie(body_handles, tool_handles, region_handles); }

@@ -91,6 +91,10 @@ void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t c
   clock.regions_formed += 1;
   std::ranges::fill(world.cells.rows<CellGeometry>(cells), CellGeometry{});
   std::ranges::fill(world.cells.rows<CellTraction>(cells), CellTraction{});
+  if (!world.mdr_layers.empty()) {
+    const Range layers{cells.first / cells.count * kMdrLayers, kMdrLayers};
+    std::ranges::fill(world.mdr_layers.rows<MdrLayer>(layers), MdrLayer{});
+  }
   if (!world.patch_cells.empty()) {
     std::ranges::fill(world.patch_cells.rows<PatchCell>(cells), PatchCell{});
     std::ranges::fill(world.patch_cells.rows<PatchChange>(cells), PatchChange{});

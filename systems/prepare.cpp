@@ -88,6 +88,7 @@ Capacities capacities_of(const SceneDescription& scene, const PrepareOptions& op
     if (choose_models(body, options).contact == ContactModel::kPatch) {
       needed.influences += static_cast<std::uint32_t>(influence_count(options.settings.grid_side));
     }
+    needed.mdr_bodies += choose_models(body, options).contact == ContactModel::kMdr ? 1U : 0U;
     needed.fixed_volumes += static_cast<std::uint32_t>(body.fixed_volumes.size());
   }
   for (const ToolDescription& tool : scene.tools) {
@@ -238,6 +239,7 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
     models.region_threshold = std::max(models.region_threshold, default_threshold(world));
   }
   TORSION_ASSERT(world.cells.append(world.cells.capacity()).has_value());
+  TORSION_ASSERT(world.mdr_layers.append(world.mdr_layers.capacity()).has_value());
   TORSION_ASSERT(world.patch_cells.append(world.patch_cells.capacity()).has_value());
   simulation.scratch->reserve(world);
   simulation.schedule =

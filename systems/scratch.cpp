@@ -36,6 +36,9 @@ void Scratch::reserve(const World& world) {
         &cell_columns.depth, &cell_columns.depth_change}) {
     *each = column();
   }
+  if (!world.mdr_layers.empty()) {
+    mdr_tables = make_mdr_tables();
+  }
   if (patches) {
     PatchColumns& patch = patch_columns;
     for (std::span<double>* each :

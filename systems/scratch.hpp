@@ -9,6 +9,7 @@
 #include "ecs/commands.hpp"
 #include "ecs/components.hpp"
 #include "ecs/world.hpp"
+#include "systems/contact_models/mdr_layers.hpp"
 #include "systems/contact_models/patch_solver.hpp"
 #include "systems/distance.hpp"
 #include "systems/group_points.hpp"
@@ -93,6 +94,8 @@ struct Scratch {
   std::vector<CarriedCell> carried_cells;  // (cells of one region and a border of one around them)
   std::vector<std::uint32_t> near_parts;   // (parts of all bodies and tools)
 
+  // mdr_forces
+  MdrTables mdr_tables;  // constant; empty without contact model mdr
   // patch_forces
   PatchColumns patch_columns;           // (cells of one region)
   std::vector<PatchCell> patch_before;  // (cells of one region) while its grid moves

@@ -4,6 +4,7 @@
 
 #include "systems/body_models/skeleton.hpp"
 #include "systems/carry_tractions.hpp"
+#include "systems/contact_models/mdr.hpp"
 #include "systems/contact_models/paper.hpp"
 #include "systems/contact_models/patch.hpp"
 #include "systems/couple_tools.hpp"
@@ -43,7 +44,8 @@ bool any_friction(const StepContext& context) {
 }
 
 bool any_moving(const StepContext& context) {
-  return any_friction(context) || any_contact_model<ContactModel::kPatch>(context);
+  return any_friction(context) || any_contact_model<ContactModel::kPatch>(context) ||
+         any_contact_model<ContactModel::kMdr>(context);
 }
 
 bool any_paper_friction(const StepContext& context) {
@@ -70,6 +72,8 @@ std::vector<System<StepContext>> step_systems() {
        any_contact_model<ContactModel::kPaper>, paper_normal_forces},
       {"region_motion", "slide, spin and axis of every region", "a body with friction", any_moving,
        region_motion},
+      {"mdr_forces", "round contacts of an elastic half-space: force, friction and torque",
+       "a body with contact model mdr", any_contact_model<ContactModel::kMdr>, mdr_forces},
       {"patch_forces", "elastic half-space cell by cell: pressure, friction and torque",
        "a body with contact model patch", any_contact_model<ContactModel::kPatch>, patch_forces},
       {"paper_friction_forces", "friction and contact torque, equations (2)-(9), (14)",

@@ -75,6 +75,8 @@ World small_world(unsigned seed) {
   capacities.balls = 40;
   capacities.anchors = 6;
   capacities.regions = 4;
+  capacities.influences = 3;
+  capacities.mdr_bodies = 1;
   Settings settings;
   settings.grid_side = 4;
   world.reserve(capacities, settings);
@@ -91,6 +93,9 @@ World small_world(unsigned seed) {
   world.tools.append(2);
   world.regions.append(2);
   world.cells.append(2 * settings.grid_side * settings.grid_side);
+  world.influences.append(3);
+  world.patch_cells.append(world.cells.size());
+  world.mdr_layers.append(world.mdr_layers.capacity());
   world.anchors.append(6);
 
   unsigned state = seed;

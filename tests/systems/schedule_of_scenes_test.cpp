@@ -29,11 +29,28 @@ bool runs(Hand& hand, std::string_view name) {
   return false;
 }
 
-TEST(ScheduleOfScenesTest, TheWholeSceneRunsEverySystem) {
+TEST(ScheduleOfScenesTest, TheWholeSceneRunsEverySystemButThoseOfOtherContactModels) {
   Hand hand(test::ball_on_cube());
-  EXPECT_EQ(names_on(hand).size(), step_systems().size());
+  EXPECT_EQ(names_on(hand).size(), step_systems().size() - 2);
   EXPECT_TRUE(runs(hand, "paper_friction_forces"));
   EXPECT_TRUE(runs(hand, "skeleton"));
+  EXPECT_FALSE(runs(hand, "mdr_forces"));
+  EXPECT_FALSE(runs(hand, "patch_forces"));
+}
+
+TEST(ScheduleOfScenesTest, OnlyTheSystemOfTheChosenContactModelRuns) {
+  SceneDescription scene = test::ball_on_cube();
+  scene.bodies[0].models = {ContactModel::kPatch, BodyModel::kNone};
+  Hand cells(scene);
+  EXPECT_TRUE(runs(cells, "patch_forces"));
+  EXPECT_FALSE(runs(cells, "mdr_forces"));
+  EXPECT_FALSE(runs(cells, "paper_normal_forces"));
+  EXPECT_FALSE(runs(cells, "carry_tractions"));
+  scene.bodies[0].models.contact = ContactModel::kMdr;
+  Hand springs(scene);
+  EXPECT_TRUE(runs(springs, "mdr_forces"));
+  EXPECT_FALSE(runs(springs, "patch_forces"));
+  EXPECT_EQ(springs.world().patch_cells.size(), 0U);
 }
 
 TEST(ScheduleOfScenesTest, WithoutFrictionNothingOfFrictionRuns) {

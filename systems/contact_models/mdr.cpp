@@ -1,0 +1,197 @@
+#include "systems/contact_models/mdr.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "systems/contact_models/contact_shape.hpp"
+#include "systems/contact_models/elliptic_contact.hpp"
+#include "systems/contact_models/friction_decay.hpp"
+#include "systems/contact_models/mdr_layers.hpp"
+#include "systems/frames.hpp"
+#include "systems/scratch.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kWide = 4.0;  // a body at least so many times as wide as thick is a layer
+
+/// What a region's overlap says of its contact.
+struct RoundContact {
+  glm::dvec2 center{0.0};   // m, grid
+  double radius = 0.0;      // m: sqrt(a b)
+  double depth = 0.0;       // m
+  double force = 0.0;       // N
+  double flat_share = 0.0;  // of the force
+  double torque_share = 1.0;
+};
+
+/// Thickness under the contact of a body that is a layer on a fixed face, m; 0 for others.
+double layer_thickness(const World& world, std::uint32_t body, const RegionFrame& frame) {
+  const FixedRegion& fixed = world.bodies.at<FixedRegion>(body);
+  if (fixed.kind != FixedKind::kFace || glm::dot(fixed.normal, frame.normal) < 0.9) {
+    return 0.0;
+  }
+  const double thickness = glm::dot(frame.origin - fixed.point, fixed.normal);
+  const Bounds& bounds = world.bodies.at<Bounds>(body);
+  const glm::dvec3 size = bounds.highest - bounds.lowest;
+  const glm::dvec3 across = size - size * glm::abs(fixed.normal);
+  const double width = std::min({across.x > 0.1 * thickness ? across.x : 1e300,
+                                 across.y > 0.1 * thickness ? across.y : 1e300,
+                                 across.z > 0.1 * thickness ? across.z : 1e300});
+  return width > kWide * thickness ? thickness : 0.0;
+}
+
+/// A paraboloid's contact, cut off where the overlap ends before its own edge would be: the rest of
+/// the depth then presses like a flat punch.
+RoundContact contact_of(const World& world, std::uint32_t region) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
+  const ContactShape shape = fit_contact_shape(frame, world.settings.at<Settings>(0).grid_side,
+                                               world.cells.rows<CellGeometry>(identity.cells));
+  RoundContact contact;
+  if (shape.depth <= 0.0 || geometry.area <= 0.0) {
+    return contact;
+  }
+  contact.center = shape.apex;
+  contact.depth = shape.depth;
+  const double overlap = std::sqrt(geometry.area / std::numbers::pi);
+  // So flat that the edge is out of reach in any case.
+  const double flattest = 1e-4 * shape.depth / (overlap * overlap);
+  const EllipticContact ellipse = elliptic_contact(
+      shape.depth, std::max(shape.curvature_1, flattest), std::max(shape.curvature_2, flattest));
+  const double round = std::sqrt(ellipse.major * ellipse.minor);
+  contact.radius = std::min(round, overlap);
+  const double round_share = contact.radius * contact.radius / (round * round);
+  const double modulus = elasticity.contact_modulus();
+  const double round_force = 4.0 / 3.0 * modulus * contact.radius * shape.depth * round_share *
+                             (1.0 + round_share * (ellipse.force_share - 1.0));
+  const double flat_force = 2.0 * modulus * contact.radius * shape.depth * (1.0 - round_share);
+  contact.force = round_force + flat_force;
+  contact.flat_share = flat_force / contact.force;
+  contact.torque_share = 1.0 + round_share * (ellipse.torque_share - 1.0);
+  const double thickness = world.bodies.at<BodyModels>(identity.body).body == BodyModel::kNone
+                               ? layer_thickness(world, identity.body, frame)
+                               : 0.0;
+  if (thickness > 0.0) {
+    contact.force *= layer_force_share(contact.radius / thickness, elasticity.poisson_ratio);
+  }
+  return contact;
+}
+
+/// Pressure for those who draw it and count cells: that of the mean over the ellipse's area.
+void set_cells(World& world, std::uint32_t region, const RoundContact& contact, bool sticks) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  const auto cells = world.cells.rows<CellGeometry>(identity.cells);
+  const auto tractions = world.cells.rows<CellTraction>(identity.cells);
+  const double pressure = contact.radius > 0.0
+                              ? contact.force / (std::numbers::pi * contact.radius * contact.radius)
+                              : 0.0;
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < side; ++j) {
+    for (std::uint32_t i = 0; i < side; ++i, ++cell) {
+      const glm::dvec2 arm = cell_center(frame, side, i, j) - contact.center;
+      const bool inside =
+          cells[cell].coverage > 0.0 && glm::dot(arm, arm) < contact.radius * contact.radius;
+      tractions[cell] = CellTraction{};
+      tractions[cell].pressure = inside ? pressure : 0.0;
+      tractions[cell].sticks = inside && sticks ? 1U : 0U;
+    }
+  }
+}
+
+/// Motion of the tool over the body at the contact's centre.
+glm::dvec2 slide_at(const RegionMotion& motion, const glm::dvec2& center) {
+  const glm::dvec2 arm = center - motion.pivot;
+  return motion.slide + motion.spin * glm::dvec2(-arm.y, arm.x);
+}
+
+void move_region(StepContext& context, const MdrTables& tables, std::uint32_t region) {
+  World& world = context.world;
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const RegionMotion& motion = world.regions.at<RegionMotion>(region);
+  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
+  const Friction& friction = world.bodies.at<Friction>(identity.body);
+  MdrState& state = world.regions.at<MdrState>(region);
+  RegionNormal& normal = world.regions.at<RegionNormal>(region);
+  RegionFriction& tangential = world.regions.at<RegionFriction>(region);
+  const RoundContact round = contact_of(world, region);
+  const std::uint32_t block = identity.cells.first / identity.cells.count;
+  const auto layers = world.mdr_layers.rows<MdrLayer>({block * kMdrLayers, kMdrLayers});
+  normal = RegionNormal{};
+  tangential = RegionFriction{};
+  if (round.force <= 0.0) {
+    std::ranges::fill(layers, MdrLayer{});
+    state = MdrState{};
+    set_cells(world, region, round, false);
+    return;
+  }
+  MdrContact contact;
+  contact.radius = round.radius;
+  contact.force = round.force;
+  contact.flat_share = round.flat_share;
+  contact.friction = friction.static_friction +
+                     state.kinetic_share * (friction.dynamic_friction - friction.static_friction);
+  contact.shear_modulus = elasticity.shear_modulus();
+  contact.poisson_ratio = elasticity.poisson_ratio;
+  contact.torque_share = round.torque_share;
+  contact.slide = slide_at(motion, round.center);
+  contact.spin = motion.spin;
+  resize_layers(thresholds_of(tables, round.flat_share), state.radius, round.radius, layers);
+  const MdrForces forces = move_layers(tables, contact, layers);
+  state.radius = round.radius;
+  // mu_s comes down to mu_d over a short slip and is back after as long an elastic path.
+  const double stiffness =
+      8.0 * contact.shear_modulus * round.radius / (2.0 - contact.poisson_ratio);
+  const double inverse = inverse_of(contact.friction * round.force / stiffness);
+  const double path = glm::length(contact.slide) + std::abs(contact.spin) * round.radius;
+  state.kinetic_share +=
+      (1.0 - state.kinetic_share) * travelled(forces.slipped, inverse / kSlipLength);
+  state.kinetic_share *= 1.0 - travelled(std::max(path - forces.slipped, 0.0), inverse);
+
+  normal.force = round.force;
+  normal.stiffness = 2.0 * elasticity.contact_modulus() * round.radius;
+  tangential.force = forces.force;
+  tangential.couple = forces.couple;
+  tangential.stick_share = forces.stick_share;
+  tangential.stick_radius = round.radius;
+  tangential.stick_turn = layers.back().turn;
+  RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+  geometry.rest_point = grid_to_body(frame, {round.center, 0.0});
+  geometry.equivalent_point = geometry.rest_point - frame.normal * round.depth;
+  geometry.radius = round.radius;
+  geometry.area = std::numbers::pi * round.radius * round.radius;
+  geometry.mean_depth = round.depth;
+  set_cells(world, region, round, forces.stick_share > 0.5);
+}
+
+}  // namespace
+
+double layer_force_share(double chi, double poisson_ratio) {
+  const double nu = poisson_ratio;
+  const double x = std::clamp(chi, 0.0, 0.5);
+  constexpr double kPi = std::numbers::pi;
+  const double a = -(1.2876 - 1.4678 * nu + 1.3442 * nu * nu) / (1.0 - nu);
+  const double b = (0.6387 - 1.0277 * nu + 1.5164 * nu * nu) / (1.0 - nu);
+  const double t = 2.0 / kPi * x;
+  const double cube = a * a * a;
+  return 1.0 - a * t + a * a * t * t - (cube + 4.0 * kPi * kPi / 15.0 * b) * t * t * t -
+         a * (cube + 0.6 * kPi * kPi * b) * t * t * t * t;
+}
+
+void mdr_forces(StepContext& context) {
+  World& world = context.world;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
+    if (world.bodies.at<BodyModels>(body).contact == ContactModel::kMdr) {
+      move_region(context, context.scratch.mdr_tables, region);
+    }
+  }
+}
+
+}  // namespace torsion

@@ -1,0 +1,128 @@
+#include "systems/contact_models/elliptic_contact.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "systems/contact_models/contact_shape.hpp"
+#include "tests/reference/exact/elliptic_integrals.hpp"
+#include "tests/reference/exact/hertz.hpp"
+#include "tests/reference/exact/hertz_ellipse.hpp"
+#include "tests/reference/exact/lubkin.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kModulus = 4e6;  // Pa
+constexpr double kDepth = 4e-4;   // m
+
+TEST(EllipticContactTest, IntegralsMatchTheReference) {
+  for (const double m : {0.0, 1e-9, 1e-3, 0.1, 0.5, 0.9, 0.99, 0.9999}) {
+    const EllipticIntegrals found = elliptic_integrals(m);
+    EXPECT_NEAR(found.first / reference::elliptic_k(m), 1.0, 1e-13) << m;
+    EXPECT_NEAR(found.second / reference::elliptic_e(m), 1.0, 1e-13) << m;
+  }
+}
+
+TEST(EllipticContactTest, ARoundContactIsHertzs) {
+  const reference::HertzSphere exact = reference::hertz_sphere_at_depth(0.05, kModulus, kDepth);
+  const EllipticContact found = elliptic_contact(kDepth, 20.0, 20.0);
+  EXPECT_NEAR(found.major / exact.radius, 1.0, 1e-14);
+  EXPECT_NEAR(found.minor / exact.radius, 1.0, 1e-14);
+  EXPECT_NEAR(found.force_share, 1.0, 1e-14);
+  EXPECT_NEAR(found.torque_share, 1.0, 1e-14);
+}
+
+TEST(EllipticContactTest, AxesForceAndLargestCoupleAreHertzs) {
+  // Radii of curvature 1 : 1.0001 to 1 : 500, b / a from 1 to about 0.03. Newton's four steps end
+  // within 1e-6 of the axes; the issue asks for 3 %.
+  for (const double ratio : {1.0001, 1.01, 1.5, 2.0, 5.0, 20.0, 100.0, 500.0}) {
+    const double larger = 0.05 * ratio;
+    const reference::HertzEllipse exact =
+        reference::hertz_ellipse_at_depth(larger, 0.05, kModulus, kDepth);
+    for (const bool swapped : {false, true}) {
+      const EllipticContact found = swapped ? elliptic_contact(kDepth, 20.0, 1.0 / larger)
+                                            : elliptic_contact(kDepth, 1.0 / larger, 20.0);
+      EXPECT_NEAR(found.major / exact.major, 1.0, 1e-6) << ratio;
+      EXPECT_NEAR(found.minor / exact.minor, 1.0, 1e-6) << ratio;
+      const double round = std::sqrt(found.major * found.minor);
+      EXPECT_NEAR(4.0 / 3.0 * kModulus * round * kDepth * found.force_share / exact.force, 1.0,
+                  1e-6)
+          << ratio;
+      const double couple =
+          reference::saturated_torque_ellipse(0.75, exact.force, exact.major, exact.parameter);
+      const double of_round = 3.0 / 16.0 * std::numbers::pi * 0.75 * exact.force * round;
+      EXPECT_NEAR(of_round * found.torque_share / couple, 1.0, 1e-6) << ratio;
+    }
+  }
+}
+
+/// Cells of a grid over a paraboloid of these curvatures, turned by `angle` about its apex.
+struct Overlap {
+  RegionFrame frame;
+  std::vector<CellGeometry> cells;
+};
+
+struct Paraboloid {
+  double depth = 0.0;
+  glm::dvec2 apex{0.0};
+  double curvature_1 = 0.0;
+  double curvature_2 = 0.0;
+  double angle = 0.0;
+};
+
+constexpr std::uint32_t kSide = 12;
+
+Overlap overlap_of(const Paraboloid& shape, const glm::dvec2& half_size) {
+  Overlap overlap;
+  overlap.frame.half_size = half_size;
+  for (std::uint32_t j = 0; j < kSide; ++j) {
+    for (std::uint32_t i = 0; i < kSide; ++i) {
+      const glm::dvec2 place =
+          half_size * ((2.0 * glm::dvec2(i, j) + 1.0) / static_cast<double>(kSide) - 1.0);
+      const glm::dvec2 arm = place - shape.apex;
+      const double along = std::cos(shape.angle) * arm.x + std::sin(shape.angle) * arm.y;
+      const double across = std::cos(shape.angle) * arm.y - std::sin(shape.angle) * arm.x;
+      CellGeometry cell;
+      cell.depth = shape.depth -
+                   0.5 * (shape.curvature_1 * along * along + shape.curvature_2 * across * across);
+      cell.coverage = cell.depth > 0.0 ? 1.0 : 0.0;
+      overlap.cells.push_back(cell);
+    }
+  }
+  return overlap;
+}
+
+TEST(ContactShapeTest, FindsAParaboloidWhereverItLies) {
+  // The overlap's depth is quadratic, so least squares give it back but for the part 1e-12 that
+  // keeps poor grids solvable, times the square of the condition number.
+  for (const double angle : {0.0, 0.4, 1.2, 2.5}) {
+    const Paraboloid shape{kDepth, {3e-4, -5e-4}, 8.0, 24.0, angle};
+    const Overlap overlap = overlap_of(shape, {1.3e-2, 1.1e-2});
+    const ContactShape found = fit_contact_shape(overlap.frame, kSide, overlap.cells);
+    EXPECT_NEAR(found.depth / shape.depth, 1.0, 1e-6);
+    EXPECT_NEAR(std::min(found.curvature_1, found.curvature_2), 8.0, 8e-6);
+    EXPECT_NEAR(std::max(found.curvature_1, found.curvature_2), 24.0, 24e-6);
+    EXPECT_NEAR(found.apex.x, shape.apex.x, 1e-8);
+    EXPECT_NEAR(found.apex.y, shape.apex.y, 1e-8);
+  }
+}
+
+TEST(ContactShapeTest, AFlatFaceHasNoCurvatureAndItsApexInTheMiddle) {
+  Overlap overlap = overlap_of({kDepth, {0.0, 0.0}, 0.0, 0.0, 0.0}, {1e-2, 1e-2});
+  const ContactShape found = fit_contact_shape(overlap.frame, kSide, overlap.cells);
+  EXPECT_EQ(found.curvature_1, 0.0);
+  EXPECT_EQ(found.curvature_2, 0.0);
+  EXPECT_NEAR(found.depth / kDepth, 1.0, 1e-9);
+  EXPECT_NEAR(found.apex.x, 0.0, 1e-12);
+  EXPECT_NEAR(found.apex.y, 0.0, 1e-12);
+}
+
+TEST(ContactShapeTest, WithoutOverlapThereIsNoShape) {
+  Overlap overlap = overlap_of({-kDepth, {0.0, 0.0}, 20.0, 20.0, 0.0}, {1e-2, 1e-2});
+  EXPECT_EQ(fit_contact_shape(overlap.frame, kSide, overlap.cells).depth, 0.0);
+}
+
+}  // namespace
+}  // namespace torsion

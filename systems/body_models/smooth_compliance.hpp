@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "ecs/components.hpp"
+#include "ecs/result.hpp"
+#include "systems/body_models/half_space_fields.hpp"
+#include "systems/distance.hpp"
+
+namespace torsion {
+
+/// A linear elastic body, at rest and free but for where it is clamped.
+struct ElasticSolid {
+  std::function<Distance(const glm::dvec3&)> signed_distance;  // m, body; negative inside
+  Bounds bounds;                                               // m, body
+  std::function<bool(const glm::dvec3&)> clamped;  // of a point in the body or on its surface
+  Elasticity elasticity;
+};
+
+struct SmoothComplianceOptions {
+  std::uint32_t elements = 16;           // along the longest side of the bounds, 4 to 64
+  std::uint32_t threads = 1;             // the result is the same bits for any number
+  std::function<void(double)> progress;  // called with 0 to 1 as it goes on, if set
+};
+
+/// How wrenches at ports move the material at ports, beyond what each wrench does to the half-space
+/// at its own port: the part of a body's compliance that comes from its finite size, its clamp and
+/// its shape.
+struct SmoothCompliance {
+  Eigen::MatrixXd matrix;           // 6M x 6M, body axes, SI, symmetric: rows translation (m) and
+                                    // rotation (rad) of port i; columns force (N) and torque (N m)
+                                    // about port j
+  double relative_asymmetry = 0.0;  // before it was made symmetric: |S - S'| / |S|, Frobenius
+                                    // norms, rotations times half the longest side
+};
+
+/// Solves for the smooth compliance by finite elements. For each unit wrench at a port the
+/// displacement is split into the half-space's closed form and a rest that is smooth near the port;
+/// only the rest is discretised, driven by minus the closed form's tractions on the free surface
+/// and minus its displacement at the clamp.
+/// @param ports  on the solid's surface
+/// @return an Error when the bounds are empty, nothing of the body is found in them, the clamp
+///         holds fewer than three nodes that are not in line, or the material is no solid
+Result<SmoothCompliance> build_smooth_compliance(const ElasticSolid& solid,
+                                                 std::span<const Port> ports,
+                                                 const SmoothComplianceOptions& options);
+
+/// The same through the cache. The matrix scales with 1/E, so E is not in the key.
+/// @param identity  bytes that tell the solid's shape and clamp from every other's
+Result<SmoothCompliance> load_or_build_smooth_compliance(const ElasticSolid& solid,
+                                                         std::span<const std::byte> identity,
+                                                         std::span<const Port> ports,
+                                                         const SmoothComplianceOptions& options);
+
+/// Up to `count` ports spread evenly over the free surface, each next one farthest from all before
+/// it and from the clamp; none at the clamp, none so near a sharp edge that the surface bends away
+/// within a third of the ports' spacing.
+std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count);
+
+}  // namespace torsion

@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
+#include "app/session.hpp"
+#include "ecs/model_names.hpp"
 #include "scenes/load_gltf.hpp"
 
 namespace torsion {
@@ -70,32 +72,17 @@ std::size_t memory_of(const World& world) {
   return bytes;
 }
 
-/// Why a model is what it is.
-const char* reason(bool by_option, bool by_scene, const char* automatic) {
-  return by_option ? "the command line says so" : (by_scene ? "the scene says so" : automatic);
-}
-
 /// What runs for one body, as `check` says it in words and as JSON.
 struct BodyReport {
   const BodyDescription& scene;
-  const BodyModels& models;
+  const ModelChoice& choice;
   std::uint32_t anchors;
-  std::string contact_why;
-  std::string body_why;
 };
 
-BodyReport report_of(const CheckOptions& options, const SceneDescription& scene, const World& world,
+BodyReport report_of(const SceneDescription& scene, const Simulation& simulation,
                      std::uint32_t row) {
-  const BodyDescription& body = scene.bodies[row];
-  return {body, world.bodies.at<BodyModels>(row), world.bodies.at<OwnedRows>(row).anchors.count,
-          reason(options.scene.contact_model != "auto", body.models.contact != ContactModel::kAuto,
-                 "auto: the only one there is"),
-          reason(options.scene.body_model != "auto", body.models.body != BodyModel::kAuto,
-                 "auto: the whole body deforms")};
-}
-
-const char* body_model_name(BodyModel model) {
-  return model == BodyModel::kNone ? "none" : "skeleton";
+  return {scene.bodies[row], simulation.choices[row],
+          simulation.world.bodies.at<OwnedRows>(row).anchors.count};
 }
 
 void print_body(const BodyReport& report) {
@@ -108,9 +95,10 @@ void print_body(const BodyReport& report) {
       body.node, parts_text(body.parts), body.elasticity.youngs_modulus,
       body.elasticity.poisson_ratio, body.elasticity.density, body.friction.static_friction,
       body.friction.dynamic_friction, fixed_text(body.fixed.kind), point.x, point.y, point.z,
-      1e3 * report.models.region_threshold, report.anchors);
-  fmt::print("  contact model paper ({}), body model {} ({})\n", report.contact_why,
-             body_model_name(report.models.body), report.body_why);
+      1e3 * report.choice.models.region_threshold, report.anchors);
+  const ModelChoice& choice = report.choice;
+  fmt::print("  contact model {} ({})\n  body model {} ({})\n", name_of(choice.models.contact),
+             choice.contact_why, name_of(choice.models.body), choice.body_why);
 }
 
 void print_tool(const ToolDescription& tool, std::uint32_t samples) {
@@ -123,10 +111,11 @@ void print_tool(const ToolDescription& tool, std::uint32_t samples) {
   }
 }
 
-void print_scene(const CheckOptions& options, const SceneDescription& scene, const World& world) {
+void print_scene(const SceneDescription& scene, const Simulation& simulation) {
+  const World& world = simulation.world;
   fmt::print("{}: no problems\n", scene.path);
   for (std::uint32_t row = 0; row < scene.bodies.size(); ++row) {
-    print_body(report_of(options, scene, world, row));
+    print_body(report_of(scene, simulation, row));
   }
   for (std::uint32_t row = 0; row < scene.tools.size(); ++row) {
     print_tool(scene.tools[row], world.tools.at<OwnedRows>(row).samples.count);
@@ -143,22 +132,21 @@ void print_systems(const Schedule<StepContext>& schedule) {
   }
 }
 
-nlohmann::ordered_json scene_json(const CheckOptions& options, const SceneDescription& scene,
-                                  const Simulation& simulation) {
+nlohmann::ordered_json scene_json(const SceneDescription& scene, const Simulation& simulation) {
   const World& world = simulation.world;
   nlohmann::ordered_json json = {{"scene", scene.path},
                                  {"problems", nlohmann::json::array()},
                                  {"duration_s", scene.duration},
                                  {"physics_bytes", memory_of(world)}};
   for (std::uint32_t row = 0; row < scene.bodies.size(); ++row) {
-    const BodyReport report = report_of(options, scene, world, row);
+    const BodyReport report = report_of(scene, simulation, row);
     json["bodies"].push_back({{"node", report.scene.node},
                               {"parts", report.scene.parts.size()},
                               {"anchors", report.anchors},
-                              {"contact_model", "paper"},
-                              {"contact_model_why", report.contact_why},
-                              {"body_model", body_model_name(report.models.body)},
-                              {"body_model_why", report.body_why}});
+                              {"contact_model", name_of(report.choice.models.contact)},
+                              {"contact_model_why", report.choice.contact_why},
+                              {"body_model", name_of(report.choice.models.body)},
+                              {"body_model_why", report.choice.body_why}});
   }
   for (std::uint32_t row = 0; row < scene.tools.size(); ++row) {
     const ToolDescription& tool = scene.tools[row];
@@ -182,15 +170,17 @@ int check(const CheckOptions& options) {
   if (!loaded.scene) {
     return report_problems(loaded.problems, options.json);
   }
-  Result<Simulation> prepared = prepare(*loaded.scene, options.scene.prepare_options());
+  PrepareOptions chosen = options.scene.prepare_options();
+  chosen.expected_poses = expected_poses(*loaded.scene);
+  Result<Simulation> prepared = prepare(*loaded.scene, chosen);
   if (!prepared) {
     return report_problems({{options.scene.scene, "", "", "", prepared.error().text, ""}},
                            options.json);
   }
   if (options.json) {
-    fmt::print("{}\n", scene_json(options, *loaded.scene, prepared.value()).dump(2));
+    fmt::print("{}\n", scene_json(*loaded.scene, prepared.value()).dump(2));
   } else {
-    print_scene(options, *loaded.scene, prepared.value().world);
+    print_scene(*loaded.scene, prepared.value());
     print_systems(prepared.value().schedule);
   }
   return kDone;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -28,7 +29,9 @@ struct SceneOptions {
   std::string scene;
   std::string contact_model = "auto";
   std::string body_model = "auto";
-  double rate = 1000.0;  // Hz
+  double rate = 1000.0;      // Hz
+  std::uint32_t cells = 0;   // in a round contact; 0: as the models need
+  std::uint32_t sweeps = 2;  // of contact model patch over its cells in a step
 
   void add_to(CLI::App& subcommand);
   [[nodiscard]] PrepareOptions prepare_options() const;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.hpp"
+#include "app/report.hpp"
 
 namespace {
 
@@ -18,6 +19,7 @@ int run(int argc, char** argv) {
 #endif
   torsion::add_export(app, command);
   torsion::add_check(app, command);
+  torsion::add_report(app, command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

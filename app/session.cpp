@@ -1,5 +1,6 @@
 #include "app/session.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "device/scripted_motion.hpp"
@@ -13,13 +14,33 @@ Result<Session> open_session(const std::filesystem::path& path, const PrepareOpt
   if (!loaded.scene) {
     return Error{to_text(loaded.problems)};
   }
-  Result<Simulation> simulation = prepare(*loaded.scene, options);
+  PrepareOptions informed = options;
+  informed.expected_poses = expected_poses(*loaded.scene);
+  Result<Simulation> simulation = prepare(*loaded.scene, informed);
   if (!simulation) {
     return Error{path.string() + ": " + simulation.error().text};
   }
   Session session{std::move(*loaded.scene), std::move(simulation).value(), {}};
   session.tool_poses.resize(session.scene.tools.size());
   return session;
+}
+
+std::vector<std::vector<Pose>> expected_poses(const SceneDescription& scene) {
+  constexpr int kTimes = 60;
+  const auto is_animated = [](const ToolDescription& tool) {
+    return tool.device == "animation" && tool.script.end_time > 0.0;
+  };
+  std::vector<std::vector<Pose>> poses;
+  if (!std::ranges::all_of(scene.tools, is_animated)) {
+    return poses;
+  }
+  for (int k = 0; k <= kTimes; ++k) {
+    std::vector<Pose>& at_time = poses.emplace_back();
+    for (const ToolDescription& tool : scene.tools) {
+      at_time.push_back(scripted_pose(tool.script, scene.duration * k / kTimes));
+    }
+  }
+  return poses;
 }
 
 void step_scripted(Session& session) {

@@ -18,6 +18,10 @@ struct Session {
 /// Loads and prepares a scene. The error has all problems of the file, one a line.
 Result<Session> open_session(const std::filesystem::path& path, const PrepareOptions& options);
 
+/// Where the tools will be at equal intervals of the scene's animations, (times) of (tools); empty
+/// where something else than an animation moves one of them.
+std::vector<std::vector<Pose>> expected_poses(const SceneDescription& scene);
+
 /// One step with the tools where their animations hold them at its time.
 void step_scripted(Session& session);
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ecs/hash.hpp"
+#include "ecs/model_names.hpp"
 #include "systems/fault.hpp"
 
 namespace torsion {
@@ -11,14 +12,6 @@ namespace {
 
 double simulated_time(const Session& session, const RunStatistics& statistics) {
   return static_cast<double>(statistics.steps) * session.simulation.world.clock.at<Clock>(0).dt;
-}
-
-const char* model_name(ContactModel model) {
-  return model == ContactModel::kPaper ? "paper" : "auto";
-}
-
-const char* model_name(BodyModel model) {
-  return model == BodyModel::kSkeleton ? "skeleton" : (model == BodyModel::kNone ? "none" : "auto");
 }
 
 }  // namespace
@@ -37,10 +30,10 @@ std::string summary_text(const Session& session, const RunStatistics& statistics
       statistics.contact_steps, statistics.most_regions, statistics.peak_force,
       statistics.peak_torque);
   for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
-    const auto& models = world.bodies.at<BodyModels>(body);
-    text += fmt::format("body     {}: contact model {}, body model {}\n",
-                        session.scene.bodies[body].node, model_name(models.contact),
-                        model_name(models.body));
+    const ModelChoice& choice = session.simulation.choices[body];
+    text += fmt::format("body     {}: contact model {} ({}); body model {} ({})\n",
+                        session.scene.bodies[body].node, name_of(choice.models.contact),
+                        choice.contact_why, name_of(choice.models.body), choice.body_why);
   }
   if (statistics.lateness.count() > 0) {
     text += fmt::format(
@@ -79,10 +72,12 @@ std::string summary_json(const Session& session, const RunStatistics& statistics
                                  {"world_hash", fmt::format("{:016x}", hash(world))},
                                  {"faults", nlohmann::json::array()}};
   for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
-    const auto& models = world.bodies.at<BodyModels>(body);
+    const ModelChoice& choice = session.simulation.choices[body];
     json["bodies"].push_back({{"node", session.scene.bodies[body].node},
-                              {"contact_model", model_name(models.contact)},
-                              {"body_model", model_name(models.body)}});
+                              {"contact_model", name_of(choice.models.contact)},
+                              {"contact_model_why", choice.contact_why},
+                              {"body_model", name_of(choice.models.body)},
+                              {"body_model_why", choice.body_why}});
   }
   for (const Fault fault : kAllFaults) {
     if (raised(world.clock.at<Clock>(0).faults_ever, fault)) {

@@ -3,7 +3,6 @@
 namespace torsion {
 
 void World::reserve(const Capacities& capacities, const Settings& chosen) {
-  settings.reserve(1);
   parts.reserve(capacities.parts);
   fields.reserve(capacities.fields);
   field_nodes.reserve(capacities.field_nodes);
@@ -11,24 +10,28 @@ void World::reserve(const Capacities& capacities, const Settings& chosen) {
   fixed_volumes.reserve(capacities.fixed_volumes);
   samples.reserve(capacities.samples);
   balls.reserve(capacities.balls);
-  influences.reserve(capacities.influences);
   sections.reserve(capacities.anchors * kBeamStations);
   clock.reserve(1);
   bodies.reserve(capacities.bodies);
   tools.reserve(capacities.tools);
+  anchors.reserve(capacities.anchors);
+  body_handles.reserve(capacities.bodies);
+  tool_handles.reserve(capacities.tools);
+  reserve_models(capacities, chosen);
+  clock.append();
+  clock.at<Clock>(0) = Clock{};
+}
+
+void World::reserve_models(const Capacities& capacities, const Settings& chosen) {
+  settings.reserve(1);
+  influences.reserve(capacities.influences);
   regions.reserve(capacities.regions);
   cells.reserve(capacities.regions * chosen.grid_side * chosen.grid_side);
   patch_cells.reserve(capacities.influences > 0 ? cells.capacity() : 0);
   mdr_layers.reserve(capacities.mdr_bodies > 0 ? capacities.regions * kMdrLayers : 0);
-  anchors.reserve(capacities.anchors);
-  body_handles.reserve(capacities.bodies);
-  tool_handles.reserve(capacities.tools);
   region_handles.reserve(capacities.regions);
-
   settings.append();
   settings.at<Settings>(0) = chosen;
-  clock.append();
-  clock.at<Clock>(0) = Clock{};
 }
 
 }  // namespace torsion

@@ -101,6 +101,11 @@ struct World {
   /// Takes all memory, empties all tables, and appends the one row of `settings` and `clock`.
   void reserve(const Capacities& capacities, const Settings& chosen);
 
+  /// The part of reserve() that depends on the models: takes the memory of the settings and of the
+  /// tables of regions, cells and contact models anew, and empties them. What is in the others
+  /// stays, so that models can be chosen by what the shapes say.
+  void reserve_models(const Capacities& capacities, const Settings& chosen);
+
   [[nodiscard]] auto tables() {
     return std::tie(settings, parts, fields, field_nodes, field_bricks, fixed_volumes, samples,
                     balls, influences, sections, clock, bodies, tools, regions, cells, patch_cells,

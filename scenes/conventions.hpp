@@ -63,7 +63,7 @@ inline constexpr std::array kSceneKeys = {
              "a number of at least 0 and of at least torsion_dynamic_friction", 0.0, 100.0},
     SceneKey{"torsion_dynamic_friction", bits(Role::kElastic), KeyKind::kNumber,
              "a number of at least 0", 0.0, 100.0},
-    SceneKey{"torsion_contact_model", bits(Role::kElastic), KeyKind::kText, "auto paper"},
+    SceneKey{"torsion_contact_model", bits(Role::kElastic), KeyKind::kText, "auto paper mdr patch"},
     SceneKey{"torsion_body_model", bits(Role::kElastic), KeyKind::kText, "auto none skeleton"},
     SceneKey{"torsion_tolerance", bits(Role::kElastic), KeyKind::kNumber,
              "a number above 0 and up to 1", 0.0, 1.0, false},

@@ -4,6 +4,7 @@
 
 #include <glm/gtc/quaternion.hpp>
 
+#include "ecs/model_names.hpp"
 #include "scenes/fixed_regions.hpp"
 #include "scenes/gltf_file.hpp"
 #include "scenes/mass_properties.hpp"
@@ -49,17 +50,6 @@ Friction read_friction(const SceneReader& reader, std::size_t node) {
   return friction;
 }
 
-ContactModel contact_model(const std::string& name) {
-  return name == "paper" ? ContactModel::kPaper : ContactModel::kAuto;
-}
-
-BodyModel body_model(const std::string& name) {
-  if (name == "none") {
-    return BodyModel::kNone;
-  }
-  return name == "skeleton" ? BodyModel::kSkeleton : BodyModel::kAuto;
-}
-
 std::vector<FixedNode> fixed_nodes(const SceneReader& reader, std::size_t owner,
                                    const glm::dmat4& from_world) {
   std::vector<FixedNode> nodes;
@@ -100,8 +90,10 @@ BodyDescription read_body(const SceneReader& reader, std::size_t node) {
       keys.number("torsion_poisson_ratio").value_or(elasticity.poisson_ratio);
   elasticity.density = keys.number("torsion_density").value_or(elasticity.density);
   body.friction = read_friction(reader, node);
-  body.models.contact = contact_model(keys.text("torsion_contact_model").value_or("auto"));
-  body.models.body = body_model(keys.text("torsion_body_model").value_or("auto"));
+  body.models.contact = contact_model_named(keys.text("torsion_contact_model").value_or("auto"))
+                            .value_or(ContactModel::kAuto);
+  body.models.body =
+      body_model_named(keys.text("torsion_body_model").value_or("auto")).value_or(BodyModel::kAuto);
   body.models.tolerance = keys.number("torsion_tolerance").value_or(body.models.tolerance);
   body.models.region_threshold = keys.number("torsion_region_threshold").value_or(0.0);
   check_body_rests(reader, node);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "systems/choose_models.hpp"
 #include "systems/contact_models/influence.hpp"
 #include "systems/distance_field_build.hpp"
 #include "systems/frames.hpp"
@@ -67,28 +68,13 @@ Result<Built> build(const SceneDescription& scene, const PrepareOptions& options
   return built;
 }
 
-/// What `auto` means, and what the caller insists on.
-BodyModels choose_models(const BodyDescription& body, const PrepareOptions& options) {
-  BodyModels models = body.models;
-  models.contact =
-      options.contact_model != ContactModel::kAuto ? options.contact_model : models.contact;
-  models.body = options.body_model != BodyModel::kAuto ? options.body_model : models.body;
-  models.contact = models.contact == ContactModel::kAuto ? ContactModel::kPaper : models.contact;
-  models.body = models.body == BodyModel::kAuto ? BodyModel::kSkeleton : models.body;
-  return models;
-}
-
-Capacities capacities_of(const SceneDescription& scene, const PrepareOptions& options,
-                         const Built& built) {
+/// Of all tables but those that depend on the models.
+Capacities capacities_of(const SceneDescription& scene, const Built& built) {
   Capacities needed;
   needed.bodies = static_cast<std::uint32_t>(scene.bodies.size());
   needed.tools = static_cast<std::uint32_t>(scene.tools.size());
   for (const BodyDescription& body : scene.bodies) {
     needed.parts += static_cast<std::uint32_t>(body.parts.size());
-    if (choose_models(body, options).contact == ContactModel::kPatch) {
-      needed.influences += static_cast<std::uint32_t>(influence_count(options.settings.grid_side));
-    }
-    needed.mdr_bodies += choose_models(body, options).contact == ContactModel::kMdr ? 1U : 0U;
     needed.fixed_volumes += static_cast<std::uint32_t>(body.fixed_volumes.size());
   }
   for (const ToolDescription& tool : scene.tools) {
@@ -177,36 +163,91 @@ void append_tool(World& world, const ToolDescription& tool, const SampledSurface
   world.tools.at<Bounds>(row) = bounds_of(tool.parts);
 }
 
-void append_body(World& world, const BodyDescription& body, const PrepareOptions& options,
-                 const Built& built, std::size_t& next_field) {
+void append_body(World& world, const BodyDescription& body, const Built& built,
+                 std::size_t& next_field) {
   OwnedRows owned;
   owned.parts = append_parts(world, body.parts, built, next_field);
   FixedRegion fixed = body.fixed;
   fixed.volumes = append_rows<FixedVolume>(world.fixed_volumes, body.fixed_volumes);
-  BodyModels models = choose_models(body, options);
-  if (models.body == BodyModel::kSkeleton) {
-    const PreparedAnchors prepared = prepare_anchors(body, world, owned.parts, fixed.volumes);
-    models.body = prepared.anchors.empty() ? BodyModel::kNone : models.body;
-    owned.anchors = append_rows<AnchorRest>(world.anchors, prepared.anchors);
-    append_rows<BeamSection>(world.sections, prepared.sections);
-  }
-  if (models.contact == ContactModel::kPatch) {
-    const std::uint32_t side = options.settings.grid_side;
-    owned.influences = *world.influences.append(static_cast<std::uint32_t>(influence_count(side)));
-    std::vector<double> values(owned.influences.count);
-    fill_influences(body.elasticity.poisson_ratio, side, values);
-    std::ranges::transform(values, world.influences.rows<Influence>(owned.influences).begin(),
-                           [](double value) { return Influence{value}; });
-  }
   const std::uint32_t row = world.bodies.append()->first;
   world.bodies.at<Entity>(row) = *world.body_handles.create(row);
   world.bodies.at<Pose>(row) = body.pose;
   world.bodies.at<Elasticity>(row) = body.elasticity;
   world.bodies.at<Friction>(row) = body.friction;
   world.bodies.at<FixedRegion>(row) = fixed;
-  world.bodies.at<BodyModels>(row) = models;
+  world.bodies.at<BodyModels>(row) = body.models;
   world.bodies.at<OwnedRows>(row) = owned;
   world.bodies.at<Bounds>(row) = bounds_of(body.parts);
+}
+
+/// All that knows nothing of models: shapes, bodies, tools.
+void append_scene(World& world, const SceneDescription& scene, const Built& built) {
+  std::size_t next_field = 0;
+  for (const BodyDescription& body : scene.bodies) {
+    append_body(world, body, built, next_field);
+  }
+  for (std::size_t tool = 0; tool < scene.tools.size(); ++tool) {
+    append_tool(world, scene.tools[tool], built.surfaces[tool], built, next_field);
+  }
+  for (BodyModels& models : world.bodies.column<BodyModels>()) {
+    models.region_threshold = std::max(models.region_threshold, default_threshold(world));
+  }
+}
+
+std::vector<ModelChoice> choose_all(const World& world, const PrepareOptions& options) {
+  std::vector<ModelChoice> choices;
+  for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
+    choices.push_back(choose_models(world.bodies.at<BodyModels>(row), options,
+                                    expect_contact(world, row, options.expected_poses)));
+  }
+  return choices;
+}
+
+/// What the chosen models of a body need.
+void append_models(World& world, std::uint32_t row, const BodyDescription& body,
+                   ModelChoice& choice) {
+  OwnedRows& owned = world.bodies.at<OwnedRows>(row);
+  if (choice.models.body == BodyModel::kSkeleton) {
+    const Range volumes = world.bodies.at<FixedRegion>(row).volumes;
+    const PreparedAnchors prepared = prepare_anchors(body, world, owned.parts, volumes);
+    if (prepared.anchors.empty()) {
+      choice.models.body = BodyModel::kNone;
+      choice.body_why = "all of the body is fixed";
+    }
+    owned.anchors = append_rows<AnchorRest>(world.anchors, prepared.anchors);
+    append_rows<BeamSection>(world.sections, prepared.sections);
+  }
+  if (choice.models.contact == ContactModel::kPatch) {
+    const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+    owned.influences = *world.influences.append(static_cast<std::uint32_t>(influence_count(side)));
+    std::vector<double> values(owned.influences.count);
+    fill_influences(body.elasticity.poisson_ratio, side, values);
+    std::ranges::transform(values, world.influences.rows<Influence>(owned.influences).begin(),
+                           [](double value) { return Influence{value}; });
+  }
+  world.bodies.at<BodyModels>(row) = choice.models;
+}
+
+/// Chooses models and fills all tables that depend on them.
+void append_choices(Simulation& simulation, const SceneDescription& scene,
+                    const PrepareOptions& options, Capacities capacities) {
+  World& world = simulation.world;
+  simulation.choices = choose_all(world, options);
+  Settings settings = options.settings;
+  settings.grid_side =
+      settings.grid_side == 0 ? choose_grid_side(simulation.choices) : settings.grid_side;
+  const auto influences = static_cast<std::uint32_t>(influence_count(settings.grid_side));
+  for (const ModelChoice& choice : simulation.choices) {
+    capacities.influences += choice.models.contact == ContactModel::kPatch ? influences : 0U;
+    capacities.mdr_bodies += choice.models.contact == ContactModel::kMdr ? 1U : 0U;
+  }
+  world.reserve_models(capacities, settings);
+  for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
+    append_models(world, row, scene.bodies[row], simulation.choices[row]);
+  }
+  TORSION_ASSERT(world.cells.append(world.cells.capacity()).has_value());
+  TORSION_ASSERT(world.mdr_layers.append(world.mdr_layers.capacity()).has_value());
+  TORSION_ASSERT(world.patch_cells.append(world.patch_cells.capacity()).has_value());
 }
 
 }  // namespace
@@ -216,7 +257,7 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
     return Error{"the rate must be above 0 and at most 1e6 Hz, it is " +
                  std::to_string(options.rate)};
   }
-  if (options.settings.grid_side < 1 || options.settings.grid_side > kMaxGridSide) {
+  if (options.settings.grid_side > kMaxGridSide) {
     return Error{"the grid must have 1 to " + std::to_string(kMaxGridSide) +
                  " cells along a side, it has " + std::to_string(options.settings.grid_side)};
   }
@@ -226,21 +267,11 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
   }
   Simulation simulation;
   World& world = simulation.world;
-  world.reserve(capacities_of(scene, options, built.value()), options.settings);
+  const Capacities capacities = capacities_of(scene, built.value());
+  world.reserve(capacities, Settings{1, 0});
   world.clock.at<Clock>(0).dt = 1.0 / options.rate;
-  std::size_t next_field = 0;
-  for (const BodyDescription& body : scene.bodies) {
-    append_body(world, body, options, built.value(), next_field);
-  }
-  for (std::size_t tool = 0; tool < scene.tools.size(); ++tool) {
-    append_tool(world, scene.tools[tool], built.value().surfaces[tool], built.value(), next_field);
-  }
-  for (BodyModels& models : world.bodies.column<BodyModels>()) {
-    models.region_threshold = std::max(models.region_threshold, default_threshold(world));
-  }
-  TORSION_ASSERT(world.cells.append(world.cells.capacity()).has_value());
-  TORSION_ASSERT(world.mdr_layers.append(world.mdr_layers.capacity()).has_value());
-  TORSION_ASSERT(world.patch_cells.append(world.patch_cells.capacity()).has_value());
+  append_scene(world, scene, built.value());
+  append_choices(simulation, scene, options, capacities);
   simulation.scratch->reserve(world);
   simulation.schedule =
       Schedule<StepContext>(step_systems(), StepContext{world, {}, *simulation.scratch});

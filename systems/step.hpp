@@ -2,6 +2,8 @@
 
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "ecs/result.hpp"
 #include "ecs/scene_description.hpp"
@@ -22,6 +24,13 @@ struct StepContext {
 /// The systems of one step in the order of the paper's Fig. 4.
 std::vector<System<StepContext>> step_systems();
 
+/// Models of one body and why these, in words that follow "contact model patch (".
+struct ModelChoice {
+  BodyModels models;  // never kAuto
+  std::string contact_why;
+  std::string body_why;
+};
+
 /// A world with the schedule that moves it and the memory that the schedule needs.
 struct Simulation {
   Simulation();
@@ -34,14 +43,17 @@ struct Simulation {
   World world;
   std::unique_ptr<Scratch> scratch;
   Schedule<StepContext> schedule;
+  std::vector<ModelChoice> choices;  // (bodies)
 };
 
 /// What may be chosen for a run besides what the scene says; kAuto: as the scene says.
 struct PrepareOptions {
   ContactModel contact_model = ContactModel::kAuto;
   BodyModel body_model = BodyModel::kAuto;
-  double rate = 1000.0;  // Hz
-  Settings settings;
+  double rate = 1000.0;                           // Hz
+  Settings settings;                              // grid_side 0: as the chosen models need
+  std::vector<std::vector<Pose>> expected_poses;  // (times) of (tools): what the run will bring as
+                                                  // far as that is known, for kAuto; empty: unknown
   bool use_cache = true;  // distance fields and beam sections from the user's cache folder
 };
 

@@ -142,7 +142,7 @@ std::vector<Fault> faults() {
                 d["nodes"][0]["extras"]["torsion_static_friction"] = 0.3;
                 d["nodes"][0]["extras"]["torsion_dynamic_friction"] = 0.4;
               }),
-      with_key("model_to_come.gltf", 0, "torsion_contact_model", "mdr"),
+      with_key("no_such_model.gltf", 0, "torsion_contact_model", "hertz"),
   };
 }
 

@@ -115,6 +115,7 @@ BodyDescription make_body(std::vector<PartDescription> parts) {
     }
   }
   body.fixed.point = {0.5 * (lowest.x + highest.x), lowest.y, 0.5 * (lowest.z + highest.z)};
+  body.models = {ContactModel::kPaper, BodyModel::kSkeleton};
   body.parts = std::move(parts);
   return body;
 }

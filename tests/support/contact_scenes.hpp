@@ -21,7 +21,7 @@ PartDescription make_part(ShapeKind kind, const glm::dvec3& half_extent, const P
 /// A tool of mass 1 kg with its mass centre at the origin of its frame.
 ToolDescription make_tool(std::vector<PartDescription> parts);
 
-/// A body held at the centre of its lowest face, with the paper's material.
+/// A body held at the centre of its lowest face, with the paper's material and models.
 BodyDescription make_body(std::vector<PartDescription> parts);
 
 /// The paper's first experiment: a ball of radius 0.05 m over a cube of side 0.1 m whose top face

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "app/commands.hpp"
+
+namespace torsion {
+
+/// As the functions of app/commands.hpp: the subcommand report.
+void add_report(CLI::App& app, Command& command);
+
+}  // namespace torsion

@@ -1,0 +1,267 @@
+#include "app/report/exact_cases.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "app/report/shapes.hpp"
+#include "tests/reference/exact/cattaneo_mindlin.hpp"
+#include "tests/reference/exact/hertz.hpp"
+#include "tests/reference/exact/limit_surface.hpp"
+#include "tests/reference/exact/lubkin.hpp"
+#include "tests/reference/exact/masing.hpp"
+#include "tests/reference/exact/materials.hpp"
+
+namespace torsion {
+namespace {
+
+// The paper's ball, and the depth at which its contact is a tenth of its radius.
+constexpr double kBallRadius = 0.05;  // m
+constexpr double kDepth = 4.127e-4;   // m
+constexpr double kHalfSize = 2.0;     // m: 440 contact radii, so that the block is a half-space
+constexpr double kClearance = 1e-5;   // m
+constexpr int kPressPoints = 8;
+constexpr int kPointsOfLeg = 16;
+
+struct SphereOnHalfSpace {
+  Elasticity elasticity;
+  Friction friction;
+  reference::HertzSphere hertz;
+  int steps = 0;  // between the points of a path
+};
+
+SphereOnHalfSpace sphere_on_half_space(bool quick) {
+  SphereOnHalfSpace sphere;
+  sphere.hertz =
+      reference::hertz_sphere_at_depth(kBallRadius, sphere.elasticity.contact_modulus(), kDepth);
+  sphere.steps = quick ? 10 : 40;
+  return sphere;
+}
+
+SceneDescription scene_of(const SphereOnHalfSpace& sphere) {
+  SceneDescription scene;
+  BodyDescription body;
+  body.node = "half_space";
+  body.elasticity = sphere.elasticity;
+  body.friction = sphere.friction;
+  body.fixed.kind = FixedKind::kFace;
+  body.fixed.point = {0.0, -2.0 * kHalfSize, 0.0};
+  body.fixed.normal = {0.0, 1.0, 0.0};
+  body.parts.push_back(exact_part(ShapeKind::kBox, glm::dvec3(kHalfSize),
+                                  {glm::dvec3(0.0, -kHalfSize, 0.0), {1.0, 0.0, 0.0, 0.0}}, 1));
+  // Drawn is a piece around the contact.
+  const double piece = 10.0 * sphere.hertz.radius;
+  SurfaceMesh surface = shape_surface(ShapeKind::kBox, {piece, 0.4 * piece, piece}, 61);
+  for (glm::dvec3& position : surface.positions) {
+    position.y -= 0.4 * piece;
+  }
+  body.draw = drawn({surface}, false, {0.85F, 0.72F, 0.6F, 1.0F});
+  scene.bodies.push_back(std::move(body));
+  ToolDescription tool;
+  tool.node = "ball";
+  tool.parts.push_back(exact_part(ShapeKind::kSphere, glm::dvec3(kBallRadius)));
+  tool.draw = drawn({shape_surface(ShapeKind::kSphere, glm::dvec3(kBallRadius), 41)}, true,
+                    {0.45F, 0.55F, 0.7F, 1.0F});
+  scene.tools.push_back(std::move(tool));
+  return scene;
+}
+
+Pose pose_at(double depth, double turn, double shift) {
+  return {glm::dvec3(shift, kBallRadius - depth, 0.0),
+          glm::angleAxis(turn, glm::dvec3(0.0, 1.0, 0.0))};
+}
+
+/// From just above the surface down to kDepth.
+std::vector<PathPoint> press(const SphereOnHalfSpace& sphere, bool force_is_normal) {
+  std::vector<PathPoint> path{
+      {pose_at(-kClearance, 0.0, 0.0), 1, Leg::kApproach, 0.0, kNoReference, kNoReference}};
+  for (int i = 1; i <= kPressPoints; ++i) {
+    PathPoint point;
+    const double depth = kDepth * i / kPressPoints;
+    point.tool = pose_at(depth, 0.0, 0.0);
+    point.steps = sphere.steps;
+    if (force_is_normal) {
+      point.force =
+          reference::hertz_sphere_at_depth(kBallRadius, sphere.elasticity.contact_modulus(), depth)
+              .force;
+    }
+    path.push_back(point);
+  }
+  return path;
+}
+
+/// To `amplitude`, to -amplitude, and back: calls add(value, leg) for each point.
+template <class Add>
+void to_and_fro(double amplitude, const Add& add) {
+  for (int i = 1; i <= kPointsOfLeg; ++i) {
+    add(amplitude * i / kPointsOfLeg, Leg::kLoad);
+  }
+  for (int i = 1; i <= 2 * kPointsOfLeg; ++i) {
+    add(amplitude * (kPointsOfLeg - i) / kPointsOfLeg, Leg::kUnload);
+  }
+  for (int i = 1; i <= 2 * kPointsOfLeg; ++i) {
+    add(amplitude * (i - kPointsOfLeg) / kPointsOfLeg, Leg::kReload);
+  }
+}
+
+std::string sphere_text(const SphereOnHalfSpace& sphere) {
+  return fmt::format(
+      "A rigid ball of radius {:.0f} mm on a block with sides of {:.0f} m (E = {:.3g} MPa, "
+      "\u03bd = {:.2g}, \u03bc = {:.2g}) that stands for a half-space. It is pressed {:.4g} mm "
+      "deep: "
+      "F = {:.3g} N, contact radius a = {:.3g} mm.",
+      1e3 * kBallRadius, 2.0 * kHalfSize, 1e-6 * sphere.elasticity.youngs_modulus,
+      sphere.elasticity.poisson_ratio, sphere.friction.dynamic_friction, 1e3 * kDepth,
+      sphere.hertz.force, 1e3 * sphere.hertz.radius);
+}
+
+/// How far Hertz's paraboloid is from the sphere that the program has.
+double paraboloid_error() {
+  const double hertz = reference::hertz_sphere_at_depth(kBallRadius, 1.0, kDepth).force;
+  return std::abs(reference::sneddon_sphere_at_depth(kBallRadius, 1.0, kDepth).force / hertz - 1.0);
+}
+
+ReferenceCase twist_case(bool quick) {
+  const SphereOnHalfSpace sphere = sphere_on_half_space(quick);
+  const reference::LubkinContact contact{reference::PressureShape::kHertz, sphere.hertz.force,
+                                         sphere.friction.dynamic_friction, sphere.hertz.radius,
+                                         sphere.elasticity.shear_modulus()};
+  // All but a disc of a tenth of the radius has slipped there: the torque is all but saturated.
+  const double amplitude = reference::slip_twist(contact, 0.1 * contact.radius);
+  ReferenceCase result;
+  result.name = "sphere_twist";
+  result.title = "Ball on a half-space, twisted to and fro";
+  result.description =
+      sphere_text(sphere) +
+      fmt::format(
+          " Then it is twisted to {:.3g} rad, back to \u2212{:.3g} rad and up again, at "
+          "constant depth.",
+          amplitude, amplitude);
+  result.reference = fmt::format(
+      "Hertz for the force, Lubkin (1951) for torque and twist field, Masing\u2019s rule after "
+      "each "
+      "turn; evaluated to 1e-11. Taking the sphere for a paraboloid changes the force by {:.2g} %.",
+      100.0 * paraboloid_error());
+  result.force_meaning = "normal force, pressing and twisting";
+  result.torque_meaning = "torque about the axis of the twist";
+  result.scene = scene_of(sphere);
+  result.path = press(sphere, true);
+  for (PathPoint& point : result.path) {
+    point.torque = 0.0;
+  }
+  result.path.front().force = 0.0;
+  reference::MasingHistory history;
+  to_and_fro(amplitude, [&](double twist, Leg leg) {
+    const double torque = reference::move_to(
+        history, [&](double phi) { return reference::torque(contact, phi); }, twist);
+    result.path.push_back(
+        {pose_at(kDepth, twist, 0.0), sphere.steps, leg, twist, sphere.hertz.force, torque});
+    if (twist == amplitude && leg == Leg::kLoad) {
+      result.field.point = result.path.size() - 1;
+    }
+  });
+  result.x = {PlotAxis::Quantity::kAbscissa, "twist of the tool (mrad)", 1e3};
+  result.y = {PlotAxis::Quantity::kTorque, "torque (mN m)", 1e3};
+  result.field.tool_twist = amplitude;
+  result.field.contact_radius = contact.radius;
+  for (int i = 1; i <= 80; ++i) {
+    const double r = 0.1 * i * contact.radius;
+    result.field.radii.push_back(r);
+    result.field.twists.push_back(reference::twist_displacement(contact, amplitude, r) / r);
+  }
+  return result;
+}
+
+ReferenceCase shear_case(bool quick) {
+  const SphereOnHalfSpace sphere = sphere_on_half_space(quick);
+  const reference::CattaneoMindlin contact{
+      sphere.hertz.force, sphere.friction.dynamic_friction, sphere.hertz.radius,
+      reference::tangential_modulus(sphere.elasticity.youngs_modulus,
+                                    sphere.elasticity.poisson_ratio)};
+  const double amplitude = 0.95 * reference::full_slip_displacement(contact);
+  ReferenceCase result;
+  result.name = "sphere_shear";
+  result.title = "Ball on a half-space, pushed to and fro";
+  result.description =
+      sphere_text(sphere) +
+      fmt::format(
+          " Then it is pushed sideways by {:.3g} mm, back to \u2212{:.3g} mm and forth again, "
+          "at constant depth: 95 % of the way to full sliding.",
+          1e3 * amplitude, 1e3 * amplitude);
+  result.reference =
+      "Cattaneo (1938) and Mindlin (1949), Masing\u2019s rule after each turn. The theory neglects "
+      "the slip across the push: 0.2 % of the force at \u03bd = 0.5.";
+  result.force_meaning = "force along the push";
+  result.scene = scene_of(sphere);
+  result.path = press(sphere, false);
+  result.force_axis = {-1.0, 0.0, 0.0};
+  reference::MasingHistory history;
+  to_and_fro(amplitude, [&](double shift, Leg leg) {
+    const double force = reference::move_to(
+        history, [&](double u) { return reference::tangential_force(contact, u); }, shift);
+    result.path.push_back(
+        {pose_at(kDepth, 0.0, shift), sphere.steps, leg, shift, force, kNoReference});
+  });
+  result.x = {PlotAxis::Quantity::kAbscissa, "shift of the tool (mm)", 1e3};
+  result.y = {PlotAxis::Quantity::kForce, "force along the push (N)", 1.0};
+  return result;
+}
+
+ReferenceCase slide_and_spin_case(bool quick) {
+  const SphereOnHalfSpace sphere = sphere_on_half_space(quick);
+  const double radius = sphere.hertz.radius;
+  const double limit = sphere.friction.dynamic_friction * sphere.hertz.force;
+  const reference::CattaneoMindlin shear{
+      sphere.hertz.force, sphere.friction.dynamic_friction, radius,
+      reference::tangential_modulus(sphere.elasticity.youngs_modulus,
+                                    sphere.elasticity.poisson_ratio)};
+  // Long enough for all to slip whatever the motion before.
+  const double way = 5.0 * reference::full_slip_displacement(shear);
+  ReferenceCase result;
+  result.name = "sphere_slide_and_spin";
+  result.title = "Ball on a half-space, sliding while it spins";
+  result.description =
+      sphere_text(sphere) +
+      fmt::format(
+          " Then it slides with the speed v and spins with \u03c9 at once, at nine ratios of v "
+          "to \u03c9a one after another, {:.2g} mm of way each: force and torque are compared "
+          "at each one\u2019s end, when all slips steadily.",
+          1e3 * way);
+  result.reference =
+      "The exact limit surface of Hertz\u2019s pressure (Contensou 1962, Zhuravlev 1998), to "
+      "1e-13.";
+  result.force_meaning = "friction force against the sliding";
+  result.torque_meaning = "friction torque against the spin";
+  result.scene = scene_of(sphere);
+  result.path = press(sphere, false);
+  result.force_axis = {-1.0, 0.0, 0.0};
+  constexpr int kRatios = 9;
+  double turn = 0.0;
+  double shift = 0.0;
+  for (int i = 0; i < kRatios; ++i) {
+    const double angle = 0.5 * std::numbers::pi * i / (kRatios - 1);  // 0: only spins
+    const double slide = way * std::sin(angle);
+    const double rim = i == kRatios - 1 ? 0.0 : way * std::cos(angle);
+    shift += slide;
+    turn += rim / radius;
+    const reference::SlidingSpinning load = reference::hertz_limit_surface(slide, rim);
+    result.path.push_back({pose_at(kDepth, turn, shift), 8 * sphere.steps, Leg::kLoad, angle,
+                           limit * load.force, limit * radius * load.moment});
+  }
+  result.x = {PlotAxis::Quantity::kForce, "friction force (N)", 1.0};
+  result.y = {PlotAxis::Quantity::kTorque, "friction torque (mN m)", 1e3};
+  return result;
+}
+
+}  // namespace
+
+std::vector<ReferenceCase> exact_cases(bool quick) {
+  std::vector<ReferenceCase> cases;
+  cases.push_back(twist_case(quick));
+  cases.push_back(shear_case(quick));
+  cases.push_back(slide_and_spin_case(quick));
+  return cases;
+}
+
+}  // namespace torsion

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "app/report/reference_case.hpp"
+
+namespace torsion {
+
+/// A sphere on a half-space where the answer is known in closed form: pressed and twisted to and
+/// fro, pushed to and fro, sliding while it spins.
+/// @param quick  fewer steps between the points of a path
+std::vector<ReferenceCase> exact_cases(bool quick);
+
+}  // namespace torsion

@@ -1,0 +1,140 @@
+#include "app/report/run_case.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "systems/surface_field.hpp"
+
+namespace torsion {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+Result<Simulation> prepare_case(const ReferenceCase& reference_case, const ModelPair& models) {
+  PrepareOptions options;
+  options.contact_model = models.contact;
+  options.body_model = models.body;
+  options.settings.grid_side = models.grid_side;
+  return prepare(reference_case.scene, options);
+}
+
+/// Steps to a point of the path from the one before, and calls stepped(seconds) after each step.
+template <class Stepped>
+void move_to_point(Simulation& simulation, const std::vector<PathPoint>& path, std::size_t point,
+                   const Stepped& stepped) {
+  const Pose& to = path[point].tool;
+  const Pose& from = point == 0 ? to : path[point - 1].tool;
+  const glm::dquat turn = to.rotation * glm::conjugate(from.rotation);
+  const double angle = glm::angle(turn);
+  const glm::dvec3 axis = glm::axis(turn);
+  for (int i = 1; i <= path[point].steps; ++i) {
+    const double share = static_cast<double>(i) / path[point].steps;
+    const Pose pose{glm::mix(from.position, to.position, share),
+                    glm::angleAxis(angle * share, axis) * from.rotation};
+    const auto start = SteadyClock::now();
+    step(simulation, {&pose, 1});
+    stepped(std::chrono::duration<double>(SteadyClock::now() - start).count());
+  }
+}
+
+/// How far points at these radii, on the body's top along +x from under the tool, go around the
+/// axis, over the radius. The points are the only vertices of a body that is drawn.
+std::vector<double> surface_twists(const ReferenceCase& reference_case,
+                                   const Simulation& simulation) {
+  const ReferenceField& field = reference_case.field;
+  SceneDescription scene = reference_case.scene;
+  const glm::dvec3 center = reference_case.path[field.point].tool.position;
+  const Bounds& bounds = simulation.world.bodies.at<Bounds>(0);
+  DrawMesh& drawn = scene.bodies[0].draw;
+  drawn = DrawMesh{};
+  for (const double r : field.radii) {
+    drawn.positions.emplace_back(center.x + r, bounds.highest.y, center.z);
+    drawn.normals.emplace_back(0.0F, 1.0F, 0.0F);
+  }
+  FrameWorld frame = prepare_frame(scene, simulation.world);
+  Snapshot snapshot;
+  snapshot.reserve(simulation.world);
+  capture(simulation.world, snapshot);
+  surface_field(simulation.world, snapshot, frame);
+  std::vector<glm::vec4> moved(field.radii.size());
+  deform_vertices(frame, 0, moved);
+  std::vector<double> twists;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    // Turning +x about +y goes to -z.
+    twists.push_back(-(static_cast<double>(moved[i].z) - center.z) / field.radii[i]);
+  }
+  return twists;
+}
+
+std::size_t memory_of(const World& world) {
+  std::size_t bytes = 0;
+  std::apply(
+      [&](const auto&... tables) {
+        (tables.each_column([&](std::span<const std::byte>, std::size_t row) {
+          bytes += row * tables.capacity();
+        }),
+         ...);
+      },
+      world.tables());
+  return bytes;
+}
+
+double quantile(std::vector<double>& values, double share) {
+  if (values.empty()) {
+    return 0.0;
+  }
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace
+
+Result<CaseRun> run_case(const ReferenceCase& reference_case, const ModelPair& models) {
+  Result<Simulation> prepared = prepare_case(reference_case, models);
+  if (!prepared) {
+    return prepared.error();
+  }
+  Simulation& simulation = prepared.value();
+  const World& world = simulation.world;
+  CaseRun run;
+  run.models = models;
+  std::vector<double> times;  // us
+  for (std::size_t point = 0; point < reference_case.path.size(); ++point) {
+    move_to_point(simulation, reference_case.path, point, [&](double seconds) {
+      if (world.regions.size() > 0) {
+        times.push_back(1e6 * seconds);
+        run.cells = world.regions.at<RegionIdentity>(0).cells.count;
+      }
+    });
+    const Wrench& wrench = world.tools.at<ToolWrench>(0).total;
+    run.forces.push_back(glm::dot(wrench.force, reference_case.force_axis));
+    run.torques.push_back(glm::dot(wrench.torque, reference_case.torque_axis));
+    if (point == reference_case.field.point && !reference_case.field.radii.empty()) {
+      run.twists = surface_twists(reference_case, simulation);
+    }
+  }
+  run.anchors = world.anchors.size();
+  run.step_us_median = quantile(times, 0.5);
+  run.step_us_p99 = quantile(times, 0.99);
+  run.memory_bytes = memory_of(world);
+  run.faults_ever = world.clock.at<Clock>(0).faults_ever;
+  return run;
+}
+
+Result<Simulation> simulate_to(const ReferenceCase& reference_case, const ModelPair& models,
+                               std::size_t point) {
+  Result<Simulation> prepared = prepare_case(reference_case, models);
+  if (prepared) {
+    for (std::size_t i = 0; i <= point; ++i) {
+      move_to_point(prepared.value(), reference_case.path, i, [](double) {});
+    }
+  }
+  return prepared;
+}
+
+}  // namespace torsion

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "systems/body_models/smooth_compliance.hpp"
+
+namespace torsion {
+
+/// Hexahedra of a lattice that fills a solid, with the surface's nodes moved onto its surface.
+struct SolidGrid {
+  std::vector<glm::dvec3> nodes;                       // m, body
+  std::vector<glm::uvec3> lattice;                     // of each node: where it is in the lattice
+  std::vector<std::uint8_t> clamped;                   // of each node
+  std::vector<std::array<std::uint32_t, 8>> elements;  // corner c is at x + (c & 1), y + (c >> 1 &
+                                                       // 1), z + (c >> 2)
+  std::vector<std::array<std::uint32_t, 4>> faces;     // of the surface, counter-clockwise from
+                                                       // outside
+  glm::dvec3 spacing{0.0};                             // m, of the lattice
+};
+
+/// Cells of a lattice fitted to the solid's bounds whose centres are inside, as far as they hang
+/// together by faces (the largest such piece). At least four cells along each side.
+/// @param elements  along the longest side
+/// @return an Error as build_smooth_compliance has it
+Result<SolidGrid> build_solid_grid(const ElasticSolid& solid, std::uint32_t elements);
+
+/// Derivatives of the position by the element's own coordinates, columns, at `local` in [-1, 1]^3.
+glm::dmat3 element_jacobian(const std::array<glm::dvec3, 8>& corners, const glm::dvec3& local);
+
+/// The corners of element `element`.
+std::array<glm::dvec3, 8> element_corners(const SolidGrid& grid, std::size_t element);
+
+}  // namespace torsion

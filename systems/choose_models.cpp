@@ -1,0 +1,233 @@
+#include "systems/choose_models.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <tuple>
+#include <utility>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "ecs/model_names.hpp"
+#include "systems/distance.hpp"
+#include "systems/frames.hpp"
+#include "systems/group_points.hpp"
+
+namespace torsion {
+namespace {
+
+// Largest errors of the torque over its largest value (docs/models.md, "Which model").
+constexpr double kMdrRoundError = 0.003;      // one round contact that slides or turns
+constexpr double kMdrCombinedError = 0.05;    // one round contact that does both at once
+constexpr double kFiniteBodyError = 1.1;      // of the force, times contact radius over body depth
+constexpr double kSlidesWhileTurning = 0.05;  // of the radius, between two expected poses
+constexpr double kTurnsWhileSliding = 1e-3;   // rad between two expected poses: less is no turn
+
+/// What is found at one time.
+struct Touch {
+  std::vector<glm::dvec3> points;  // m, body: samples inside the body
+  double depth = 0.0;              // m
+  glm::dvec3 normal{0.0};          // body, at the deepest
+  glm::dvec3 center{0.0};          // m, body: mean of the points
+  bool round = true;
+};
+
+bool is_round(const World& world, Range parts) {
+  return std::ranges::all_of(world.parts.rows<ShapePart>(parts), [](const ShapePart& part) {
+    return part.kind == ShapeKind::kSphere || part.kind == ShapeKind::kEllipsoid;
+  });
+}
+
+void touch_with_tool(const World& world, std::uint32_t body, std::uint32_t tool, const Pose& pose,
+                     Touch& touch) {
+  const Pose& body_pose = world.bodies.at<Pose>(body);
+  const Range parts = world.bodies.at<OwnedRows>(body).parts;
+  const OwnedRows& owned = world.tools.at<OwnedRows>(tool);
+  const std::size_t before = touch.points.size();
+  for (const SurfaceSample& sample : world.samples.rows<SurfaceSample>(owned.samples)) {
+    const glm::dvec3 point = to_inner(body_pose, to_outer(pose, sample.position));
+    const Distance distance = signed_distance(world, parts, point);
+    if (distance.value < 0.0) {
+      touch.points.push_back(point);
+      if (-distance.value > touch.depth) {
+        touch.depth = -distance.value;
+        touch.normal = distance.gradient;
+      }
+    }
+  }
+  touch.round = touch.round && (touch.points.size() == before || is_round(world, owned.parts));
+}
+
+Touch touch_with_tools(const World& world, std::uint32_t body, std::span<const Pose> poses) {
+  Touch touch;
+  for (std::uint32_t tool = 0; tool < world.tools.size(); ++tool) {
+    touch_with_tool(world, body, tool, poses[tool], touch);
+  }
+  for (const glm::dvec3& point : touch.points) {
+    touch.center += point / static_cast<double>(touch.points.size());
+  }
+  return touch;
+}
+
+/// Distance from `point` to what holds the body, m.
+double distance_to_fixed(const World& world, std::uint32_t body, const glm::dvec3& point) {
+  const FixedRegion& fixed = world.bodies.at<FixedRegion>(body);
+  return fixed.kind == FixedKind::kFace ? std::abs(glm::dot(point - fixed.point, fixed.normal))
+                                        : glm::distance(point, fixed.point);
+}
+
+/// Widest half extent of the groups of points, and how many groups there are.
+std::pair<double, std::uint32_t> extent_of_groups(std::span<const glm::dvec3> points,
+                                                  double threshold) {
+  std::vector<std::uint32_t> order(points.size());
+  std::vector<std::uint32_t> parent(points.size());
+  std::vector<std::uint32_t> groups(points.size());
+  const std::uint32_t count = group_points(points, {}, threshold, order, parent, groups);
+  double radius = 0.0;
+  for (std::uint32_t group = 0; group < count; ++group) {
+    glm::dvec3 lowest(1e300);
+    glm::dvec3 highest(-1e300);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (groups[i] == group) {
+        lowest = glm::min(lowest, points[i]);
+        highest = glm::max(highest, points[i]);
+      }
+    }
+    const glm::dvec3 half = 0.5 * (highest - lowest);
+    radius = std::max(radius, std::max({half.x, half.y, half.z}));
+  }
+  return {radius, count};
+}
+
+/// Turn of a tool about `normal` from one pose to the next, rad.
+double spin_between(const Pose& from, const Pose& to, const glm::dvec3& normal) {
+  const glm::dquat turn = to.rotation * glm::conjugate(from.rotation);
+  return 2.0 * std::abs(glm::dot(glm::dvec3(turn.x, turn.y, turn.z), normal));
+}
+
+bool slides_while_turning(const World& world, std::uint32_t body, const Touch& before,
+                          const Touch& after, double radius, std::span<const Pose> poses_before,
+                          std::span<const Pose> poses_after) {
+  const glm::dvec3 way = after.center - before.center;
+  const double slide = glm::length(way - after.normal * glm::dot(way, after.normal));
+  const glm::dvec3 axis = world.bodies.at<Pose>(body).rotation * after.normal;
+  double spin = 0.0;
+  for (std::size_t tool = 0; tool < poses_after.size(); ++tool) {
+    spin = std::max(spin, spin_between(poses_before[tool], poses_after[tool], axis));
+  }
+  return slide > kSlidesWhileTurning * radius && spin > kTurnsWhileSliding;
+}
+
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g %%", 100.0 * share);
+  return text;
+}
+
+/// Cheapest contact model within the tolerance.
+std::pair<ContactModel, std::string> auto_contact(const ExpectedContact& contact,
+                                                  double tolerance) {
+  const std::string within = ", tolerance " + percent(tolerance);
+  if (!contact.known) {
+    return {ContactModel::kPatch, "auto: moved by hand, so contacts of any shape" + within};
+  }
+  if (!contact.any) {
+    return {ContactModel::kMdr, "auto: the expected motion touches it nowhere; the cheapest"};
+  }
+  if (!contact.single) {
+    return {ContactModel::kPatch, "auto: several regions" + within};
+  }
+  if (!contact.round) {
+    return {ContactModel::kPatch, "auto: a contact that is not round" + within};
+  }
+  const double error = contact.slides ? kMdrCombinedError : kMdrRoundError;
+  const std::string kind = contact.slides ? "one round contact that slides while it turns: error "
+                                          : "one round contact: error ";
+  if (error <= tolerance) {
+    return {ContactModel::kMdr, "auto: " + kind + percent(error) + within};
+  }
+  return {ContactModel::kPatch, "auto: " + kind + "of mdr " + percent(error) + within};
+}
+
+std::pair<BodyModel, std::string> auto_body(const ExpectedContact& contact, double tolerance) {
+  if (!contact.known) {
+    return {BodyModel::kSkeleton, "auto: moved by hand, so pressed as deep as the hand will"};
+  }
+  const double error =
+      contact.any ? kFiniteBodyError * contact.radius / std::max(contact.body_depth, 1e-300) : 0.0;
+  const std::string text = "auto: the body is not endless, which changes the force by about " +
+                           percent(error) + ", tolerance " + percent(tolerance);
+  return {error <= 0.5 * tolerance ? BodyModel::kNone : BodyModel::kSkeleton, text};
+}
+
+}  // namespace
+
+ExpectedContact expect_contact(const World& world, std::uint32_t body,
+                               std::span<const std::vector<Pose>> poses) {
+  ExpectedContact contact;
+  contact.known = !poses.empty();
+  contact.body_depth = 1e300;
+  const double threshold = world.bodies.at<BodyModels>(body).region_threshold;
+  Touch last;
+  for (std::size_t time = 0; time < poses.size(); ++time) {
+    Touch touch = touch_with_tools(world, body, poses[time]);
+    if (!touch.points.empty()) {
+      const auto [radius, regions] = extent_of_groups(touch.points, threshold);
+      contact.any = true;
+      contact.single = contact.single && regions == 1;
+      contact.round = contact.round && touch.round;
+      contact.depth = std::max(contact.depth, touch.depth);
+      contact.radius = std::max(contact.radius, radius);
+      contact.body_depth =
+          std::min(contact.body_depth, distance_to_fixed(world, body, touch.center));
+      contact.slides = contact.slides || (!last.points.empty() &&
+                                          slides_while_turning(world, body, last, touch, radius,
+                                                               poses[time - 1], poses[time]));
+    }
+    last = std::move(touch);
+  }
+  return contact;
+}
+
+ModelChoice choose_models(const BodyModels& scene, const PrepareOptions& options,
+                          const ExpectedContact& contact) {
+  ModelChoice choice{scene, "the scene says so", "the scene says so"};
+  if (options.contact_model != ContactModel::kAuto) {
+    choice.models.contact = options.contact_model;
+    choice.contact_why = "the command line says so";
+  }
+  if (options.body_model != BodyModel::kAuto) {
+    choice.models.body = options.body_model;
+    choice.body_why = "the command line says so";
+  }
+  if (choice.models.contact == ContactModel::kAuto) {
+    std::tie(choice.models.contact, choice.contact_why) = auto_contact(contact, scene.tolerance);
+  }
+  if (choice.models.body == BodyModel::kAuto) {
+    std::tie(choice.models.body, choice.body_why) = auto_body(contact, scene.tolerance);
+  }
+  return choice;
+}
+
+std::uint32_t choose_grid_side(std::span<const ModelChoice> choices) {
+  constexpr std::uint32_t kPaperSide = 16;
+  // Sides whose errors are at most 2 %, 0.7 % and below.
+  constexpr std::uint32_t kPatchSides[] = {12, 16, 20};
+  std::uint32_t side = 8;
+  for (const ModelChoice& choice : choices) {
+    const BodyModels& models = choice.models;
+    if (models.contact == ContactModel::kPaper) {
+      side = std::max(side, kPaperSide);
+    } else if (models.contact == ContactModel::kPatch) {
+      side = std::max(
+          side,
+          kPatchSides[(models.tolerance < 0.02 ? 1U : 0U) + (models.tolerance < 0.007 ? 1U : 0U)]);
+    } else {
+      side = std::max(side, kPatchSides[0]);
+    }
+  }
+  return side;
+}
+
+}  // namespace torsion

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ecs/world.hpp"
+#include "systems/step.hpp"
+
+namespace torsion {
+
+/// What the tools will do to a body, as far as their expected poses tell.
+struct ExpectedContact {
+  bool known = false;       // false: the tools are moved by hand, so everything is possible
+  bool any = false;         // a tool touches the body at all
+  bool single = true;       // one region at a time
+  bool round = true;        // touched by a sphere or an ellipsoid only
+  bool slides = false;      // while it turns about the normal
+  double depth = 0.0;       // m, largest
+  double radius = 0.0;      // m: largest of the overlap
+  double body_depth = 0.0;  // m: from the contact to what holds the body, the least
+};
+
+/// Looks where the samples of all tools come to lie in `body` on their expected poses.
+/// @param world  shapes, samples, tools and bodies are there
+/// @param poses  (times) of (tools); empty: unknown
+ExpectedContact expect_contact(const World& world, std::uint32_t body,
+                               std::span<const std::vector<Pose>> poses);
+
+/// What runs for a body: what `options` insist on, else what the scene says, else the cheapest
+/// models whose known errors (docs/models.md) are within the body's tolerance.
+ModelChoice choose_models(const BodyModels& scene, const PrepareOptions& options,
+                          const ExpectedContact& contact);
+
+/// Cells along a side of a region's grid for models of this tolerance where the user leaves it
+/// open: as few as keep the error of `patch` within it, and 16 for `paper`.
+std::uint32_t choose_grid_side(std::span<const ModelChoice> choices);
+
+}  // namespace torsion

@@ -3,6 +3,10 @@
 #include <array>
 #include <span>
 
+#include <fmt/format.h>
+
+#include "ecs/world.hpp"
+
 namespace torsion {
 namespace {
 
@@ -62,14 +66,11 @@ const char* report_name(BodyModel model) {
 }
 
 std::string label_of(const ModelPair& models) {
-  std::string label = report_name(models.contact);
-  if (models.contact == ContactModel::kPatch) {
-    label += " " + std::to_string(models.grid_side) + "\u00b2";
-  }
-  if (models.body != BodyModel::kNone) {
-    label += std::string(" + ") + report_name(models.body);
-  }
-  return label;
+  const std::string body =
+      models.body == BodyModel::kNone ? "" : fmt::format(" + {}", report_name(models.body));
+  return models.contact == ContactModel::kPatch
+             ? fmt::format("patch {0}\u00d7{0}{1}", models.grid_side, body)
+             : report_name(models.contact) + body;
 }
 
 }  // namespace torsion

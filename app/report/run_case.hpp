@@ -7,7 +7,7 @@
 
 namespace torsion {
 
-/// What a case gave with one models of models.
+/// What a case gave with one choice of models.
 struct CaseRun {
   ModelPair models;
   std::vector<double> forces;   // N, one a point of the path

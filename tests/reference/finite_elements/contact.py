@@ -90,15 +90,16 @@ def evaluate(side, points, displacement, tool, pose, last_phi, limit, stiffness)
     slipped = displacement - side.displacement - carried
     trial = np.einsum("nij,nj->ni", across, side.friction - stiffness * slipped)
     size = np.linalg.norm(trial, axis=1)
-    slips = size > limit
+    slips = size >= limit
     direction = trial / np.maximum(size, 1e-300)[:, None]
     share = np.where(slips, limit / np.maximum(size, 1e-300), 1.0)[:, None]
     shear = share * trial
-    shear[~touching] = 0.0
 
+    # A point that opens keeps its shear until `limit` follows: were it dropped at once, the energy
+    # would have a step and Newton's method could stop there.
     sliding = across - slips[:, None, None] * direction[:, :, None] * direction[:, None, :]
-    resistance = stiffness * (normal[:, :, None] * normal[:, None, :] + share[:, None] * sliding)
-    resistance[~touching] = 0.0
+    pushes = touching[:, None, None] * normal[:, :, None] * normal[:, None, :]
+    resistance = stiffness * (pushes + share[:, None] * sliding)
     return (Side(side.sign, displacement, pressure[:, None] * normal + shear, shear), resistance)
 
 

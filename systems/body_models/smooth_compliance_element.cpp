@@ -12,8 +12,8 @@ namespace torsion {
 namespace {
 
 constexpr int kModes = 18;
-using Modes = Eigen::Matrix<double, 6, kModes>;    // rows xx, yy, zz, xy, yz, zx
-using Strains = Eigen::Matrix<double, 6, 24>;      // engineering shear strains
+using Modes = Eigen::Matrix<double, 6, kModes>;  // rows xx, yy, zz, xy, yz, zx
+using Strains = Eigen::Matrix<double, 6, 24>;    // engineering shear strains
 using Compliance = Eigen::Matrix<double, 6, 6>;
 
 /// a b' made symmetric, as a stress.
@@ -49,10 +49,10 @@ Strains strains_of_corners(const glm::dmat3& jacobian, const glm::dvec3& local) 
   for (std::uint32_t c = 0; c < 8; ++c) {
     const glm::dvec3 sign(c & 1U ? 1.0 : -1.0, c & 2U ? 1.0 : -1.0, c & 4U ? 1.0 : -1.0);
     const glm::dvec3 part = glm::dvec3(1.0) + sign * local;
-    const glm::dvec3 slope = 0.125 * glm::dvec3(sign.x * part.y * part.z,
-                                                sign.y * part.z * part.x,
-                                                sign.z * part.x * part.y) *
-                             to_local;
+    const glm::dvec3 slope =
+        0.125 *
+        glm::dvec3(sign.x * part.y * part.z, sign.y * part.z * part.x, sign.z * part.x * part.y) *
+        to_local;
     const Eigen::Index first = 3 * Eigen::Index{c};
     strains(0, first) = slope.x;
     strains(1, first + 1) = slope.y;
@@ -78,8 +78,7 @@ ElementStiffness element_stiffness(const std::array<glm::dvec3, 8>& corners, dou
   constexpr double kGauss = 0.5773502691896258;
   const glm::dmat3 axes = element_jacobian(corners, glm::dvec3(0.0));
   const double length = 1.0 / std::cbrt(glm::determinant(axes));
-  Eigen::Matrix<double, kModes, kModes> flexibility =
-      Eigen::Matrix<double, kModes, kModes>::Zero();
+  Eigen::Matrix<double, kModes, kModes> flexibility = Eigen::Matrix<double, kModes, kModes>::Zero();
   Eigen::Matrix<double, kModes, 24> leverage = Eigen::Matrix<double, kModes, 24>::Zero();
   for (std::uint32_t c = 0; c < 8; ++c) {
     const glm::dvec3 local(c & 1U ? kGauss : -kGauss, c & 2U ? kGauss : -kGauss,

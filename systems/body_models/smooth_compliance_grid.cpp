@@ -60,8 +60,7 @@ std::vector<std::uint8_t> largest_piece(const ElasticSolid& solid, const Lattice
   std::vector<std::uint32_t> piece(std::size_t{lattice.cells.x} * lattice.cells.y *
                                    lattice.cells.z);
   for (std::size_t row = 0; row < piece.size(); ++row) {
-    const glm::dvec3 center =
-        lattice.position(glm::dvec3(lattice.cell_at(row)) + glm::dvec3(0.5));
+    const glm::dvec3 center = lattice.position(glm::dvec3(lattice.cell_at(row)) + glm::dvec3(0.5));
     piece[row] = solid.signed_distance(center).value < 0.0 ? 1 : 0;
   }
   std::uint32_t pieces = 1;  // 0: outside, 1: inside and not yet in a piece
@@ -319,8 +318,9 @@ Result<SolidGrid> build_solid_grid(const ElasticSolid& solid, std::uint32_t elem
                    return static_cast<std::uint8_t>(solid.clamped(node) ? 1 : 0);
                  });
   if (!is_held(grid)) {
-    return Error{"what is fixed of the body holds fewer than three nodes of its grid that are not "
-                 "in line: fix a larger part of it, or take more elements"};
+    return Error{
+        "what is fixed of the body holds fewer than three nodes of its grid that are not "
+        "in line: fix a larger part of it, or take more elements"};
   }
   return grid;
 }

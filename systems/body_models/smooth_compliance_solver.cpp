@@ -125,8 +125,8 @@ void add_blocks(const Part& part, const std::vector<std::uint32_t>& places,
   }
 }
 
-/// Eliminates a front's own nodes; leaves in `rest` what that does to its boundary. False when a
-/// pivot is not positive.
+/// Eliminates a front's own nodes; leaves in the lower triangle of `rest` what that makes of its
+/// boundary. False when a pivot is not positive.
 bool eliminate(Eigen::MatrixXd& matrix, StiffnessFront& front, Eigen::MatrixXd& rest) {
   const Eigen::Index own = rows_of(front.count);
   const Eigen::Index outer = rows_of(front.boundary.size());
@@ -141,8 +141,6 @@ bool eliminate(Eigen::MatrixXd& matrix, StiffnessFront& front, Eigen::MatrixXd& 
   rest = matrix.bottomRightCorner(outer, outer);
   if (outer > 0) {
     rest.selfadjointView<Eigen::Lower>().rankUpdate(front.below, -1.0);
-    // the parent reads whole blocks across the diagonal
-    rest.triangularView<Eigen::StrictlyUpper>() = rest.transpose();
   }
   return true;
 }
@@ -187,8 +185,9 @@ Result<StiffnessFactor> factor_stiffness(
       rests[child].resize(0, 0);
     }
     if (!eliminate(matrix, front, rests[f])) {
-      return Error{"the body's stiffness is singular: a part of it hangs on by an edge only, or "
-                   "nothing holds it"};
+      return Error{
+          "the body's stiffness is singular: a part of it hangs on by an edge only, or "
+          "nothing holds it"};
     }
     if (progress) {
       progress(static_cast<double>(f + 1) / static_cast<double>(factor.fronts.size()));

@@ -1,0 +1,205 @@
+#include "systems/body_models/smooth_compliance.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include "systems/body_models/smooth_compliance_element.hpp"
+#include "systems/body_models/smooth_compliance_grid.hpp"
+#include "systems/body_models/smooth_compliance_loads.hpp"
+#include "systems/body_models/smooth_compliance_solver.hpp"
+
+namespace torsion {
+namespace {
+
+/// Of the shear modulus: keeps nu = 0.5 solvable. Volumes then change by a ten-thousandth of what
+/// shapes do.
+constexpr double kLargestBulkModulus = 1e4;
+constexpr std::size_t kPortsAtOnce = 8;  // solved together: enough for the matrix products' speed
+constexpr double kShareOfFactor = 0.3;   // of the time, roughly, for the progress
+
+Eigen::Index rows_of(std::size_t nodes) {
+  return 3 * static_cast<Eigen::Index>(nodes);
+}
+
+double bulk_modulus(double poisson_ratio) {
+  const double softness = 1.5 * (1.0 - 2.0 * poisson_ratio) / (1.0 + poisson_ratio);
+  return softness * kLargestBulkModulus > 1.0 ? 1.0 / softness : kLargestBulkModulus;
+}
+
+/// What all ports share. Shear modulus 1.
+struct Problem {
+  const SolidGrid& grid;
+  const StiffnessFactor& factor;
+  std::span<const Port> ports;
+  const std::vector<MotionFit>& fits;
+  Elasticity elasticity;
+  double bulk_modulus;
+  double longest_side;  // m
+};
+
+/// Moves what clamped nodes do over to the loads on the free ones.
+void add_held(const Problem& problem, const PortLoads& loads, Eigen::Ref<Eigen::MatrixXd> forces) {
+  const SolidGrid& grid = problem.grid;
+  for (std::size_t e = 0; e < grid.elements.size(); ++e) {
+    const std::array<std::uint32_t, 8>& element = grid.elements[e];
+    const auto clamped = std::count_if(element.begin(), element.end(),
+                                       [&](std::uint32_t node) { return grid.clamped[node] != 0; });
+    if (clamped == 0 || clamped == 8) {
+      continue;
+    }
+    Eigen::Matrix<double, 24, 6> held;
+    for (std::size_t c = 0; c < 8; ++c) {
+      held.middleRows<3>(rows_of(c)) = loads.held.middleRows<3>(rows_of(element[c]));
+    }
+    const Eigen::Matrix<double, 24, 6> reaction =
+        element_stiffness(element_corners(grid, e), problem.bulk_modulus) * held;
+    for (std::size_t c = 0; c < 8; ++c) {
+      forces.middleRows<3>(rows_of(element[c])) -= reaction.middleRows<3>(rows_of(c));
+    }
+  }
+}
+
+/// Translation and rotation at a port for each column of nodal displacements.
+void add_motion(const MotionFit& fit, const NodeColumns& motion, Eigen::Ref<Eigen::MatrixXd> rows) {
+  for (std::size_t k = 0; k < fit.nodes.size(); ++k) {
+    const auto at = motion.middleRows<3>(rows_of(fit.nodes[k]));
+    const Eigen::Vector4d w = fit.weights.col(static_cast<Eigen::Index>(k));
+    rows.topRows<3>() += w[0] * at;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int i = (axis + 1) % 3;
+      const int j = (axis + 2) % 3;
+      rows.row(3 + axis) += 0.5 * (w[1 + i] * at.row(j) - w[1 + j] * at.row(i));
+    }
+  }
+}
+
+/// Fills the matrix's columns of ports `first` and following.
+void solve_ports(const Problem& problem, std::size_t first, std::size_t count,
+                 Eigen::MatrixXd& matrix) {
+  const std::size_t nodes = problem.grid.nodes.size();
+  const Eigen::Index width = 6 * static_cast<Eigen::Index>(count);
+  NodeColumns columns(rows_of(problem.factor.free_nodes), width);
+  NodeColumns motion(rows_of(nodes), width);
+  for (std::size_t p = 0; p < count; ++p) {
+    PortLoads loads = loads_of_port(problem.grid, problem.elasticity, problem.ports[first + p],
+                                    problem.longest_side);
+    add_held(problem, loads, loads.forces);
+    const Eigen::Index column = 6 * static_cast<Eigen::Index>(p);
+    for (std::size_t node = 0; node < nodes; ++node) {
+      const std::uint32_t at = problem.factor.order[node];
+      if (at == kNoRow) {
+        motion.block<3, 6>(rows_of(node), column) = loads.held.middleRows<3>(rows_of(node));
+      } else {
+        columns.block<3, 6>(rows_of(at), column) = loads.forces.middleRows<3>(rows_of(node));
+      }
+    }
+  }
+  solve_stiffness(problem.factor, columns);
+  for (std::size_t node = 0; node < nodes; ++node) {
+    const std::uint32_t at = problem.factor.order[node];
+    if (at != kNoRow) {
+      motion.middleRows<3>(rows_of(node)) = columns.middleRows<3>(rows_of(at));
+    }
+  }
+  for (std::size_t i = 0; i < problem.fits.size(); ++i) {
+    add_motion(problem.fits[i], motion,
+               matrix.block(6 * static_cast<Eigen::Index>(i), 6 * static_cast<Eigen::Index>(first),
+                            6, width));
+  }
+}
+
+/// All columns, port by port, from as many threads as asked for.
+Eigen::MatrixXd solve_all(const Problem& problem, const SmoothComplianceOptions& options) {
+  const Eigen::Index size = 6 * static_cast<Eigen::Index>(problem.ports.size());
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
+  std::atomic<std::size_t> next{0};
+  const auto work = [&](bool reports) {
+    for (std::size_t first = next.fetch_add(kPortsAtOnce); first < problem.ports.size();
+         first = next.fetch_add(kPortsAtOnce)) {
+      solve_ports(problem, first, std::min(kPortsAtOnce, problem.ports.size() - first), matrix);
+      if (reports && options.progress) {
+        const double done = static_cast<double>(std::min(next.load(), problem.ports.size())) /
+                            static_cast<double>(problem.ports.size());
+        options.progress(kShareOfFactor + (1.0 - kShareOfFactor) * done);
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    for (std::uint32_t helper = 1; helper < options.threads; ++helper) {
+      helpers.emplace_back(work, false);
+    }
+    work(true);
+  }
+  return matrix;
+}
+
+/// Makes the matrix symmetric; returns how far it was from that.
+double make_symmetric(double length, Eigen::MatrixXd& matrix) {
+  Eigen::VectorXd scale(matrix.rows());
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+    scale[row] = row % 6 < 3 ? 1.0 : length;
+  }
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
+  const double norm = scaled.norm();
+  const double asymmetry = norm > 0.0 ? (scaled - scaled.transpose()).norm() / norm : 0.0;
+  matrix = (0.5 * (matrix + matrix.transpose())).eval();
+  return asymmetry;
+}
+
+}  // namespace
+
+Result<SmoothCompliance> build_smooth_compliance(const ElasticSolid& solid,
+                                                 std::span<const Port> ports,
+                                                 const SmoothComplianceOptions& options) {
+  const glm::dvec3 extent = solid.bounds.highest - solid.bounds.lowest;
+  const double poisson_ratio = solid.elasticity.poisson_ratio;
+  if (!(std::min({extent.x, extent.y, extent.z}) > 0.0)) {
+    return Error{"the body has no extent"};
+  }
+  if (!(solid.elasticity.youngs_modulus > 0.0) || !(poisson_ratio > -1.0) ||
+      !(poisson_ratio <= 0.5)) {
+    return Error{
+        "the body's material needs a Young's modulus above 0 and a Poisson's ratio above "
+        "-1 and at most 0.5"};
+  }
+  Result<SolidGrid> grid = build_solid_grid(solid, std::clamp(options.elements, 4U, 64U));
+  if (!grid) {
+    return grid.error();
+  }
+  const double bulk = bulk_modulus(poisson_ratio);
+  Result<StiffnessFactor> factor = factor_stiffness(
+      grid.value(),
+      [&](std::size_t element) {
+        return element_stiffness(element_corners(grid.value(), element), bulk);
+      },
+      [&](double done) {
+        if (options.progress) {
+          options.progress(kShareOfFactor * done);
+        }
+      });
+  if (!factor) {
+    return factor.error();
+  }
+  std::vector<MotionFit> fits;
+  for (const Port& port : ports) {
+    fits.push_back(fit_motion(grid.value(), port.position));
+  }
+  // With G = 1 the matrix is the same for all moduli; it scales with 1/G.
+  const Problem problem{grid.value(),
+                        factor.value(),
+                        ports,
+                        fits,
+                        {2.0 * (1.0 + poisson_ratio), poisson_ratio, solid.elasticity.density},
+                        bulk,
+                        std::max({extent.x, extent.y, extent.z})};
+  SmoothCompliance compliance;
+  compliance.matrix = solve_all(problem, options) / solid.elasticity.shear_modulus();
+  compliance.relative_asymmetry = make_symmetric(0.5 * problem.longest_side, compliance.matrix);
+  return compliance;
+}
+
+}  // namespace torsion

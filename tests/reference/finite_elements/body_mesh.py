@@ -20,9 +20,9 @@ Box(2) = {{0, 0, {bottom}, {x}, {y}, {height}}};
 BooleanIntersection(3) = {{ Volume{{1}}; Delete; }}{{ Volume{{2}}; Delete; }};
 """
 SIZES = """
-Point(1000) = {{ {x}, {y}, {z} }};
+{points}
 Field[1] = Distance;
-Field[1].PointsList = {{1000}};
+Field[1].PointsList = {{{names}}};
 Field[2] = Threshold;
 Field[2].InField = 1;
 Field[2].SizeMin = {fine};
@@ -63,14 +63,17 @@ def read_msh(path):
     return nodes[used], renumber[triangles], renumber[tetrahedra]
 
 
-def make(shape, center, fine, radius, coarse, growth=0.35):
-    """@param shape   gmsh commands that make one volume
-    @param center  (3) where it is fine [m]
-    @param fine    element size [m] within `radius` [m] of the centre; it grows by `growth` a metre
-                   outwards up to `coarse` [m]
+def make(shape, centers, fine, radius, coarse, growth=0.35):
+    """@param shape    gmsh commands that make one volume
+    @param centers  (n, 3) where it is fine [m]
+    @param fine     element size [m] within `radius` [m] of a centre; it grows by `growth` a metre
+                    outwards up to `coarse` [m]
     @return as read_msh"""
+    names = range(1000, 1000 + len(centers))
+    points = "\n".join(f"Point({name}) = {{ {x}, {y}, {z} }};"
+                       for name, (x, y, z) in zip(names, centers))
     text = 'SetFactory("OpenCASCADE");\n' + shape + SIZES.format(
-        x=center[0], y=center[1], z=center[2], fine=fine, coarse=coarse, radius=radius,
+        points=points, names=", ".join(map(str, names)), fine=fine, coarse=coarse, radius=radius,
         reach=radius + (coarse - fine) / growth)
     with tempfile.TemporaryDirectory() as folder:
         geometry, mesh = Path(folder) / "body.geo", Path(folder) / "body.msh"
@@ -85,11 +88,11 @@ def make(shape, center, fine, radius, coarse, growth=0.35):
 def block(half_width, height, fine, radius, coarse, growth=0.35):
     """A block of side 2 half_width [m] under z = 0; see make."""
     shape = BLOCK.format(bottom=-height, half_width=half_width, height=height)
-    return make(shape, (0.0, 0.0, 0.0), fine, radius, coarse, growth)
+    return make(shape, [(0.0, 0.0, 0.0)], fine, radius, coarse, growth)
 
 
-def ellipsoid(half_axes, height, center, fine, radius, coarse, growth=0.35):
+def ellipsoid(half_axes, height, centers, fine, radius, coarse, growth=0.35):
     """An ellipsoid with its top at the origin, cut off `height` [m] below it; see make."""
     x, y, z = half_axes
     shape = ELLIPSOID.format(x=x, y=y, z=z, bottom=-height, height=height)
-    return make(shape, center, fine, radius, coarse, growth)
+    return make(shape, centers, fine, radius, coarse, growth)

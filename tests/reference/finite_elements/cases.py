@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from typing import Callable
 
 import numpy as np
+from scipy.optimize import brentq
 
 import body_mesh
 import tools
@@ -52,8 +53,77 @@ def ball_on_block(ball, depth, width, height, *, radius=None, coarse=None, patch
         on_plane, within(patch * radius), below(-height), **keys)
 
 
+@dataclass
+class Ellipsoid:
+    """With its top at the origin; what is more than `height` [m] below that is held."""
+    half_axes: tuple  # [m]
+    height: float
+
+    def top(self, x, y):
+        return self.half_axes[2] * (np.sqrt(1 - (x / self.half_axes[0]) ** 2
+                                            - (y / self.half_axes[1]) ** 2) - 1)
+
+    def onto(self, points):
+        """Points near the upper half, moved along z onto it."""
+        return np.column_stack([points[:, :2], self.top(points[:, 0], points[:, 1])])
+
+    def holds(self, points):
+        x, y, z = (points / self.half_axes).T
+        return np.abs(x ** 2 + y ** 2 + (z + 1) ** 2 - 1) < 1e-6
+
+    def case(self, radius, depth, tool, centers, reach, touches, **keys):
+        """@param centers, reach  it is fine within `reach` [m] of the points (n, 2) `centers` [m]"""
+        fine_at = self.onto(np.array(centers))
+        return Case(radius, depth, keys.pop("phi_max"), tool,
+                    lambda fine: body_mesh.ellipsoid(self.half_axes, self.height, fine_at, fine,
+                                                     reach, 0.012),
+                    self.holds, touches, below(-self.height), onto=self.onto, **keys)
+
+
+# The body of the scenes mallet_on_ellipsoid and compass_on_ellipsoid: there y is up. Their lowest
+# point cannot hold a continuum, so its lowest tenth is held.
+ELLIPSOID = Ellipsoid((0.07, 0.06, 0.05), 0.09)
+
+
+def mallet_on_ellipsoid(depth=5e-4, long=0.0077, short=0.0019):
+    """The scene's lying capsule, radius 15 mm. `long` and `short` [m] are the contact's half axes
+    by Hertz."""
+    radius, half_length = 0.015, 0.02
+    rod = tools.Rod(radius, (-half_length, 0, radius), (half_length, 0, radius))
+    return ELLIPSOID.case(
+        short, depth, rod, [(x, 0) for x in np.linspace(0, 1.1 * long, 12)], 1.6 * short,
+        lambda points: np.hypot(points[:, 0] / (1.3 * long), points[:, 1] / (1.9 * short)) < 1,
+        phi_max=0.1, divisions=(4, 6))
+
+
+def compass_on_ellipsoid(depth=2e-4, phi_max=0.02):
+    """The scene's two feet: round tips of 4 mm radius on legs that lean inwards by 15 degrees and
+    end 22 mm from the axis. Depth counts from where they touch."""
+    tip, lean = 0.004, np.radians(15)
+    foot = 0.022 - tip * np.sin(lean)
+    # Where the tip's centre is when it just touches: off the surface by its radius.
+    x = brentq(lambda x: x - foot + tip * slope_part(x), 0.0, 0.05)
+    normal = np.array([slope_part(x), np.sqrt(1 - slope_part(x) ** 2)])
+    center = np.array([x, ELLIPSOID.top(x, 0.0)]) + tip * normal
+    ball = tools.Rod(tip, (foot, 0, center[1]), (foot, 0, center[1]))
+    contact, way = np.sqrt(tip * depth), foot * phi_max
+    return ELLIPSOID.case(
+        contact, depth, ball, [(x, y) for y in np.linspace(0, way, 4)], 1.2 * contact,
+        lambda points: np.hypot(points[:, 0] - x, points[:, 1] - np.clip(points[:, 1], 0, way))
+        < 1.45 * contact,
+        phi_max=phi_max, divisions=(4, 6))
+
+
+def slope_part(x):
+    """The x component of the ellipsoid's normal at (x, 0)."""
+    wide, _, high = ELLIPSOID.half_axes
+    normal = np.array([x / wide ** 2, np.sqrt(1 - (x / wide) ** 2) / high])
+    return normal[0] / np.linalg.norm(normal)
+
+
 BALL, DEPTH = 0.05, 4.127e-4  # [m]
 CONTACT = np.sqrt(BALL * DEPTH)
+COLUMN = 0.05  # [m] side and height
 
 
 def all_cases():
@@ -64,6 +134,13 @@ def all_cases():
                                     phi_max=0.2),
         "ball_on_cube_nu30": ball_on_block(BALL, DEPTH, 0.1, 0.1, poisson_ratio=0.3),
         "ball_on_cube_nu49": ball_on_block(BALL, DEPTH, 0.1, 0.1, poisson_ratio=0.49),
+        "thin_layer": ball_on_block(BALL, DEPTH, 24 * CONTACT, 2 * CONTACT, coarse=CONTACT,
+                                    radius=1.1 * CONTACT),
+        # Deep enough for a contact radius of 0.4 of the side.
+        "soft_column": ball_on_block(0.2, 2.4e-3, COLUMN, COLUMN, youngs_modulus=1e4, friction=5.0,
+                                     radius=0.4 * COLUMN, patch=1.2, coarse=COLUMN / 8),
+        "mallet_on_ellipsoid": mallet_on_ellipsoid(),
+        "compass_on_ellipsoid": compass_on_ellipsoid(),
     }
 
 

@@ -75,10 +75,10 @@ class Side:
     friction: np.ndarray  # (n, 3) [Pa], the part of it along the surface
 
 
-def evaluate(side, points, displacement, tool, pose, last_phi, limit, stiffness):
+def evaluate(side, points, displacement, tool, pose, last_pose, limit, stiffness):
     """Tractions on the body for trial displacements of the points.
 
-    @param pose   depth [m] and phi [rad] of the tool
+    @param pose   depth [m] and phi [rad] of the tool; last_pose: those of the converged state
     @param limit  (n) the greatest shear traction [Pa]
     @return a Side, the resistance -d traction / d displacement (n, 3, 3) [Pa/m]"""
     depth, phi = pose
@@ -86,7 +86,8 @@ def evaluate(side, points, displacement, tool, pose, last_phi, limit, stiffness)
     pressure = stiffness * np.maximum(0.0, -gap)
     touching = pressure > 0.0
     across = np.eye(3) - normal[:, :, None] * normal[:, None, :]
-    carried = side.sign * (phi - last_phi) * np.cross(UP, points.position)
+    turn = side.sign * (phi - last_pose[1])
+    carried = turn * np.cross(UP, points.position) - (depth - last_pose[0]) * UP
     slipped = displacement - side.displacement - carried
     trial = np.einsum("nij,nj->ni", across, side.friction - stiffness * slipped)
     size = np.linalg.norm(trial, axis=1)
@@ -112,7 +113,7 @@ class Contact:
         self.points = integration_points(body, onto)
         zero = np.zeros_like(self.points.position)
         self.sides = [Side(sign, zero, zero, zero) for sign in (1.0, -1.0)]
-        self.phi = 0.0
+        self.pose = (0.0, 0.0)
         self.even, self.odd = body.free["even"], body.free["odd"]
         self.unknown = np.zeros(len(self.even) + len(self.odd))
         self.force = np.zeros_like(self.unknown)
@@ -136,7 +137,7 @@ class Contact:
         sides, forces, blocks = [], [], []
         for side, limit, nodal in zip(self.sides, limits, self.side_displacements(unknown)):
             new, resistance = evaluate(side, self.points, (sample @ nodal).reshape(-1, 3),
-                                       self.tool, pose, self.phi, limit, self.stiffness)
+                                       self.tool, pose, self.pose, limit, self.stiffness)
             sides.append(new)
             forces.append(sample.T @ (new.traction * area[:, None]).ravel())
             blocks.append(resistance * area[:, None, None])
@@ -210,7 +211,7 @@ class Contact:
             before, limits = limits, [self.friction * pressure for pressure in pressed]
             if before is not None and np.linalg.norm(np.subtract(limits, before)) <= (
                     10 * tolerance * np.linalg.norm(limits)):
-                self.sides, self.phi = sides, phi
+                self.sides, self.pose = sides, pose
                 return
             sides = self.solve(pose, limits, tolerance)
         raise RuntimeError(f"no fixed point of the friction at depth, phi = {pose}")

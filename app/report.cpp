@@ -8,6 +8,7 @@
 #include "app/output_file.hpp"
 #include "app/progress.hpp"
 #include "app/report/csv_report.hpp"
+#include "app/report/element_cases.hpp"
 #include "app/report/exact_cases.hpp"
 #include "systems/fault.hpp"
 
@@ -23,9 +24,11 @@ struct ReportOptions {
 Result<std::vector<MeasuredCase>> run_all(const ReportOptions& options) {
   std::vector<MeasuredCase> cases;
   std::size_t runs = 0;
-  for (ReferenceCase& reference_case : exact_cases(options.quick)) {
-    runs += model_pairs(reference_case, options.quick).size();
-    cases.push_back({std::move(reference_case), {}});
+  for (const auto& some_cases : {exact_cases, element_cases}) {
+    for (ReferenceCase& reference_case : some_cases(options.quick)) {
+      runs += model_pairs(reference_case, options.quick).size();
+      cases.push_back({std::move(reference_case), {}});
+    }
   }
   Progress progress("measuring", options.quiet);
   std::size_t done = 0;

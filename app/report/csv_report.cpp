@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "ecs/model_names.hpp"
+
 namespace torsion {
 namespace {
 
@@ -19,7 +21,7 @@ std::string csv_text(std::span<const MeasuredCase> cases) {
     for (const MeasuredRun& one : measured.runs) {
       text += fmt::format(
           "{},{},{},{},{},{:.4g},{:.4g},{},{},{},{}\n", measured.reference_case.name,
-          report_name(one.run.models.contact), report_name(one.run.models.body), one.run.cells,
+          name_of(one.run.models.contact), name_of(one.run.models.body), one.run.cells,
           one.run.anchors, one.run.step_us_median, one.run.step_us_p99, field_of(one.errors.force),
           field_of(one.errors.torque), field_of(one.errors.twist), one.run.memory_bytes);
     }

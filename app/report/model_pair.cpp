@@ -5,14 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "ecs/model_names.hpp"
 #include "ecs/world.hpp"
 
 namespace torsion {
 namespace {
 
-constexpr std::array kContactModels = {ContactModel::kPaper, ContactModel::kMdr,
-                                       ContactModel::kPatch};
-constexpr std::array kBodyModels = {BodyModel::kNone, BodyModel::kSkeleton};
 constexpr std::array<std::uint32_t, 5> kGridSides = {8, 12, 16, 20, 24};
 constexpr std::array<std::uint32_t, 2> kQuickGridSides = {8, 12};
 
@@ -22,12 +20,15 @@ std::vector<ModelPair> model_pairs(const ReferenceCase& reference_case, bool qui
   const std::uint32_t side_unless_chosen = Settings{}.grid_side;
   const std::array<std::uint32_t, 1> one = {side_unless_chosen};
   std::vector<ModelPair> pairs;
-  for (const ContactModel contact : kContactModels) {
+  // The first of each enum is kAuto.
+  for (std::size_t c = 1; c < kContactModelNames.size(); ++c) {
+    const auto contact = static_cast<ContactModel>(c);
     std::span<const std::uint32_t> sides = one;
     if (contact == ContactModel::kPatch) {
       sides = quick ? std::span<const std::uint32_t>(kQuickGridSides) : kGridSides;
     }
-    for (const BodyModel body : kBodyModels) {
+    for (std::size_t b = 1; b < kBodyModelNames.size(); ++b) {
+      const auto body = static_cast<BodyModel>(b);
       if (body != BodyModel::kNone && !reference_case.finite_body) {
         continue;
       }
@@ -39,38 +40,12 @@ std::vector<ModelPair> model_pairs(const ReferenceCase& reference_case, bool qui
   return pairs;
 }
 
-const char* report_name(ContactModel model) {
-  switch (model) {
-    case ContactModel::kPaper:
-      return "paper";
-    case ContactModel::kMdr:
-      return "mdr";
-    case ContactModel::kPatch:
-      return "patch";
-    case ContactModel::kAuto:
-      break;
-  }
-  return "auto";
-}
-
-const char* report_name(BodyModel model) {
-  switch (model) {
-    case BodyModel::kNone:
-      return "none";
-    case BodyModel::kSkeleton:
-      return "skeleton";
-    case BodyModel::kAuto:
-      break;
-  }
-  return "auto";
-}
-
 std::string label_of(const ModelPair& models) {
   const std::string body =
-      models.body == BodyModel::kNone ? "" : fmt::format(" + {}", report_name(models.body));
+      models.body == BodyModel::kNone ? "" : fmt::format(" + {}", name_of(models.body));
   return models.contact == ContactModel::kPatch
              ? fmt::format("patch {0}\u00d7{0}{1}", models.grid_side, body)
-             : report_name(models.contact) + body;
+             : fmt::format("{}{}", name_of(models.contact), body);
 }
 
 }  // namespace torsion

@@ -18,9 +18,6 @@ struct ModelPair {
 /// @param quick  fewer grids
 std::vector<ModelPair> model_pairs(const ReferenceCase& reference_case, bool quick);
 
-const char* report_name(ContactModel model);
-const char* report_name(BodyModel model);
-
 /// "patch 12 + skeleton": models with the grid's side where it is chosen.
 std::string label_of(const ModelPair& models);
 

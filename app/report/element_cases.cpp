@@ -1,0 +1,101 @@
+#include "app/report/element_cases.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "app/report/element_curve.hpp"
+#include "app/report/element_scenes.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kClearance = 1e-5;  // m
+constexpr double kFieldReach = 8.0;  // contact radii
+constexpr int kFieldPoints = 80;
+
+std::string error_text(const std::optional<double>& error) {
+  return error ? fmt::format("{:.2g} %", 100.0 * *error) : "not known";
+}
+
+std::string reference_text(const ElementCurve& curve) {
+  return fmt::format(
+      "Finite elements with Coulomb friction and history, quadratic, {} to a contact radius "
+      "(GetFEM). Between this mesh and the next coarser one the force differs by {}, the torque "
+      "by {} of the largest value.",
+      curve.divisions, error_text(curve.force_error), error_text(curve.torque_error));
+}
+
+/// What moves the tool in the finite element path: depth below the first touch and twist.
+std::vector<PathPoint> path_of(const ElementCurve& curve, const Pose& touching, int steps) {
+  std::vector<PathPoint> path;
+  Leg leg = Leg::kApproach;
+  for (const ElementCurve::Row& row : curve.rows) {
+    const double before = path.empty() ? 0.0 : path.back().abscissa;
+    if (row.twist != before) {
+      const bool forth = row.twist > before;
+      leg = leg == Leg::kApproach || (forth && leg == Leg::kLoad) ? Leg::kLoad
+            : forth                                               ? Leg::kReload
+                                                                  : Leg::kUnload;
+    }
+    PathPoint point;
+    const double depth = path.empty() ? -kClearance : row.depth;
+    point.tool = {touching.position - glm::dvec3(0.0, depth, 0.0),
+                  glm::angleAxis(row.twist, glm::dvec3(0.0, 1.0, 0.0))};
+    point.steps = path.empty() ? 1 : steps;
+    point.leg = leg;
+    point.abscissa = row.twist;
+    point.force = row.force;
+    point.torque = row.torque;
+    path.push_back(point);
+  }
+  return path;
+}
+
+ReferenceField field_of(const ElementCurve& curve) {
+  ReferenceField field;
+  const auto most = std::ranges::max_element(curve.rows, {}, &ElementCurve::Row::twist);
+  field.point = static_cast<std::size_t>(most - curve.rows.begin());
+  field.tool_twist = most->twist;
+  field.contact_radius = most->contact_radius;
+  const double reach = std::min(kFieldReach * most->contact_radius, curve.field.back().radius);
+  for (int i = 1; i <= kFieldPoints; ++i) {
+    field.radii.push_back(reach * i / kFieldPoints);
+    field.twists.push_back(field_twist(curve, field.radii.back()));
+  }
+  return field;
+}
+
+}  // namespace
+
+std::vector<ReferenceCase> element_cases(bool quick) {
+  std::vector<ReferenceCase> cases;
+  for (const ElementScene& element_scene : element_scenes()) {
+    const std::vector<std::string_view> names = element_case_names();
+    if (std::ranges::find(names, element_scene.name) == names.end()) {
+      continue;
+    }
+    const ElementCurve curve = finest_curve(element_scene.name);
+    ReferenceCase one;
+    one.name = element_scene.name;
+    one.title = element_scene.title;
+    one.description = element_scene.description;
+    one.reference = reference_text(curve);
+    one.force_meaning = "normal force";
+    one.torque_meaning = "torque about the axis of the twist";
+    one.scene = element_scene.scene;
+    one.finite_body = element_scene.finite_body;
+    one.path = path_of(curve, element_scene.touching, quick ? 8 : 40);
+    one.x = {PlotAxis::Quantity::kAbscissa, "twist of the tool (mrad)", 1e3};
+    one.y = {PlotAxis::Quantity::kTorque, "torque (mN m)", 1e3};
+    if (element_scene.flat_top && !curve.field.empty()) {
+      one.field = field_of(curve);
+    }
+    cases.push_back(std::move(one));
+  }
+  return cases;
+}
+
+}  // namespace torsion

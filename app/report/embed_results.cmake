@@ -1,0 +1,15 @@
+# Writes OUTPUT, a C++ source with the text of every .csv in FOLDER, so that the program needs no
+# files: cmake -D FOLDER=... -D OUTPUT=... -P embed_results.cmake
+file(GLOB paths ${FOLDER}/*.csv)
+list(SORT paths)
+set(text "#include \"app/report/element_results.hpp\"\n\n#include <array>\n\nnamespace torsion {\n\n")
+string(APPEND text "std::span<const EmbeddedFile> element_results() {\n")
+list(LENGTH paths count)
+string(APPEND text "  static constexpr std::array<EmbeddedFile, ${count}> kFiles = {{\n")
+foreach(path IN LISTS paths)
+  get_filename_component(name ${path} NAME_WE)
+  file(READ ${path} content)
+  string(APPEND text "    {\"${name}\", R\"csv(${content})csv\"},\n")
+endforeach()
+string(APPEND text "  }};\n  return kFiles;\n}\n\n}  // namespace torsion\n")
+file(WRITE ${OUTPUT} "${text}")

@@ -243,7 +243,7 @@ class Contact:
         for side in self.sides:
             force += 0.5 * side.sign * (
                 self.points.sample.T @ (side.traction * self.points.area[:, None]).ravel())
-        displacement = self.body.solve["odd"](force)
+        displacement = self.body.solve_odd(force)
         x, y, _ = self.body.nodes.T
         line = self.body.on_surface & (y < 1e-9) & (x > 1e-9)
         order = np.argsort(x[line])

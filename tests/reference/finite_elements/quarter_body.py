@@ -11,6 +11,7 @@ do not lock up to nu = 0.5.
 """
 
 from dataclasses import dataclass
+from typing import Callable
 
 import getfem as gf
 import numpy as np
@@ -32,7 +33,7 @@ class QuarterBody:
     on_surface: np.ndarray  # (n) bool: on the surface that the tool presses, touching or not
     free: dict  # parity -> rows of the 3 c contact displacements that are not held
     compliance: dict  # parity -> (free, free) [m/N] of the quarter
-    solve: dict  # parity -> function: forces (3 c) [N] -> displacements (n, 3) [m]
+    solve_odd: Callable  # odd forces (3 c) [N] -> displacements (n, 3) [m]
     unknowns: int  # of the larger of the two systems
 
 
@@ -122,6 +123,16 @@ def factor_towards(matrix, rows):
     return factor, 0.5 * (inverse + inverse.T)
 
 
+def solution(factor, free, rows, place, count):
+    """A function: forces on the contact [N] -> displacements of all `count` nodes (n, 3) [m]."""
+    def solve(force):
+        right = np.zeros(len(factor.order))
+        right[rows] = force[free]
+        displacement = np.append(factor.solve(right), 0.0)[place]
+        return displacement[:3 * count].reshape(-1, 3)
+    return solve
+
+
 def condense(mesh, outside, touches, fixed, youngs_modulus, poisson_ratio):
     """@param mesh     nodes, triangles, tetrahedra as body_mesh makes them
     @param outside  (n, 3) points -> (n) bool: on the surface that the tool presses
@@ -140,7 +151,7 @@ def condense(mesh, outside, touches, fixed, youngs_modulus, poisson_ratio):
 
     on_surface = np.zeros(len(nodes), bool)
     on_surface[free_surface] = True
-    body = QuarterBody(nodes, surface, contact, on_surface, {}, {}, {}, 0)
+    body = QuarterBody(nodes, surface, contact, on_surface, {}, {}, None, 0)
     for parity in PARITIES:
         held, held_pressure = held_on_mirrors(nodes, parity, tolerance)
         held |= fixed(nodes)[:, None]
@@ -154,14 +165,8 @@ def condense(mesh, outside, touches, fixed, youngs_modulus, poisson_ratio):
         rows = place[loaded[free]]
         factor, compliance = factor_towards(small, rows)
 
-        def solve(force, factor=factor, free=free, rows=rows, place=place, keep=keep):
-            right = np.zeros(len(factor.order))
-            right[rows] = force[free]
-            full = np.zeros(len(keep))
-            full[keep] = factor.solve(right)[place[keep]]
-            return full[:3 * len(nodes)].reshape(-1, 3)
-
-        body.free[parity], body.solve[parity] = free, solve
-        body.compliance[parity] = compliance
+        body.free[parity], body.compliance[parity] = free, compliance
+        if parity == "odd":
+            body.solve_odd = solution(factor, free, rows, place, len(nodes))
         body.unknowns = max(body.unknowns, len(kept))
     return body

@@ -1,0 +1,152 @@
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+
+#include "systems/body_models/smooth_compliance.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kCandidateCells = 28.0;  // along the longest side: some thousands on the surface
+
+/// Points spread over a surface.
+struct SurfacePoints {
+  std::vector<Port> free;
+  std::vector<glm::dvec3> clamped;  // m
+  double area = 0.0;                // m^2, of both, roughly
+};
+
+std::optional<Port> on_surface(const ElasticSolid& solid, glm::dvec3 point, double reach) {
+  Distance distance = solid.signed_distance(point);
+  if (std::abs(distance.value) > reach) {
+    return std::nullopt;
+  }
+  for (int i = 0; i < 4; ++i) {
+    point -= distance.gradient * distance.value;
+    distance = solid.signed_distance(point);
+  }
+  if (!(std::abs(distance.value) < 1e-2 * reach)) {
+    return std::nullopt;
+  }
+  return Port{point, glm::normalize(distance.gradient)};
+}
+
+/// The nearest surface point of each lattice cell that the surface goes through.
+SurfacePoints sample_surface(const ElasticSolid& solid) {
+  const glm::dvec3 extent = solid.bounds.highest - solid.bounds.lowest;
+  const double size = std::max({extent.x, extent.y, extent.z}) / kCandidateCells;
+  const glm::uvec3 cells(glm::max(glm::ceil(extent / size), glm::dvec3(6.0)));
+  const glm::dvec3 spacing = extent / glm::dvec3(cells);
+  const double reach = 0.5 * glm::length(spacing);
+  SurfacePoints points;
+  for (std::uint32_t z = 0; z < cells.z; ++z) {
+    for (std::uint32_t y = 0; y < cells.y; ++y) {
+      for (std::uint32_t x = 0; x < cells.x; ++x) {
+        const glm::dvec3 cell(x, y, z);
+        const glm::dvec3 center = solid.bounds.lowest + spacing * (cell + glm::dvec3(0.5));
+        const std::optional<Port> port = on_surface(solid, center, reach);
+        if (!port || glm::any(glm::greaterThan(glm::abs(port->position - center),
+                                               glm::dvec3(0.5 + 1e-9) * spacing))) {
+          continue;
+        }
+        // the share of the cell's section that the surface is
+        const glm::dvec3 n = glm::abs(port->normal);
+        points.area += spacing.x * spacing.y * spacing.z /
+                       std::max({n.x * spacing.x, n.y * spacing.y, n.z * spacing.z});
+        if (solid.clamped(port->position)) {
+          points.clamped.push_back(port->position);
+        } else {
+          points.free.push_back(*port);
+        }
+      }
+    }
+  }
+  return points;
+}
+
+/// Whether the surface stays near the port's plane as far as `reach` around it.
+bool is_smooth(const ElasticSolid& solid, const Port& port, double reach) {
+  constexpr int kDirections = 8;
+  const glm::dvec3 other =
+      std::abs(port.normal.x) < 0.6 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+  const glm::dvec3 first = glm::normalize(glm::cross(port.normal, other));
+  const glm::dvec3 second = glm::cross(port.normal, first);
+  for (int k = 0; k < kDirections; ++k) {
+    const double angle = 2.0 * kPi * k / kDirections;
+    const Distance distance = solid.signed_distance(
+        port.position + reach * (std::cos(angle) * first + std::sin(angle) * second));
+    if (glm::dot(distance.gradient, port.normal) < 0.6 || std::abs(distance.value) > 0.5 * reach) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The end of the middle line that goes from the clamp through the body: where contacts are
+/// likeliest.
+std::size_t far_end(const Bounds& bounds, const std::vector<Port>& candidates,
+                    const std::vector<glm::dvec3>& clamped) {
+  if (clamped.empty()) {
+    return 0;
+  }
+  glm::dvec3 root(0.0);
+  for (const glm::dvec3& point : clamped) {
+    root += point / static_cast<double>(clamped.size());
+  }
+  const glm::dvec3 line = 0.5 * (bounds.lowest + bounds.highest) - root;
+  if (glm::length(line) < 1e-6 * glm::length(bounds.highest - bounds.lowest)) {
+    return 0;
+  }
+  const glm::dvec3 axis = glm::normalize(line);
+  const auto rank = [&](const Port& port) {
+    const glm::dvec3 offset = port.position - root;
+    const double along = glm::dot(offset, axis);
+    return along - 2.0 * glm::length(offset - along * axis);
+  };
+  return static_cast<std::size_t>(
+      std::max_element(candidates.begin(), candidates.end(),
+                       [&](const Port& a, const Port& b) { return rank(a) < rank(b); }) -
+      candidates.begin());
+}
+
+}  // namespace
+
+std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count) {
+  const SurfacePoints points = sample_surface(solid);
+  const double spacing = std::sqrt(points.area / std::max(count, 1U));
+  std::vector<Port> candidates;
+  double inset = spacing / 3.0;
+  for (int tries = 0; tries < 4 && candidates.size() < count; ++tries, inset *= 0.5) {
+    candidates.clear();
+    std::copy_if(points.free.begin(), points.free.end(), std::back_inserter(candidates),
+                 [&](const Port& port) { return is_smooth(solid, port, inset); });
+  }
+  std::vector<Port> ports;
+  if (candidates.empty() || count == 0) {
+    return ports;
+  }
+  std::vector<double> nearest(candidates.size(), std::numeric_limits<double>::infinity());
+  const auto keep_away = [&](const glm::dvec3& from) {
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      nearest[i] = std::min(nearest[i], glm::distance(candidates[i].position, from));
+    }
+  };
+  std::for_each(points.clamped.begin(), points.clamped.end(), keep_away);
+  std::size_t next = far_end(solid.bounds, candidates, points.clamped);
+  while (ports.size() < count && (ports.empty() || nearest[next] > 0.1 * spacing)) {
+    ports.push_back(candidates[next]);
+    keep_away(ports.back().position);
+    next = static_cast<std::size_t>(std::max_element(nearest.begin(), nearest.end()) -
+                                    nearest.begin());
+  }
+  return ports;
+}
+
+}  // namespace torsion

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -10,7 +11,10 @@
 #include "app/report/csv_report.hpp"
 #include "app/report/element_cases.hpp"
 #include "app/report/exact_cases.hpp"
-#include "systems/fault.hpp"
+#include "app/report/html_report.hpp"
+#ifdef TORSION_WITH_RENDER
+#include "app/report/scene_picture.hpp"
+#endif
 
 namespace torsion {
 namespace {
@@ -46,6 +50,26 @@ Result<std::vector<MeasuredCase>> run_all(const ReportOptions& options) {
   return cases;
 }
 
+/// A picture of each case; without one where this machine cannot draw, which it says once.
+std::vector<std::string> draw_pictures(std::span<const MeasuredCase> cases, bool quiet) {
+  std::vector<std::string> pictures(cases.size());
+#ifdef TORSION_WITH_RENDER
+  Progress progress("drawing", quiet);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    Result<std::string> picture = scene_picture(cases[i].reference_case);
+    if (!picture) {
+      fmt::print(stderr, "no pictures of the scenes: {}\n", picture.error().text);
+      break;
+    }
+    pictures[i] = std::move(picture).value();
+    progress.show(static_cast<double>(i + 1) / static_cast<double>(cases.size()));
+  }
+#else
+  static_cast<void>(quiet);
+#endif
+  return pictures;
+}
+
 Result<Done> write_file(const std::filesystem::path& path, const std::string& text) {
   Result<OutputFile> file = OutputFile::create(path);
   if (!file) {
@@ -66,12 +90,23 @@ int report(const ReportOptions& options) {
   if (!cases) {
     return fail(cases.error().text);
   }
-  const Result<Done> written = write_file(csv, csv_text(cases.value()));
+  const Machine machine = this_machine();
+  Result<Done> written = write_file(csv, csv_text(cases.value()));
+  if (!written) {
+    return fail(written.error().text);
+  }
+  const std::vector<std::string> pictures = draw_pictures(cases.value(), options.quiet);
+  const Result<std::string> html = html_text(cases.value(), pictures, machine);
+  if (!html) {
+    return fail(html.error().text);
+  }
+  const std::filesystem::path page = folder / "report.html";
+  written = write_file(page, html.value());
   if (!written) {
     return fail(written.error().text);
   }
   if (!options.quiet) {
-    fmt::print("{}\n", csv.string());
+    fmt::print("{}\n{}\n", csv.string(), page.string());
   }
   return kDone;
 }

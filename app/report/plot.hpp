@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+namespace torsion {
+
+/// One set of points of a plot.
+struct PlotSeries {
+  enum class Style { kLine, kPoints, kLineWithPoints, kSteps };
+  std::string label;  // in the legend; empty: none
+  Style style = Style::kLine;
+  std::string color = "#000000";
+  int dash = 1;   // gnuplot's number: 1 is solid
+  int point = 7;  // gnuplot's number: 7 is a filled circle
+  double width = 1.6;
+  std::vector<glm::dvec2> points;
+  std::vector<std::string> point_labels;  // beside the points; empty: none
+};
+
+struct Plot {
+  std::string caption;  // below the plot
+  std::string x_label;  // with its unit
+  std::string y_label;
+  bool log_x = false;
+  bool log_y = false;
+  std::string legend = "top left";  // gnuplot's place of the key
+  std::vector<PlotSeries> series;
+};
+
+}  // namespace torsion

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+
+#include "app/report/plot.hpp"
+#include "app/report/report_data.hpp"
+
+namespace torsion {
+
+/// The larger of the errors in force and torque.
+double worst_error(const CaseErrors& errors);
+
+/// Time of a step against worst_error, one point for each run, with the Pareto front.
+Plot speed_plot(const MeasuredCase& measured);
+
+/// The same over several cases: the slowest median and the largest error of each choice of models.
+Plot speed_plot(std::span<const MeasuredCase* const> cases);
+
+/// What the case is about, first loading only: its y against its x, and the reference.
+Plot loading_plot(const MeasuredCase& measured);
+
+/// The same over the whole path.
+Plot loop_plot(const MeasuredCase& measured);
+
+/// Twist of the surface over the tool's, against the radius. @pre the case has a field
+Plot field_plot(const MeasuredCase& measured);
+
+}  // namespace torsion

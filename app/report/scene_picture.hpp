@@ -1,0 +1,12 @@
+#pragma once
+
+#include "app/report/reference_case.hpp"
+#include "ecs/result.hpp"
+
+namespace torsion {
+
+/// The scene where the tool has moved farthest, by the program's own renderer, as a PNG file's
+/// bytes. Fails where there is no device to draw on.
+Result<std::string> scene_picture(const ReferenceCase& reference_case);
+
+}  // namespace torsion

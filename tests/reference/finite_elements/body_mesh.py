@@ -91,6 +91,13 @@ def block(half_width, height, fine, radius, coarse, growth=0.35):
     return make(shape, [(0.0, 0.0, 0.0)], fine, radius, coarse, growth)
 
 
+def turned_block(half_width, height, fine, radius, coarse, growth=0.35):
+    """As block; the mesh of its face x = 0 is that of its face y = 0 turned about z."""
+    shape = (BLOCK.format(bottom=-height, half_width=half_width, height=height)
+             + "\nPeriodic Surface {1} = {3} Rotate {{0, 0, 1}, {0, 0, 0}, Pi / 2};\n")
+    return make(shape, [(0.0, 0.0, 0.0)], fine, radius, coarse, growth)
+
+
 def ellipsoid(half_axes, height, centers, fine, radius, coarse, growth=0.35):
     """An ellipsoid with its top at the origin, cut off `height` [m] below it; see make."""
     x, y, z = half_axes

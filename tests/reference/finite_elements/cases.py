@@ -1,4 +1,4 @@
-"""The cases of small strain: body, material, tool and path of each."""
+"""The cases: body, material, tool and path of each."""
 
 from dataclasses import dataclass, field
 from typing import Callable
@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 import body_mesh
 import tools
 from contact import Contact
+from large_strain import Deep, DeepCase
 from quarter_body import condense
 
 
@@ -28,6 +29,8 @@ class Case:
     pressed_without_friction: bool = False  # as Lubkin's solution has it
     onto: Callable = field(default=lambda points: points)  # the exact surface under the mesh's
     divisions: tuple = (6, 9)  # elements to `radius`, mesh by mesh
+    presses: int = 8  # steps down
+    turns: int = 16  # steps to phi_max; twice as many back
 
 
 def on_plane(points):
@@ -72,7 +75,7 @@ class Ellipsoid:
         return np.abs(x ** 2 + y ** 2 + (z + 1) ** 2 - 1) < 1e-6
 
     def case(self, radius, depth, tool, centers, reach, touches, **keys):
-        """@param centers, reach  it is fine within `reach` [m] of the points (n, 2) `centers` [m]"""
+        """@param centers, reach  it is fine within `reach` [m] of the points (n, 2) `centers`"""
         fine_at = self.onto(np.array(centers))
         return Case(radius, depth, keys.pop("phi_max"), tool,
                     lambda fine: body_mesh.ellipsoid(self.half_axes, self.height, fine_at, fine,
@@ -135,37 +138,43 @@ def all_cases():
         "ball_on_cube_nu30": ball_on_block(BALL, DEPTH, 0.1, 0.1, poisson_ratio=0.3),
         "ball_on_cube_nu49": ball_on_block(BALL, DEPTH, 0.1, 0.1, poisson_ratio=0.49),
         "thin_layer": ball_on_block(BALL, DEPTH, 24 * CONTACT, 2 * CONTACT, coarse=CONTACT,
-                                    radius=1.1 * CONTACT),
+                                    radius=1.2 * CONTACT, patch=1.5),
         # Deep enough for a contact radius of 0.4 of the side.
         "soft_column": ball_on_block(0.2, 2.4e-3, COLUMN, COLUMN, youngs_modulus=1e4, friction=5.0,
-                                     radius=0.4 * COLUMN, patch=1.2, coarse=COLUMN / 8),
+                                     radius=0.4 * COLUMN, patch=1.5, coarse=COLUMN / 8),
         "mallet_on_ellipsoid": mallet_on_ellipsoid(),
         "compass_on_ellipsoid": compass_on_ellipsoid(),
+        "large_strain": DeepCase(),
     }
 
 
-PRESSES = 8
-
-
-def path(case, turns=16):
+def path(case):
     """Depth [m] and phi [rad], pose by pose: down, to phi_max, back to -phi_max."""
-    down = [(case.depth * (i + 1) / PRESSES, 0.0) for i in range(PRESSES)]
-    to = [(case.depth, case.phi_max * (i + 1) / turns) for i in range(turns)]
-    fro = [(case.depth, case.phi_max * (1 - (i + 1) / turns)) for i in range(2 * turns)]
+    down = [(case.depth * (i + 1) / case.presses, 0.0) for i in range(case.presses)]
+    to = [(case.depth, case.phi_max * (i + 1) / case.turns) for i in range(case.turns)]
+    fro = [(case.depth, case.phi_max * (1 - (i + 1) / case.turns)) for i in range(2 * case.turns)]
     return down + to + fro
+
+
+def begin(case, fine, report):
+    """Body and tool before they touch, with elements of size `fine` [m] at the contact."""
+    if isinstance(case, DeepCase):
+        deep = Deep(case, fine)
+        report(f"{deep.body.tie.shape[1]} unknowns, {len(deep.body.contact)} contact nodes")
+        return deep
+    body = condense(case.mesh(fine), case.outside, case.touches, case.fixed, case.youngs_modulus,
+                    case.poisson_ratio)
+    report(f"{body.unknowns} unknowns, {len(body.contact)} contact nodes")
+    return Contact(body, case.tool, case.friction, case.youngs_modulus, fine, case.onto)
 
 
 def run(case, divisions, report):
     """@param report  called with a line of text now and then
     @return rows (step, depth, phi, force, torque, contact radius), rows (r, twist) at phi_max"""
-    fine = case.radius / divisions
-    body = condense(case.mesh(fine), case.outside, case.touches, case.fixed, case.youngs_modulus,
-                    case.poisson_ratio)
-    report(f"{body.unknowns} unknowns, {len(body.contact)} contact nodes")
-    contact = Contact(body, case.tool, case.friction, case.youngs_modulus, fine, case.onto)
+    contact = begin(case, case.radius / divisions, report)
     rows, twist = [(0, 0.0, 0.0, 0.0, 0.0, 0.0)], None
     for step, (depth, phi) in enumerate(path(case), 1):
-        rubs = step > PRESSES or not case.pressed_without_friction
+        rubs = step > case.presses or not case.pressed_without_friction
         contact.friction = case.friction if rubs else 0.0
         contact.move(depth, phi)
         rows.append((step, depth, phi, *contact.loads()))

@@ -217,7 +217,7 @@ class Contact:
         raise RuntimeError(f"no fixed point of the friction at depth, phi = {pose}")
 
     def loads(self):
-        """Force the body bears [N], torque that turns it [N m], radius of a disc of the area [m]."""
+        """Force the body bears [N], torque that turns it [N m], radius of a disc as large [m]."""
         force = torque = area = 0.0
         for side in self.sides:
             traction = side.traction * self.points.area[:, None]

@@ -6,6 +6,9 @@
 #include <thread>
 #include <utility>
 
+#include <Eigen/Geometry>
+#include <glm/geometric.hpp>
+
 #include "systems/body_models/smooth_compliance_element.hpp"
 #include "systems/body_models/smooth_compliance_grid.hpp"
 #include "systems/body_models/smooth_compliance_loads.hpp"
@@ -37,7 +40,8 @@ struct Problem {
   const std::vector<MotionFit>& fits;
   Elasticity elasticity;
   double bulk_modulus;
-  double longest_side;  // m
+  double longest_side;   // m
+  double shortest_side;  // m
 };
 
 /// Moves what clamped nodes do over to the loads on the free ones.
@@ -62,17 +66,35 @@ void add_held(const Problem& problem, const PortLoads& loads, Eigen::Ref<Eigen::
   }
 }
 
-/// Translation and rotation at a port for each column of nodal displacements.
-void add_motion(const MotionFit& fit, const NodeColumns& motion, Eigen::Ref<Eigen::MatrixXd> rows) {
+/// Translation and rotation at a port for each column of nodal displacements. The surface is free
+/// of shear there, so the tangential rotation is the slope of the normal displacement: only
+/// derivatives along the surface enter, which the elements know best. add_shear() puts right that
+/// it is the whole field, not its smooth part alone, whose shear is zero.
+void add_motion(const MotionFit& fit, const glm::dvec3& normal, const NodeColumns& motion,
+                Eigen::Ref<Eigen::MatrixXd> rows) {
+  const Eigen::Vector3d n(normal.x, normal.y, normal.z);
   for (std::size_t k = 0; k < fit.nodes.size(); ++k) {
-    const auto at = motion.middleRows<3>(rows_of(fit.nodes[k]));
+    const Eigen::MatrixXd at = motion.middleRows<3>(rows_of(fit.nodes[k]));
     const Eigen::Vector4d w = fit.weights.col(static_cast<Eigen::Index>(k));
+    const Eigen::Vector3d slope = w.tail<3>();
+    const Eigen::Vector3d tilt = slope.cross(n);        // of the normal displacement
+    const Eigen::Vector3d turn = 0.5 * n.cross(slope);  // about n: n . curl / 2
     rows.topRows<3>() += w[0] * at;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int i = (axis + 1) % 3;
-      const int j = (axis + 2) % 3;
-      rows.row(3 + axis) += 0.5 * (w[1 + i] * at.row(j) - w[1 + j] * at.row(i));
-    }
+    rows.bottomRows<3>() += tilt * (n.transpose() * at);
+    rows.bottomRows<3>() += n * (turn.transpose() * at);
+  }
+}
+
+/// Half the shear strain that the half-space's field of each unit wrench at `load` has at `port`,
+/// as a rotation.
+void add_shear(const Problem& problem, const Port& load, const Port& port,
+               Eigen::Ref<Eigen::MatrixXd> rows) {
+  for (int column = 0; column < 6; ++column) {
+    const glm::dvec3 traction =
+        half_space_stress(load, problem.elasticity, unit_wrench(column), port.position) *
+        port.normal;
+    const glm::dvec3 turn = -0.5 * glm::cross(port.normal, traction);  // shear modulus 1
+    rows.block<3, 1>(3, column) += Eigen::Vector3d(turn.x, turn.y, turn.z);
   }
 }
 
@@ -85,7 +107,7 @@ void solve_ports(const Problem& problem, std::size_t first, std::size_t count,
   NodeColumns motion(rows_of(nodes), width);
   for (std::size_t p = 0; p < count; ++p) {
     PortLoads loads = loads_of_port(problem.grid, problem.elasticity, problem.ports[first + p],
-                                    problem.longest_side);
+                                    problem.shortest_side);
     add_held(problem, loads, loads.forces);
     const Eigen::Index column = 6 * static_cast<Eigen::Index>(p);
     for (std::size_t node = 0; node < nodes; ++node) {
@@ -104,10 +126,16 @@ void solve_ports(const Problem& problem, std::size_t first, std::size_t count,
       motion.middleRows<3>(rows_of(node)) = columns.middleRows<3>(rows_of(at));
     }
   }
+  const Eigen::Index left = 6 * static_cast<Eigen::Index>(first);
   for (std::size_t i = 0; i < problem.fits.size(); ++i) {
-    add_motion(problem.fits[i], motion,
-               matrix.block(6 * static_cast<Eigen::Index>(i), 6 * static_cast<Eigen::Index>(first),
-                            6, width));
+    const Eigen::Index top = 6 * static_cast<Eigen::Index>(i);
+    add_motion(problem.fits[i], problem.ports[i].normal, motion, matrix.block(top, left, 6, width));
+    for (std::size_t p = 0; p < count; ++p) {
+      if (first + p != i) {
+        add_shear(problem, problem.ports[first + p], problem.ports[i],
+                  matrix.block(top, left + 6 * static_cast<Eigen::Index>(p), 6, 6));
+      }
+    }
   }
 }
 
@@ -195,7 +223,8 @@ Result<SmoothCompliance> build_smooth_compliance(const ElasticSolid& solid,
                         fits,
                         {2.0 * (1.0 + poisson_ratio), poisson_ratio, solid.elasticity.density},
                         bulk,
-                        std::max({extent.x, extent.y, extent.z})};
+                        std::max({extent.x, extent.y, extent.z}),
+                        std::min({extent.x, extent.y, extent.z})};
   SmoothCompliance compliance;
   compliance.matrix = solve_all(problem, options) / solid.elasticity.shear_modulus();
   compliance.relative_asymmetry = make_symmetric(0.5 * problem.longest_side, compliance.matrix);

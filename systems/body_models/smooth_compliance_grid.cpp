@@ -181,27 +181,76 @@ glm::dvec3 on_surface(const ElasticSolid& solid, const Lattice& lattice, const g
   return point;
 }
 
-/// Spreads the surface's shifts into the body by relaxation, so that no layer of cells takes all of
-/// them.
-void spread_shifts(const SolidGrid& grid, const std::vector<std::uint8_t>& sides,
-                   std::vector<glm::dvec3>& shifts) {
-  constexpr int kSweeps = 6;
-  std::vector<glm::dvec3> sum(shifts.size());
-  std::vector<double> count(shifts.size());
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    std::fill(sum.begin(), sum.end(), glm::dvec3(0.0));
-    std::fill(count.begin(), count.end(), 0.0);
-    for (const std::array<std::uint32_t, 8>& element : grid.elements) {
-      for (std::uint32_t c = 0; c < 8; ++c) {
-        for (std::uint32_t axis = 0; axis < 3; ++axis) {
-          sum[element[c]] += shifts[element[c ^ 1U << axis]];
-          count[element[c]] += 1.0;
+/// The mean of each node's neighbours along edges of elements, or of faces.
+template <std::size_t kCorners, class IsEdge>
+std::vector<glm::dvec3> means_of_neighbours(
+    const std::vector<glm::dvec3>& nodes,
+    const std::vector<std::array<std::uint32_t, kCorners>>& pieces, const IsEdge& is_edge) {
+  std::vector<glm::dvec3> mean(nodes.size(), glm::dvec3(0.0));
+  std::vector<double> count(nodes.size(), 0.0);
+  for (const std::array<std::uint32_t, kCorners>& piece : pieces) {
+    for (std::size_t i = 0; i < kCorners; ++i) {
+      for (std::size_t j = 0; j < kCorners; ++j) {
+        if (is_edge(i ^ j)) {
+          mean[piece[i]] += nodes[piece[j]];
+          count[piece[i]] += 1.0;
         }
       }
     }
-    for (std::size_t n = 0; n < shifts.size(); ++n) {
+  }
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    mean[n] = count[n] > 0.0 ? mean[n] / count[n] : nodes[n];
+  }
+  return mean;
+}
+
+/// Which surface nodes have a smooth surface around them, so that they may slide on it.
+std::vector<std::uint8_t> nodes_that_slide(const ElasticSolid& solid, const SolidGrid& grid) {
+  std::vector<glm::dvec3> normal(grid.nodes.size(), glm::dvec3(0.0));
+  std::vector<std::uint8_t> slides(grid.nodes.size(), 0);
+  for (const std::array<std::uint32_t, 4>& face : grid.faces) {
+    const glm::dvec3 center = 0.25 * (grid.nodes[face[0]] + grid.nodes[face[1]] +
+                                      grid.nodes[face[2]] + grid.nodes[face[3]]);
+    const glm::dvec3 here = solid.signed_distance(center).gradient;
+    for (const std::uint32_t node : face) {
+      if (normal[node] == glm::dvec3(0.0)) {
+        normal[node] = here;
+        slides[node] = 1;
+      } else if (glm::dot(normal[node], here) < 0.7) {
+        slides[node] = 0;
+        normal[node] = glm::dvec3(2.0);  // no direction: stays so
+      }
+    }
+  }
+  return slides;
+}
+
+/// Evens out the cells that the moved surface has squeezed: its nodes slide towards the middle of
+/// their neighbours and back onto it, those inside go to the middle of theirs. An even lattice
+/// stays as it is.
+void even_out(const ElasticSolid& solid, const std::vector<std::uint8_t>& sides, SolidGrid& grid) {
+  constexpr int kSweeps = 12;
+  const std::vector<std::uint8_t> slides = nodes_that_slide(solid, grid);
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    const std::vector<glm::dvec3> on_faces = means_of_neighbours(
+        grid.nodes, grid.faces, [](std::size_t apart) { return apart == 1 || apart == 3; });
+    for (std::size_t n = 0; n < grid.nodes.size(); ++n) {
+      if (slides[n] == 0) {
+        continue;
+      }
+      glm::dvec3 point = 0.5 * (grid.nodes[n] + on_faces[n]);
+      for (int i = 0; i < 2; ++i) {
+        const Distance distance = solid.signed_distance(point);
+        point -= distance.gradient * distance.value;
+      }
+      grid.nodes[n] = point;
+    }
+    const std::vector<glm::dvec3> inside = means_of_neighbours(
+        grid.nodes, grid.elements,
+        [](std::size_t apart) { return apart == 1 || apart == 2 || apart == 4; });
+    for (std::size_t n = 0; n < grid.nodes.size(); ++n) {
       if (sides[n] == 0) {
-        shifts[n] = sum[n] / count[n];
+        grid.nodes[n] = inside[n];
       }
     }
   }
@@ -209,7 +258,7 @@ void spread_shifts(const SolidGrid& grid, const std::vector<std::uint8_t>& sides
 
 bool is_sound(const SolidGrid& grid, std::size_t element) {
   constexpr double kGauss = 0.5773502691896258;
-  constexpr double kLeast = 0.1;  // of the undistorted cell
+  constexpr double kLeast = 0.02;  // of the undistorted cell
   const std::array<glm::dvec3, 8> corners = element_corners(grid, element);
   const double whole = 0.125 * grid.spacing.x * grid.spacing.y * grid.spacing.z;
   for (std::uint32_t c = 0; c < 8; ++c) {
@@ -222,40 +271,36 @@ bool is_sound(const SolidGrid& grid, std::size_t element) {
   return true;
 }
 
-/// Moves the surface's nodes onto the surface, less far where an element would be squashed.
+/// Moves the surface's nodes onto the surface; back towards the lattice where an element would be
+/// squashed.
 void fit_surface(const ElasticSolid& solid, const Lattice& lattice,
                  const std::vector<std::uint8_t>& sides, SolidGrid& grid) {
   const std::vector<glm::dvec3> start = grid.nodes;
-  std::vector<glm::dvec3> shifts(start.size(), glm::dvec3(0.0));
   for (std::size_t n = 0; n < start.size(); ++n) {
     if (sides[n] != 0) {
-      shifts[n] = on_surface(solid, lattice, start[n], grid.lattice[n], sides[n]) - start[n];
+      grid.nodes[n] = on_surface(solid, lattice, start[n], grid.lattice[n], sides[n]);
     }
   }
-  spread_shifts(grid, sides, shifts);
-  for (std::size_t n = 0; n < start.size(); ++n) {
-    grid.nodes[n] = start[n] + shifts[n];
-  }
+  even_out(solid, sides, grid);
   constexpr int kTries = 30;
   for (int i = 0; i < kTries; ++i) {
     std::vector<std::uint8_t> too_far(start.size(), 0);
+    bool all_sound = true;
     for (std::size_t element = 0; element < grid.elements.size(); ++element) {
       if (!is_sound(grid, element)) {
+        all_sound = false;
         for (const std::uint32_t node : grid.elements[element]) {
           too_far[node] = 1;
         }
       }
     }
-    bool all_sound = true;
-    for (std::size_t n = 0; n < start.size(); ++n) {
-      if (too_far[n] != 0) {
-        all_sound = false;
-        shifts[n] *= 0.8;
-        grid.nodes[n] = start[n] + shifts[n];
-      }
-    }
     if (all_sound) {
       return;
+    }
+    for (std::size_t n = 0; n < start.size(); ++n) {
+      if (too_far[n] != 0) {
+        grid.nodes[n] = start[n] + 0.8 * (grid.nodes[n] - start[n]);
+      }
     }
   }
   grid.nodes = start;  // out of reach of smooth surfaces: the lattice itself is always sound

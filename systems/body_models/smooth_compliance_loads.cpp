@@ -15,10 +15,12 @@ namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// Spread within which tractions count as part of the contact's own surroundings.
-constexpr double kNear = 0.1;  // of the longest side
+/// How near the surface counts as the contact's own surroundings. It must be wide enough for the
+/// elements to follow, and a large contact's size at most.
+constexpr double kNear = 0.15;           // of the shortest side
+constexpr double kNearInElements = 1.5;  // at least
 /// On surfaces across an edge, where tractions are bounded, only what no contact could fit into.
-constexpr double kNearAcrossEdge = 0.01;  // of the longest side
+constexpr double kNearAcrossEdge = 0.02;  // of the shortest side
 
 Eigen::Vector3d eigen(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
@@ -26,12 +28,6 @@ Eigen::Vector3d eigen(const glm::dvec3& v) {
 
 Eigen::Index row_of(std::uint32_t node) {
   return 3 * Eigen::Index{node};
-}
-
-Wrench unit_wrench(int column) {
-  Wrench wrench;
-  (column < 3 ? wrench.force : wrench.torque)[column % 3] = 1.0;
-  return wrench;
 }
 
 double smooth_step(double low, double high, double value) {
@@ -47,6 +43,12 @@ Eigen::Matrix<double, 6, 3> wrench_of_force(const glm::dvec3& point, const glm::
   wrench.bottomRows<3>() << 0.0, -arm.z, arm.y, arm.z, 0.0, -arm.x, -arm.y, arm.x, 0.0;
   return wrench;
 }
+
+/// The radii of these, m.
+struct Near {
+  double around;
+  double across_edge;
+};
 
 /// A point of a bilinear face.
 struct FacePoint {
@@ -76,7 +78,7 @@ struct LeftOut {
 
 /// Adds minus the tractions on one face to loads and to `left_out`, less what is near the port.
 void add_face(const SolidGrid& grid, const std::array<std::uint32_t, 4>& face,
-              const Elasticity& elasticity, const Port& port, double longest_side, PortLoads& loads,
+              const Elasticity& elasticity, const Port& port, const Near& near, PortLoads& loads,
               LeftOut& left_out) {
   std::array<glm::dvec3, 4> corners{};
   double height = 0.0;  // m, over the port's plane
@@ -88,8 +90,8 @@ void add_face(const SolidGrid& grid, const std::array<std::uint32_t, 4>& face,
       std::max(glm::distance(corners[0], corners[2]), glm::distance(corners[1], corners[3]));
   const double distance =
       glm::distance(0.25 * (corners[0] + corners[1] + corners[2] + corners[3]), port.position);
-  const bool in_plane = height < 1e-9 * longest_side;  // free of traction
-  if (in_plane && distance > 1.5 * kNear * longest_side + size) {
+  const bool in_plane = height < 1e-9 * near.around;  // free of traction
+  if (in_plane && distance > 1.5 * near.around + size) {
     return;
   }
   // Two points along each side of parts that are at most half as wide as they are far.
@@ -105,8 +107,8 @@ void add_face(const SolidGrid& grid, const std::array<std::uint32_t, 4>& face,
     const double reach = glm::distance(at.position, port.position);
     const double area = share * glm::length(at.normal);
     const bool around = glm::dot(at.normal, port.normal) > 0.7 * glm::length(at.normal);
-    const double near = longest_side * (around ? kNear : kNearAcrossEdge);
-    const double kept = smooth_step(0.5 * near, 1.5 * near, reach);
+    const double middle = around ? near.around : near.across_edge;
+    const double kept = smooth_step(0.5 * middle, 1.5 * middle, reach);
     if (around) {
       for (std::size_t c = 0; c < 4; ++c) {
         left_out.area[Eigen::Index{face[c]}] += (1.0 - kept) * area * at.weights[c];
@@ -157,13 +159,23 @@ void add_left_out(const SolidGrid& grid, const Port& port, LeftOut left_out, Por
 
 }  // namespace
 
+Wrench unit_wrench(int column) {
+  Wrench wrench;
+  (column < 3 ? wrench.force : wrench.torque)[column % 3] = 1.0;
+  return wrench;
+}
+
 PortLoads loads_of_port(const SolidGrid& grid, const Elasticity& elasticity, const Port& port,
-                        double longest_side) {
+                        double shortest_side) {
   const auto nodes = static_cast<Eigen::Index>(grid.nodes.size());
+  const Near near{
+      std::max(kNear * shortest_side,
+               kNearInElements * std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z})),
+      kNearAcrossEdge * shortest_side};
   PortLoads loads{WrenchColumns::Zero(3 * nodes, 6), WrenchColumns::Zero(3 * nodes, 6)};
   LeftOut left_out{Matrix6::Identity(), Eigen::VectorXd::Zero(nodes)};
   for (const std::array<std::uint32_t, 4>& face : grid.faces) {
-    add_face(grid, face, elasticity, port, longest_side, loads, left_out);
+    add_face(grid, face, elasticity, port, near, loads, left_out);
   }
   add_left_out(grid, port, std::move(left_out), loads);
   for (std::uint32_t node = 0; node < grid.nodes.size(); ++node) {
@@ -171,8 +183,8 @@ PortLoads loads_of_port(const SolidGrid& grid, const Elasticity& elasticity, con
       continue;
     }
     glm::dvec3 point = grid.nodes[node];
-    if (glm::distance(point, port.position) < kNearAcrossEdge * longest_side) {
-      point = port.position - port.normal * (kNearAcrossEdge * longest_side);
+    if (glm::distance(point, port.position) < near.across_edge) {
+      point = port.position - port.normal * near.across_edge;
     }
     for (int column = 0; column < 6; ++column) {
       loads.held.block<3, 1>(row_of(node), column) =

@@ -13,6 +13,10 @@ namespace torsion {
 /// about, the body's axes.
 using WrenchColumns = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
+/// A unit force along, or torque about, a body axis.
+/// @param column  of WrenchColumns
+Wrench unit_wrench(int column);
+
 /// What drives the smooth part of the displacement under unit wrenches at a port.
 struct PortLoads {
   WrenchColumns forces;  // N, at all nodes
@@ -20,11 +24,11 @@ struct PortLoads {
 };
 
 /// Loads for one port. Where the surface curves away from the port's plane, the half-space's
-/// tractions on it grow without bound towards the port: what is nearer than a tenth of the longest
-/// side is replaced by the smooth load with the same force and torque, as any contact spreads it.
+/// tractions on it grow without bound towards the port: what is near is replaced by the smooth load
+/// with the same force and torque, as any contact spreads it.
 /// @param elasticity  as for half_space_motion
 PortLoads loads_of_port(const SolidGrid& grid, const Elasticity& elasticity, const Port& port,
-                        double longest_side);
+                        double shortest_side);
 
 /// How the material at a point follows from the nodes around it: a quadratic is fitted to their
 /// displacements.

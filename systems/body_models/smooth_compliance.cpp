@@ -17,6 +17,8 @@
 namespace torsion {
 namespace {
 
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
 /// Of the shear modulus: keeps nu = 0.5 solvable. Volumes then change by a ten-thousandth of what
 /// shapes do.
 constexpr double kLargestBulkModulus = 1e4;
@@ -165,20 +167,46 @@ Eigen::MatrixXd solve_all(const Problem& problem, const SmoothComplianceOptions&
   return matrix;
 }
 
-/// Makes the matrix symmetric; returns how far it was from that.
-double make_symmetric(double length, Eigen::MatrixXd& matrix) {
-  Eigen::VectorXd scale(matrix.rows());
-  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
-    scale[row] = row % 6 < 3 ? 1.0 : length;
+/// Motion at `to` under unit wrenches at `from`, through from's half-space.
+Matrix6 half_space_response(const Port& to, const Port& from, const Elasticity& elasticity) {
+  Matrix6 response;
+  for (int column = 0; column < 6; ++column) {
+    const MaterialMotion motion =
+        half_space_motion(from, elasticity, unit_wrench(column), to.position);
+    for (int axis = 0; axis < 3; ++axis) {
+      response(axis, column) = motion.displacement[axis];
+      response(3 + axis, column) = motion.rotation[axis];
+    }
   }
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
-  const double norm = scaled.norm();
-  const double asymmetry = norm > 0.0 ? (scaled - scaled.transpose()).norm() / norm : 0.0;
-  matrix = (0.5 * (matrix + matrix.transpose())).eval();
-  return asymmetry;
+  return response;
+}
+
+/// How far the whole compliance between the ports, half-spaces included, is from symmetric.
+double asymmetry_of(const Problem& problem, const Eigen::MatrixXd& smooth) {
+  Eigen::MatrixXd whole = smooth;
+  for (std::size_t i = 0; i < problem.ports.size(); ++i) {
+    for (std::size_t j = 0; j < problem.ports.size(); ++j) {
+      if (i != j) {
+        whole.block<6, 6>(6 * static_cast<Eigen::Index>(i), 6 * static_cast<Eigen::Index>(j)) +=
+            half_space_response(problem.ports[i], problem.ports[j], problem.elasticity);
+      }
+    }
+  }
+  Eigen::VectorXd scale(whole.rows());
+  for (Eigen::Index row = 0; row < whole.rows(); ++row) {
+    scale[row] = row % 6 < 3 ? 1.0 : 0.5 * problem.longest_side;
+  }
+  whole = (scale.asDiagonal() * whole * scale.asDiagonal()).eval();
+  const double norm = whole.norm();
+  return norm > 0.0 ? (whole - whole.transpose()).norm() / norm : 0.0;
 }
 
 }  // namespace
+
+Matrix6 half_space_coupling(const Port& to, const Port& from, const Elasticity& elasticity) {
+  return 0.5 * (half_space_response(to, from, elasticity) +
+                half_space_response(from, to, elasticity).transpose());
+}
 
 Result<SmoothCompliance> build_smooth_compliance(const ElasticSolid& solid,
                                                  std::span<const Port> ports,
@@ -225,9 +253,10 @@ Result<SmoothCompliance> build_smooth_compliance(const ElasticSolid& solid,
                         bulk,
                         std::max({extent.x, extent.y, extent.z}),
                         std::min({extent.x, extent.y, extent.z})};
+  const Eigen::MatrixXd smooth = solve_all(problem, options);
   SmoothCompliance compliance;
-  compliance.matrix = solve_all(problem, options) / solid.elasticity.shear_modulus();
-  compliance.relative_asymmetry = make_symmetric(0.5 * problem.longest_side, compliance.matrix);
+  compliance.relative_asymmetry = asymmetry_of(problem, smooth);
+  compliance.matrix = 0.5 / solid.elasticity.shear_modulus() * (smooth + smooth.transpose());
   return compliance;
 }
 

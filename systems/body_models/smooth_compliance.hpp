@@ -29,16 +29,25 @@ struct SmoothComplianceOptions {
   std::function<void(double)> progress;  // called with 0 to 1 as it goes on, if set
 };
 
-/// How wrenches at ports move the material at ports, beyond what each wrench does to the half-space
-/// at its own port: the part of a body's compliance that comes from its finite size, its clamp and
-/// its shape.
+/// How wrenches at ports move the material at ports, beyond what half-spaces do: the part of a
+/// body's compliance that comes from its finite size, its clamp and its shape. The motion at port i
+/// under a wrench at port j is their block of `matrix` plus half_space_coupling(i, j), for i = j
+/// plus what the contact itself does to the half-space at the port.
 struct SmoothCompliance {
   Eigen::MatrixXd matrix;           // 6M x 6M, body axes, SI, symmetric: rows translation (m) and
                                     // rotation (rad) of port i; columns force (N) and torque (N m)
                                     // about port j
-  double relative_asymmetry = 0.0;  // before it was made symmetric: |S - S'| / |S|, Frobenius
+  double relative_asymmetry = 0.0;  // of the compliance between ports, half-spaces included,
+                                    // before it was made symmetric: |C - C'| / |C|, Frobenius
                                     // norms, rotations times half the longest side
 };
+
+/// Motion (translation, rotation) of the material at `to` under a wrench (force, torque) at `from`
+/// as far as half-spaces have it: the mean of the field of from's half-space at `to` and, by
+/// reciprocity, of to's at `from`. The two are the same on one plane, and for forces at nu = 0.5.
+/// @param to, from  not at one place
+Eigen::Matrix<double, 6, 6> half_space_coupling(const Port& to, const Port& from,
+                                                const Elasticity& elasticity);
 
 /// Solves for the smooth compliance by finite elements. For each unit wrench at a port the
 /// displacement is split into the half-space's closed form and a rest that is smooth near the port;

@@ -11,7 +11,7 @@
 namespace torsion {
 namespace {
 
-constexpr std::uint32_t kFewestCells = 6;  // along any side: a bend needs some
+constexpr std::uint32_t kFewestCells = 8;  // along any side: a bend needs some
 
 /// Cells and nodes of a lattice over the bounds, x fastest.
 struct Lattice {

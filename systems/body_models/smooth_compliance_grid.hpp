@@ -21,7 +21,7 @@ struct SolidGrid {
 };
 
 /// Cells of a lattice fitted to the solid's bounds whose centres are inside, as far as they hang
-/// together by faces (the largest such piece). At least six cells along each side.
+/// together by faces (the largest such piece). At least eight cells along each side.
 /// @param elements  along the longest side
 /// @return an Error as build_smooth_compliance has it
 Result<SolidGrid> build_solid_grid(const ElasticSolid& solid, std::uint32_t elements);

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/reference/exact/masing.hpp"
-#include "tests/reference/exact/quadrature.hpp"
+#include "tests/systems/fixed_springs.hpp"
 #include "tests/systems/mdr_springs.hpp"
 
 namespace torsion {
@@ -140,43 +140,6 @@ TEST(MdrLayersTest, FlatPunchSlidesAllAtOnce) {
   }
 }
 
-/// Springs of the half-space at fixed places, whose limits follow the depth: the method of
-/// dimensionality reduction without resampling. Exact for constant force and for force that only
-/// grows (what is new starts without deflection); for force that shrinks it is the model itself.
-struct FixedSprings {
-  static constexpr std::size_t kCount = 600;
-  reference::Quadrature rule;
-  std::vector<double> turns = std::vector<double>(kCount, 0.0);
-  std::vector<double> slides = std::vector<double>(kCount, 0.0);
-  double torque = 0.0;
-  double force = 0.0;
-
-  explicit FixedSprings(double largest_radius)
-      : rule(reference::gauss_legendre(kCount, 0.0, largest_radius)) {}
-
-  void move(const MdrSprings& at, double slide, double turn) {
-    torque = 0.0;
-    force = 0.0;
-    const reference::LubkinContact twisted = at.lubkin();
-    const reference::CattaneoMindlin pushed = at.mindlin();
-    const double a = at.contact.radius;
-    for (std::size_t i = 0; i < kCount; ++i) {
-      const double x = rule.nodes[i];
-      const bool touches = x < a;
-      const double turn_limit = touches ? reference::slip_twist(twisted, x) : 0.0;
-      // mu times the line load 3 F / (4 a) (1 - x^2 / a^2) over Gt.
-      const double slide_limit =
-          touches
-              ? 0.75 * at.limit_force() / (a * pushed.tangential_modulus) * (1.0 - x * x / a / a)
-              : 0.0;
-      turns[i] = std::clamp(turns[i] + turn, -turn_limit, turn_limit);
-      slides[i] = std::clamp(slides[i] + slide, -slide_limit, slide_limit);
-      torque += 16.0 * twisted.shear_modulus * rule.weights[i] * x * x * turns[i];
-      force += 2.0 * pushed.tangential_modulus * rule.weights[i] * slides[i];
-    }
-  }
-};
-
 struct Leg {
   double depth = 0.0;  // of test::kDepth
   double turn = 0.0;   // in natural turns at kDepth
@@ -197,7 +160,7 @@ Worst follow_legs(std::span<const Leg> legs, int steps) {
     largest = std::max(largest, leg.depth);
   }
   const MdrSprings deepest(0.5, largest * test::kDepth);
-  FixedSprings exact(deepest.contact.radius);
+  test::FixedSprings exact(deepest.contact.radius);
   Worst worst;
   Leg at = legs.front();
   for (const Leg& leg : legs) {
@@ -212,7 +175,7 @@ Worst follow_legs(std::span<const Leg> legs, int steps) {
         springs.press(next.depth * test::kDepth);
       }
       springs.move({slide, 0.0}, turn);
-      exact.move(springs, slide, turn);
+      exact.move(springs.lubkin(), springs.mindlin(), slide, turn);
       at = next;
       worst.couple = std::max(
           worst.couple, std::abs(springs.last.couple + exact.torque) / deepest.limit_couple());

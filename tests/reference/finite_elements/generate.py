@@ -24,7 +24,7 @@ def write(path, header, rows):
 
 
 def generate(name, case, divisions):
-    start = time.time()
+    start, used = time.time(), time.process_time()
     print(f"{name}, {divisions} elements to a contact radius", flush=True)
     rows, twist = cases.run(case, divisions, lambda line: print("  " + line, flush=True))
     stem = f"{name}_{divisions}"
@@ -32,7 +32,8 @@ def generate(name, case, divisions):
           "step,depth_m,phi_rad,force_N,torque_Nm,contact_radius_m", rows)
     write(RESULTS / f"{stem}_field.csv", "r_m,twist_rad", twist)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2 ** 20
-    print(f"  {time.time() - start:.0f} s, at most {memory:.2f} GB so far", flush=True)
+    print(f"  {time.process_time() - used:.0f} s of the processor in {time.time() - start:.0f} s, "
+          f"at most {memory:.2f} GB so far", flush=True)
 
 
 def main():

@@ -44,15 +44,10 @@ Modes stress_modes(const glm::dmat3& axes, const glm::dvec3& local) {
 }
 
 Strains strains_of_corners(const glm::dmat3& jacobian, const glm::dvec3& local) {
-  const glm::dmat3 to_local = glm::inverse(jacobian);
+  const std::array<glm::dvec3, 8> slopes = corner_slopes(jacobian, local);
   Strains strains = Strains::Zero();
   for (std::uint32_t c = 0; c < 8; ++c) {
-    const glm::dvec3 sign(c & 1U ? 1.0 : -1.0, c & 2U ? 1.0 : -1.0, c & 4U ? 1.0 : -1.0);
-    const glm::dvec3 part = glm::dvec3(1.0) + sign * local;
-    const glm::dvec3 slope =
-        0.125 *
-        glm::dvec3(sign.x * part.y * part.z, sign.y * part.z * part.x, sign.z * part.x * part.y) *
-        to_local;
+    const glm::dvec3& slope = slopes[c];
     const Eigen::Index first = 3 * Eigen::Index{c};
     strains(0, first) = slope.x;
     strains(1, first + 1) = slope.y;

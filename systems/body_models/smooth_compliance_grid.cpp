@@ -97,10 +97,6 @@ std::vector<std::uint8_t> largest_piece(const ElasticSolid& solid, const Lattice
   return inside;
 }
 
-/// Corners of a cell's sides as corner numbers, counter-clockwise from outside.
-constexpr std::array<std::array<std::uint32_t, 4>, 6> kSideCorners{
-    {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
-
 /// The grid before its surface is moved; `sides` collects which way each node's faces look (bit k
 /// for side k).
 SolidGrid grid_of_cells(const Lattice& lattice, const std::vector<std::uint8_t>& inside,
@@ -134,7 +130,7 @@ SolidGrid grid_of_cells(const Lattice& lattice, const std::vector<std::uint8_t>&
       }
       std::array<std::uint32_t, 4> face{};
       for (std::size_t k = 0; k < 4; ++k) {
-        face[k] = corners[kSideCorners[side][k]];
+        face[k] = corners[kElementSides[side][k]];
         sides[face[k]] = static_cast<std::uint8_t>(sides[face[k]] | 1U << side);
       }
       grid.faces.push_back(face);
@@ -338,6 +334,20 @@ glm::dmat3 element_jacobian(const std::array<glm::dvec3, 8>& corners, const glm:
     jacobian[2] += corners[c] * (0.125 * sign.z * part.x * part.y);
   }
   return jacobian;
+}
+
+std::array<glm::dvec3, 8> corner_slopes(const glm::dmat3& jacobian, const glm::dvec3& local) {
+  const glm::dmat3 to_local = glm::inverse(jacobian);
+  std::array<glm::dvec3, 8> slopes{};
+  for (std::uint32_t c = 0; c < 8; ++c) {
+    const glm::dvec3 sign(c & 1U ? 1.0 : -1.0, c & 2U ? 1.0 : -1.0, c & 4U ? 1.0 : -1.0);
+    const glm::dvec3 part = glm::dvec3(1.0) + sign * local;
+    slopes[c] =
+        0.125 *
+        glm::dvec3(sign.x * part.y * part.z, sign.y * part.z * part.x, sign.z * part.x * part.y) *
+        to_local;
+  }
+  return slopes;
 }
 
 std::array<glm::dvec3, 8> element_corners(const SolidGrid& grid, std::size_t element) {

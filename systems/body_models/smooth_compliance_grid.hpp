@@ -29,6 +29,13 @@ Result<SolidGrid> build_solid_grid(const ElasticSolid& solid, std::uint32_t elem
 /// Derivatives of the position by the element's own coordinates, columns, at `local` in [-1, 1]^3.
 glm::dmat3 element_jacobian(const std::array<glm::dvec3, 8>& corners, const glm::dvec3& local);
 
+/// Derivatives of the corners' weights by the position, 1/m, where the jacobian is `jacobian`.
+std::array<glm::dvec3, 8> corner_slopes(const glm::dmat3& jacobian, const glm::dvec3& local);
+
+/// Corners of an element's sides (-x, +x, -y, ...), counter-clockwise from outside.
+inline constexpr std::array<std::array<std::uint32_t, 4>, 6> kElementSides{
+    {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+
 /// The corners of element `element`.
 std::array<glm::dvec3, 8> element_corners(const SolidGrid& grid, std::size_t element);
 

@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/QR>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 namespace torsion {
 namespace {
@@ -130,6 +132,68 @@ void add_face(const SolidGrid& grid, const std::array<std::uint32_t, 4>& face,
   }
 }
 
+/// Stress that goes with the displacement of a field that need not be in equilibrium, nu < 0.5.
+glm::dmat3 stress_of_motion(const Port& port, const Elasticity& elasticity, const Wrench& wrench,
+                            const glm::dvec3& point) {
+  const double step = 2e-4 * glm::distance(point, port.position);
+  glm::dmat3 gradient(0.0);
+  for (int c = 0; c < 3; ++c) {
+    glm::dvec3 shift(0.0);
+    shift[c] = step;
+    gradient[c] = (half_space_motion(port, elasticity, wrench, point + shift).displacement -
+                   half_space_motion(port, elasticity, wrench, point - shift).displacement) /
+                  (2.0 * step);
+  }
+  const double shear = elasticity.shear_modulus();
+  const double spread = 2.0 * shear * elasticity.poisson_ratio /
+                        (1.0 - 2.0 * elasticity.poisson_ratio) *
+                        (gradient[0][0] + gradient[1][1] + gradient[2][2]);
+  return shear * (gradient + glm::transpose(gradient)) + glm::dmat3(spread);
+}
+
+/// Where a concave body reaches high over the port's plane, and nu < 0.5, the half-space's formulas
+/// are held finite and are no solution: their tractions on the surface do not say what they lack.
+/// Elements there get minus the formulas' own stresses instead, and their faces' tractions back.
+void add_overhang(const SolidGrid& grid, const std::array<std::uint32_t, 8>& element,
+                  const std::array<glm::dvec3, 8>& corners, const Elasticity& elasticity,
+                  const Port& port, const Near& near, PortLoads& loads, LeftOut& left_out) {
+  for (const std::array<std::uint32_t, 4>& side : kElementSides) {
+    // the other way round: what two such elements share cancels
+    add_face(grid, {element[side[3]], element[side[2]], element[side[1]], element[side[0]]},
+             elasticity, port, near, loads, left_out);
+  }
+  constexpr double kGauss = 0.5773502691896258;
+  for (std::uint32_t k = 0; k < 8; ++k) {
+    const glm::dvec3 local(k & 1U ? kGauss : -kGauss, k & 2U ? kGauss : -kGauss,
+                           k & 4U ? kGauss : -kGauss);
+    glm::dvec3 point(0.0);
+    for (std::uint32_t c = 0; c < 8; ++c) {
+      const glm::dvec3 sign(c & 1U ? 1.0 : -1.0, c & 2U ? 1.0 : -1.0, c & 4U ? 1.0 : -1.0);
+      const glm::dvec3 part = 0.5 * (glm::dvec3(1.0) + sign * local);
+      point += corners[c] * (part.x * part.y * part.z);
+    }
+    const glm::dmat3 jacobian = element_jacobian(corners, local);
+    const double volume = glm::determinant(jacobian);
+    const std::array<glm::dvec3, 8> slopes = corner_slopes(jacobian, local);
+    for (int column = 0; column < 6; ++column) {
+      const glm::dmat3 stress =
+          stress_of_motion(port, elasticity, unit_wrench(column), point) * volume;
+      for (std::size_t c = 0; c < 8; ++c) {
+        loads.forces.block<3, 1>(row_of(element[c]), column) -= eigen(stress * slopes[c]);
+      }
+    }
+  }
+}
+
+/// Whether a corner is so steeply over the port that half_space_motion is no solution near it.
+bool overhangs(const std::array<glm::dvec3, 8>& corners, const Port& port, const Near& near) {
+  return std::any_of(corners.begin(), corners.end(), [&](const glm::dvec3& corner) {
+    const glm::dvec3 offset = corner - port.position;
+    const double distance = glm::length(offset);
+    return distance > near.around && glm::dot(offset, port.normal) > 0.7 * distance;
+  });
+}
+
 /// Puts the missing wrenches on the nodes around the port: forces in proportion to the area left
 /// out and linear in the position, which is what any force and torque can be made of.
 void add_left_out(const SolidGrid& grid, const Port& port, LeftOut left_out, PortLoads& loads) {
@@ -176,6 +240,14 @@ PortLoads loads_of_port(const SolidGrid& grid, const Elasticity& elasticity, con
   LeftOut left_out{Matrix6::Identity(), Eigen::VectorXd::Zero(nodes)};
   for (const std::array<std::uint32_t, 4>& face : grid.faces) {
     add_face(grid, face, elasticity, port, near, loads, left_out);
+  }
+  if (elasticity.poisson_ratio < 0.5) {
+    for (std::size_t e = 0; e < grid.elements.size(); ++e) {
+      const std::array<glm::dvec3, 8> corners = element_corners(grid, e);
+      if (overhangs(corners, port, near)) {
+        add_overhang(grid, grid.elements[e], corners, elasticity, port, near, loads, left_out);
+      }
+    }
   }
   add_left_out(grid, port, std::move(left_out), loads);
   for (std::uint32_t node = 0; node < grid.nodes.size(); ++node) {

@@ -207,14 +207,35 @@ TEST(SmoothComplianceTest, MovedTurnedAndScaledScenesGiveTheSame) {
 }
 
 TEST(SmoothComplianceTest, ConvergesWithElements) {
-  // Against 32 elements, 16 must be nearer than 8, at least at first order.
+  // Against 24 elements; the least across any side are 8, so this starts there.
   const ElasticSolid solid = round_bar(0.5, 1.0, 0.3);
   const std::vector<Port> ports{top_port(1.0), {{0.5, 0.0, 0.6}, {1.0, 0.0, 0.0}}};
-  const Eigen::MatrixXd fine = build(solid, ports, 32).matrix;
+  const Eigen::MatrixXd fine = build(solid, ports, 24).matrix;
   const double coarse_error = (build(solid, ports, 8).matrix - fine).norm() / fine.norm();
-  const double error = (build(solid, ports, 16).matrix - fine).norm() / fine.norm();
-  EXPECT_LT(error, 0.5 * coarse_error);
-  EXPECT_LT(error, 0.05);
+  const double error = (build(solid, ports, 14).matrix - fine).norm() / fine.norm();
+  EXPECT_LT(error, 0.6 * coarse_error);
+  EXPECT_LT(error, 0.08);
+}
+
+TEST(SmoothComplianceTest, ConcaveBodiesAreReciprocalToo) {
+  // A block with a slot: its walls look at each other, where a port's half-space formulas reach far
+  // over its plane. At nu = 0.5 these are exact there, below that they are made up for:
+  // otherwise the asymmetry is 1.
+  const ElasticSolid block = block_solid({1.0, 0.6, 1.0}, 0.5);
+  const ElasticSolid slot = block_solid({0.4, 2.0, 2.0}, 0.5);
+  for (const double poisson_ratio : {0.0, 0.3, 0.5}) {
+    ElasticSolid solid = block;
+    solid.elasticity.poisson_ratio = poisson_ratio;
+    solid.signed_distance = [&](const glm::dvec3& p) {
+      const Distance outer = block.signed_distance(p);
+      const Distance inner = slot.signed_distance(p - glm::dvec3(0.0, 0.0, 0.4));
+      return outer.value > -inner.value ? outer : Distance{-inner.value, -inner.gradient};
+    };
+    const std::vector<Port> ports{{{-0.2, 0.0, 0.75}, {1.0, 0.0, 0.0}},
+                                  {{0.2, 0.05, 0.7}, {-1.0, 0.0, 0.0}},
+                                  {{0.5, 0.0, 0.6}, {1.0, 0.0, 0.0}}};
+    EXPECT_LT(build(solid, ports, 20).relative_asymmetry, 0.04) << poisson_ratio;
+  }
 }
 
 TEST(SmoothComplianceTest, ThreadsGiveTheSameBits) {

@@ -71,7 +71,7 @@ double least_work(PressedBall& ball, double breathing, double size) {
   double least = 1.0;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  for (int path = 0; path < 8; ++path) {
+  for (int path = 0; path < 5; ++path) {
     ball.press(-1e-5, 1);  // lifts off: springs at rest
     ball.press(kBallDepth, 100);
     ball.press(kBallDepth, 20);
@@ -85,7 +85,7 @@ double least_work(PressedBall& ball, double breathing, double size) {
       const double turn = home ? -turned : 0.03 * size * uniform(random);
       const double depth = home ? kBallDepth : kBallDepth * (1.0 + breathing * uniform(random));
       const double from = ball.depth();
-      constexpr int kSteps = 40;
+      constexpr int kSteps = 25;
       for (int step = 1; step <= kSteps; ++step) {
         work.step(ball, std::lerp(from, depth, static_cast<double>(step) / kSteps),
                   way / static_cast<double>(kSteps), turn / kSteps);

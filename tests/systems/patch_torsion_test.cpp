@@ -92,15 +92,15 @@ TEST_P(PatchTorsionTest, NormalForceIsHertzsOnceSettled) {
 INSTANTIATE_TEST_SUITE_P(Resolutions, PatchTorsionTest, testing::Values(kCoarse, kFine, kFinest));
 
 TEST(PatchConvergenceTest, TorqueConvergesWithTheCells) {
-  // Forty sweeps solve every step. Means over three depths, for where the staircase of the rim
-  // happens to lie is luck.
+  // Twelve sweeps lag no more than the cells miss. Means over three depths, for where the staircase
+  // of the rim happens to lie is luck.
   std::vector<double> errors;
   for (const std::uint32_t side : {8U, 16U, 32U}) {
     double sum = 0.0;
     for (const double depth : {1.0, 1.3, 1.7}) {
       BallScene scene;
       scene.side = side;
-      scene.sweeps = 40;
+      scene.sweeps = 12;
       PressedBall ball(scene);
       ball.press(depth * kBallDepth, 300);
       sum += twist_and_back(ball).unloading / 3.0;

@@ -1,6 +1,5 @@
 #include "systems/body_models/half_space_fields.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -17,7 +16,8 @@ struct Seen {
   glm::dvec3 along;          // m, position in the plane, from the load
   double z;                  // m
   double distance;           // m, R
-  double sum;                // m, R + z, held above R/5
+  double sum;                // m, R + z; where that is below 2R/5 bent to stay above R/5
+  bool held;                 // whether it is
   double normal_force;       // N, along z
   glm::dvec3 tangent_force;  // N
   double twist;              // N m, about z
@@ -31,7 +31,9 @@ Seen seen_from(const Port& load, const Wrench& wrench, const glm::dvec3& point) 
   seen.z = glm::dot(offset, seen.inward);
   seen.along = offset - seen.z * seen.inward;
   seen.distance = glm::length(offset);
-  seen.sum = std::max(seen.distance + seen.z, 0.2 * seen.distance);
+  const double share = (seen.distance + seen.z) / seen.distance;
+  seen.held = share < 0.4;
+  seen.sum = seen.distance * (seen.held ? 0.2 + share * share / 0.8 : share);
   seen.normal_force = glm::dot(wrench.force, seen.inward);
   seen.tangent_force = wrench.force - seen.normal_force * seen.inward;
   seen.twist = glm::dot(wrench.torque, seen.inward);
@@ -93,6 +95,23 @@ double scaled_trace(const Seen& seen) {
          3.0 * glm::dot(seen.arm, seen.along) * seen.z * r3 * r1 * r1;
 }
 
+/// Gradient of scaled_displacement by central differences, column c the derivative along axis c.
+/// Truncation grows with the step's square, rounding falls with the step: 2e-4 R leaves 1e-6 and
+/// 1e-12 of the gradient.
+glm::dmat3 scaled_gradient(const Port& load, const Wrench& wrench, const glm::dvec3& point,
+                           double k) {
+  const double step = 2e-4 * glm::distance(point, load.position);
+  glm::dmat3 gradient(0.0);
+  for (int c = 0; c < 3; ++c) {
+    glm::dvec3 shift(0.0);
+    shift[c] = step;
+    gradient[c] = (scaled_displacement(seen_from(load, wrench, point + shift), k) -
+                   scaled_displacement(seen_from(load, wrench, point - shift), k)) /
+                  (2.0 * step);
+  }
+  return gradient;
+}
+
 }  // namespace
 
 MaterialMotion half_space_motion(const Port& load, const Elasticity& elasticity,
@@ -100,7 +119,14 @@ MaterialMotion half_space_motion(const Port& load, const Elasticity& elasticity,
   const Seen seen = seen_from(load, wrench, point);
   const double scale = 1.0 / (4.0 * kPi * elasticity.shear_modulus());
   const double k = 1.0 - 2.0 * elasticity.poisson_ratio;
-  return {scale * scaled_displacement(seen, k), scale * scaled_rotation(seen, k)};
+  glm::dvec3 rotation(0.0);
+  if (seen.held && k != 0.0) {  // the closed form is not the curl there
+    const glm::dmat3 g = scaled_gradient(load, wrench, point, k);
+    rotation = 0.5 * glm::dvec3(g[1][2] - g[2][1], g[2][0] - g[0][2], g[0][1] - g[1][0]);
+  } else {
+    rotation = scaled_rotation(seen, k);
+  }
+  return {scale * scaled_displacement(seen, k), scale * rotation};
 }
 
 double half_space_mean_stress(const Port& load, const Elasticity& elasticity, const Wrench& wrench,
@@ -111,18 +137,8 @@ double half_space_mean_stress(const Port& load, const Elasticity& elasticity, co
 
 glm::dmat3 half_space_stress(const Port& load, const Elasticity& elasticity, const Wrench& wrench,
                              const glm::dvec3& point) {
-  // Truncation grows with the step's square, rounding falls with the step: 2e-4 R leaves 1e-6 and
-  // 1e-12 of the stress.
-  const double step = 2e-4 * glm::distance(point, load.position);
   const double k = 1.0 - 2.0 * elasticity.poisson_ratio;
-  glm::dmat3 gradient(0.0);  // column c: derivative along axis c, times 4 pi G
-  for (int c = 0; c < 3; ++c) {
-    glm::dvec3 shift(0.0);
-    shift[c] = step;
-    gradient[c] = (scaled_displacement(seen_from(load, wrench, point + shift), k) -
-                   scaled_displacement(seen_from(load, wrench, point - shift), k)) /
-                  (2.0 * step);
-  }
+  const glm::dmat3 gradient = scaled_gradient(load, wrench, point, k);
   glm::dmat3 stress = (gradient + glm::transpose(gradient)) * (1.0 / (4.0 * kPi));
   const double excess = half_space_mean_stress(load, elasticity, wrench, point) -
                         (stress[0][0] + stress[1][1] + stress[2][2]) / 3.0;

@@ -25,8 +25,8 @@ struct MaterialMotion {
 /// normal forces. Tends to infinity towards load.position, where it must not be asked for.
 ///
 /// A point above the plane (a concave body has some) gets the same formulas continued; the lines
-/// R + z in them, which would vanish straight above the load, are held at R/5: there, and only for
-/// nu < 0.5, the field is continuous but no solution any more.
+/// R + z in them, which would vanish straight above the load, are bent from 2R/5 on so as to stay
+/// above R/5: there, and only for nu < 0.5, the field is smooth but no solution any more.
 /// @param load     where the wrench acts
 /// @param wrench   on the material: force (N) and torque about load.position (N m), body axes
 /// @param point    m, body, not load.position

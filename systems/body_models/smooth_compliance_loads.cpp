@@ -100,7 +100,8 @@ void add_face(const SolidGrid& grid, const std::array<std::uint32_t, 4>& face,
   const int parts = static_cast<int>(std::clamp(std::ceil(2.0 * size / distance), 1.0, 8.0));
   const auto coordinate = [&](int k) {
     constexpr double kGauss = 0.2113248654051871;
-    return (k / 2 + (k % 2 == 0 ? kGauss : 1.0 - kGauss)) / parts;
+    const int part = k / 2;
+    return (part + (k % 2 == 0 ? kGauss : 1.0 - kGauss)) / parts;
   };
   const double share = 0.25 / (parts * parts);
   for (int k = 0; k < 4 * parts * parts; ++k) {
@@ -190,7 +191,7 @@ bool overhangs(const std::array<glm::dvec3, 8>& corners, const Port& port, const
   return std::any_of(corners.begin(), corners.end(), [&](const glm::dvec3& corner) {
     const glm::dvec3 offset = corner - port.position;
     const double distance = glm::length(offset);
-    return distance > near.around && glm::dot(offset, port.normal) > 0.7 * distance;
+    return distance > near.around && glm::dot(offset, port.normal) > 0.5 * distance;
   });
 }
 

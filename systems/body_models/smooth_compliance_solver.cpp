@@ -206,14 +206,15 @@ void solve_stiffness(const StiffnessFactor& factor, NodeColumns& columns) {
       columns.middleRows<3>(rows_of(front.boundary[k])) -= outer.middleRows<3>(rows_of(k));
     }
   }
-  for (auto front = factor.fronts.rbegin(); front != factor.fronts.rend(); ++front) {
-    auto own = columns.middleRows(rows_of(front->first), rows_of(front->count));
-    outer.resize(rows_of(front->boundary.size()), columns.cols());
-    for (std::size_t k = 0; k < front->boundary.size(); ++k) {
-      outer.middleRows<3>(rows_of(k)) = columns.middleRows<3>(rows_of(front->boundary[k]));
+  for (std::size_t f = factor.fronts.size(); f-- > 0;) {
+    const StiffnessFront& front = factor.fronts[f];
+    auto own = columns.middleRows(rows_of(front.first), rows_of(front.count));
+    outer.resize(rows_of(front.boundary.size()), columns.cols());
+    for (std::size_t k = 0; k < front.boundary.size(); ++k) {
+      outer.middleRows<3>(rows_of(k)) = columns.middleRows<3>(rows_of(front.boundary[k]));
     }
-    own.noalias() -= front->below.transpose() * outer;
-    front->diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+    own.noalias() -= front.below.transpose() * outer;
+    front.diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace(own);
   }
 }
 

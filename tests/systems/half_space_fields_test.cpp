@@ -158,6 +158,28 @@ TEST(HalfSpaceFieldsTest, FarFromADiscItsExactFieldsAreMet) {
   EXPECT_NEAR(glm::dot(moved, glm::cross(kLoad.normal, point - kLoad.position)) / exact, 1.0, 1e-3);
 }
 
+TEST(HalfSpaceFieldsTest, RotationIsHalfTheCurlAbovePlaneTooAndStaysContinuous) {
+  // -0.6 is where R + z begins to be bent away from zero; there both sides must agree to the
+  // distance of 1e-5 between them.
+  const Elasticity elasticity = with_ratio(0.1);
+  for (int row = 0; row < 6; ++row) {
+    const Wrench wrench = unit_wrench(row);
+    for (const double share : {-0.3, -0.59, -0.7, -0.95}) {
+      const glm::dvec3 point = point_below(0.7, share, 1.0 + row);
+      const glm::dmat3 g = gradient_of_displacement(elasticity, wrench, point, 7e-5);
+      const glm::dvec3 curl(g[1][2] - g[2][1], g[2][0] - g[0][2], g[0][1] - g[1][0]);
+      const glm::dvec3 rotation = half_space_motion(kLoad, elasticity, wrench, point).rotation;
+      EXPECT_NEAR(glm::length(0.5 * curl - rotation), 0.0, 1e-5) << row << ' ' << share;
+    }
+    const MaterialMotion before =
+        half_space_motion(kLoad, elasticity, wrench, point_below(0.7, -0.599995, 1.0));
+    const MaterialMotion behind =
+        half_space_motion(kLoad, elasticity, wrench, point_below(0.7, -0.600005, 1.0));
+    EXPECT_LT(glm::length(before.displacement - behind.displacement), 1e-4) << row;
+    EXPECT_LT(glm::length(before.rotation - behind.rotation), 1e-4) << row;
+  }
+}
+
 TEST(HalfSpaceFieldsTest, AbovePlaneTheFieldGoesOnWithoutJumpOrPole) {
   const Elasticity elasticity = with_ratio(0.2);
   const glm::dvec3 above = kLoad.position + 0.5 * kLoad.normal;

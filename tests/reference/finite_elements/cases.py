@@ -146,6 +146,10 @@ def all_cases():
         "mallet_on_ellipsoid": mallet_on_ellipsoid(),
         "compass_on_ellipsoid": compass_on_ellipsoid(),
         "large_strain": DeepCase(),
+        # What linear elasticity makes of the same.
+        "large_strain_linear": ball_on_block(DeepCase.ball, DeepCase.depth, DeepCase.width,
+                                             DeepCase.width, poisson_ratio=DeepCase.poisson_ratio,
+                                             phi_max=DeepCase.phi_max),
     }
 
 

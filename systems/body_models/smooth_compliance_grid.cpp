@@ -202,19 +202,21 @@ std::vector<glm::dvec3> means_of_neighbours(
 
 /// Which surface nodes have a smooth surface around them, so that they may slide on it.
 std::vector<std::uint8_t> nodes_that_slide(const ElasticSolid& solid, const SolidGrid& grid) {
-  std::vector<glm::dvec3> normal(grid.nodes.size(), glm::dvec3(0.0));
-  std::vector<std::uint8_t> slides(grid.nodes.size(), 0);
+  std::vector<glm::dvec3> normals;  // of faces
   for (const std::array<std::uint32_t, 4>& face : grid.faces) {
     const glm::dvec3 center = 0.25 * (grid.nodes[face[0]] + grid.nodes[face[1]] +
                                       grid.nodes[face[2]] + grid.nodes[face[3]]);
-    const glm::dvec3 here = solid.signed_distance(center).gradient;
-    for (const std::uint32_t node : face) {
-      if (normal[node] == glm::dvec3(0.0)) {
-        normal[node] = here;
+    normals.push_back(solid.signed_distance(center).gradient);
+  }
+  std::vector<std::uint32_t> first(grid.nodes.size(), kNoRow);  // face at each node
+  std::vector<std::uint8_t> slides(grid.nodes.size(), 0);
+  for (std::uint32_t row = 0; row < grid.faces.size(); ++row) {
+    for (const std::uint32_t node : grid.faces[row]) {
+      if (first[node] == kNoRow) {
+        first[node] = row;
         slides[node] = 1;
-      } else if (glm::dot(normal[node], here) < 0.7) {
+      } else if (glm::dot(normals[first[node]], normals[row]) < 0.7) {
         slides[node] = 0;
-        normal[node] = glm::dvec3(2.0);  // no direction: stays so
       }
     }
   }
@@ -250,21 +252,6 @@ void even_out(const ElasticSolid& solid, const std::vector<std::uint8_t>& sides,
       }
     }
   }
-}
-
-bool is_sound(const SolidGrid& grid, std::size_t element) {
-  constexpr double kGauss = 0.5773502691896258;
-  constexpr double kLeast = 0.02;  // of the undistorted cell
-  const std::array<glm::dvec3, 8> corners = element_corners(grid, element);
-  const double whole = 0.125 * grid.spacing.x * grid.spacing.y * grid.spacing.z;
-  for (std::uint32_t c = 0; c < 8; ++c) {
-    const glm::dvec3 sign(c & 1U ? kGauss : -kGauss, c & 2U ? kGauss : -kGauss,
-                          c & 4U ? kGauss : -kGauss);
-    if (glm::determinant(element_jacobian(corners, sign)) < kLeast * whole) {
-      return false;
-    }
-  }
-  return true;
 }
 
 /// Moves the surface's nodes onto the surface; back towards the lattice where an element would be
@@ -324,6 +311,21 @@ bool is_held(const SolidGrid& grid) {
 
 }  // namespace
 
+bool is_sound(const SolidGrid& grid, std::size_t element) {
+  constexpr double kGauss = 0.5773502691896258;
+  constexpr double kLeast = 0.02;  // of the undistorted cell
+  const std::array<glm::dvec3, 8> corners = element_corners(grid, element);
+  const double whole = 0.125 * grid.spacing.x * grid.spacing.y * grid.spacing.z;
+  for (std::uint32_t c = 0; c < 8; ++c) {
+    const glm::dvec3 sign(c & 1U ? kGauss : -kGauss, c & 2U ? kGauss : -kGauss,
+                          c & 4U ? kGauss : -kGauss);
+    if (glm::determinant(element_jacobian(corners, sign)) < kLeast * whole) {
+      return false;
+    }
+  }
+  return true;
+}
+
 glm::dmat3 element_jacobian(const std::array<glm::dvec3, 8>& corners, const glm::dvec3& local) {
   glm::dmat3 jacobian(0.0);
   for (std::uint32_t c = 0; c < 8; ++c) {
@@ -367,11 +369,7 @@ Result<SolidGrid> build_solid_grid(const ElasticSolid& solid, std::uint32_t elem
   std::vector<std::uint8_t> sides;
   SolidGrid grid = grid_of_cells(lattice, inside, sides);
   fit_surface(solid, lattice, sides, grid);
-  grid.clamped.resize(grid.nodes.size());
-  std::transform(grid.nodes.begin(), grid.nodes.end(), grid.clamped.begin(),
-                 [&](const glm::dvec3& node) {
-                   return static_cast<std::uint8_t>(solid.clamped(node) ? 1 : 0);
-                 });
+  fit_clamp(solid, grid);
   if (!is_held(grid)) {
     return Error{
         "what is fixed of the body holds fewer than three nodes of its grid that are not "

@@ -20,6 +20,13 @@ struct SolidGrid {
   glm::dvec3 spacing{0.0};                             // m, of the lattice
 };
 
+/// Marks the grid's clamped nodes and moves those around the clamp's end onto it, so that the clamp
+/// does not end where the lattice happens to. (smooth_compliance_clamp.cpp)
+void fit_clamp(const ElasticSolid& solid, SolidGrid& grid);
+
+/// Whether no part of an element is squashed to less than a fiftieth of the lattice's cells.
+bool is_sound(const SolidGrid& grid, std::size_t element);
+
 /// Cells of a lattice fitted to the solid's bounds whose centres are inside, as far as they hang
 /// together by faces (the largest such piece). At least eight cells along each side.
 /// @param elements  along the longest side

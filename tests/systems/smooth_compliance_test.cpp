@@ -240,6 +240,23 @@ TEST(SmoothComplianceTest, MovedTurnedAndScaledScenesGiveTheSame) {
   EXPECT_LT((build(moved, ports, 12).matrix - expected).norm(), 1e-6 * expected.norm());
 }
 
+TEST(SmoothComplianceTest, AClampMayEndBetweenTheLatticesPlanes) {
+  // Holding the lowest part of a bar is standing on its upper end.
+  const double short_bar = at_top(block_solid({1.0, 1.0, 3.0}, 0.3), 24)(3, 3);
+  for (const double held : {0.31, 0.4}) {
+    ElasticSolid bar = block_solid({1.0, 1.0, 3.0 + held}, 0.3);
+    bar.clamped = [held](const glm::dvec3& p) {
+      return p.z <= held;
+    };
+    EXPECT_NEAR(at_top(bar, 24)(3, 3) / short_bar, 1.0, 2e-3);
+  }
+  // On a ball the clamp's end crosses the cells in all directions. Nodes left where the lattice has
+  // them changed this by 10 % between 16 and 24 elements.
+  const Port top{glm::dvec3(0.0, 0.0, 0.5), glm::dvec3(0.0, 0.0, 1.0)};
+  const double coarse = build(ball_solid(0.5, 0.3), {top}, 16).matrix(0, 0);
+  EXPECT_NEAR(build(ball_solid(0.5, 0.3), {top}, 24).matrix(0, 0) / coarse, 1.0, 0.03);
+}
+
 TEST(SmoothComplianceTest, ConvergesWithElements) {
   // Against 24 elements; the least across any side are 8, so this starts there.
   const ElasticSolid solid = round_bar(0.5, 1.0, 0.3);

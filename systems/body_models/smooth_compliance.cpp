@@ -222,7 +222,7 @@ Result<SmoothCompliance> build_smooth_compliance(const ElasticSolid& solid,
         "the body's material needs a Young's modulus above 0 and a Poisson's ratio above "
         "-1 and at most 0.5"};
   }
-  Result<SolidGrid> grid = build_solid_grid(solid, std::clamp(options.elements, 4U, 64U));
+  Result<SolidGrid> grid = build_solid_grid(solid, std::clamp(options.elements, 8U, 64U));
   if (!grid) {
     return grid.error();
   }

@@ -19,13 +19,18 @@ namespace torsion {
 struct ElasticSolid {
   std::function<Distance(const glm::dvec3&)> signed_distance;  // m, body; negative inside
   Bounds bounds;                                               // m, body
-  std::function<bool(const glm::dvec3&)> clamped;  // of a point in the body or on its surface
+  // Of a point in the body or on its surface, there to the accuracy of signed_distance: what is to
+  // hold a face must allow for that. The clamp's end is found inside the grid's cells; a clamp that
+  // holds no node of the grid is not.
+  std::function<bool(const glm::dvec3&)> clamped;
   Elasticity elasticity;
 };
 
 struct SmoothComplianceOptions {
-  std::uint32_t elements = 16;           // along the longest side of the bounds, 4 to 64
-  std::uint32_t threads = 1;             // the result is the same bits for any number
+  std::uint32_t elements = 16;  // along the longest side of the bounds, 8 to 64; at least 8
+                                // along the others. The factor of a cube takes 50 MB at
+                                // 16, 270 MB at 24, growing with the fourth power
+  std::uint32_t threads = 1;    // the result is the same bits for any number
   std::function<void(double)> progress;  // called with 0 to 1 as it goes on, if set
 };
 
@@ -53,6 +58,14 @@ Eigen::Matrix<double, 6, 6> half_space_coupling(const Port& to, const Port& from
 /// displacement is split into the half-space's closed form and a rest that is smooth near the port;
 /// only the rest is discretised, driven by minus the closed form's tractions on the free surface
 /// and minus its displacement at the clamp.
+///
+/// Errors at 16 elements, for ports farther than two elements from edges: 0.5 % between forces and
+/// displacements, 2 % between forces and rotations, some 5 % between torques and rotations, most of
+/// it across edges; bars 1 to 3 % in torsion, exact in stretch and bending; round bodies 5 %, from
+/// where the clamp ends. A bulk modulus above 1e4 G is taken as that. A wrench is a point's: of a
+/// contact so large that it matters where in it the forces act (on a cube of side b, a torque over
+/// a disc of radius 0.2 b: 2.5 %, 0.4 b: 12 % of the smooth part), take the forces and
+/// displacements of several ports in it.
 /// @param ports  on the solid's surface
 /// @return an Error when the bounds are empty, nothing of the body is found in them, the clamp
 ///         holds fewer than three nodes that are not in line, or the material is no solid

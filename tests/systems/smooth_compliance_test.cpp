@@ -59,14 +59,15 @@ TEST(SmoothComplianceTest, TwistSpreadOverADiscOnACubeMeetsFiniteElements) {
     std::vector<Port> ports;
     std::vector<glm::dvec3> forces;
     double torque = 0.0;
-    for (std::size_t i = 0; i < 24; ++i) {
-      const double share = std::sqrt(1.0 - points[i / 8] * points[i / 8]);
-      const double angle =
-          kPi * (0.25 * static_cast<double>(i) + 0.125 * static_cast<double>(i / 8));
+    for (int i = 0; i < 24; ++i) {
+      const int ring = i / 8;
+      const auto row = static_cast<std::size_t>(ring);
+      const double share = std::sqrt(1.0 - points[row] * points[row]);
+      const double angle = 0.25 * kPi * (i + 0.5 * ring);
       const glm::dvec3 along(std::cos(angle), std::sin(angle), 0.0);
       ports.push_back({radius * share * along + glm::dvec3(0.0, 0.0, 1.0), {0.0, 0.0, 1.0}});
-      forces.push_back(share * weights[i / 8] * glm::dvec3(-along.y, along.x, 0.0));
-      torque += share * weights[i / 8] * radius * share;
+      forces.push_back(share * weights[row] * glm::dvec3(-along.y, along.x, 0.0));
+      torque += share * weights[row] * radius * share;
     }
     const Eigen::MatrixXd smooth = build(block_solid({1.0, 1.0, 1.0}, 0.5), ports, 16).matrix;
     Eigen::VectorXd load = Eigen::VectorXd::Zero(smooth.rows());

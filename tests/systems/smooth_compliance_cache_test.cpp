@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "elastic_solids.hpp"
+#include "tests/systems/elastic_solids.hpp"
 
 namespace torsion {
 namespace {

@@ -10,8 +10,8 @@
 #include <glm/matrix.hpp>
 #include <gtest/gtest.h>
 
-#include "elastic_solids.hpp"
 #include "systems/body_models/smooth_compliance_loads.hpp"
+#include "tests/systems/elastic_solids.hpp"
 
 namespace torsion {
 namespace {

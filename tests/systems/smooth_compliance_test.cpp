@@ -10,7 +10,7 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
-#include "elastic_solids.hpp"
+#include "tests/systems/elastic_solids.hpp"
 
 namespace torsion {
 namespace {

@@ -96,7 +96,7 @@ def mallet_on_ellipsoid(depth=5e-4, long=0.0077, short=0.0019):
     return ELLIPSOID.case(
         short, depth, rod, [(x, 0) for x in np.linspace(0, 1.1 * long, 12)], 1.6 * short,
         lambda points: np.hypot(points[:, 0] / (1.3 * long), points[:, 1] / (1.9 * short)) < 1,
-        phi_max=0.1, divisions=(4, 6))
+        phi_max=0.1, divisions=(3, 4))
 
 
 def compass_on_ellipsoid(depth=2e-4, phi_max=0.02):

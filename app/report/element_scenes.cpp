@@ -199,7 +199,7 @@ std::vector<ElementScene> element_scenes() {
   const Material soft{1e4, 0.4999, 5.0};
   std::vector<ElementScene> scenes;
   scenes.push_back(ball_on_block("half_space", "Ball on a half-space, by finite elements",
-                                 kBallRadius, 800.0 * kContact, 400.0 * kContact, Material{}));
+                                 kBallRadius, 8000.0 * kContact, 4000.0 * kContact, Material{}));
   scenes.push_back(ball_on_block("ball_on_cube_nu30", "Ball on a cube, \u03bd = 0.3", kBallRadius,
                                  0.1, 0.1, nu30));
   scenes.push_back(ball_on_block("ball_on_cube_nu49", "Ball on a cube, \u03bd = 0.49", kBallRadius,
@@ -208,6 +208,15 @@ std::vector<ElementScene> element_scenes() {
                                  2.0 * kContact, Material{}));
   scenes.push_back(ball_on_block("soft_column", "Ball on a soft column: a large contact", 0.2,
                                  kColumn, kColumn, soft));
+  scenes.push_back(ball_on_block("large_strain_linear",
+                                 "Ball pressed deep into a cube, as linear elasticity has it",
+                                 kBallRadius, 0.1, 0.1, nu49));
+  ElementScene large = ball_on_block("large_strain", "Ball pressed deep into a cube, large strain",
+                                     kBallRadius, 0.1, 0.1, nu49);
+  large.description +=
+      " The reference is neo-Hookean at large strain: it shows where all models here, which are "
+      "linear, end.";
+  scenes.push_back(std::move(large));
   scenes.push_back(mallet_on_ellipsoid());
   scenes.push_back(compass_on_ellipsoid());
   return scenes;

@@ -1,10 +1,12 @@
 #include "app/report/gnuplot.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <system_error>
 
@@ -20,7 +22,7 @@ namespace torsion {
 namespace {
 
 constexpr int kWidth = 560;  // of a plot, in units of its text
-constexpr int kHeight = 400;
+constexpr int kHeight = 440;
 
 /// A folder that is gone with the object.
 class TemporaryFolder {
@@ -64,7 +66,7 @@ std::string style_of(const PlotSeries& series) {
     case PlotSeries::Style::kLine:
       return "with lines " + line;
     case PlotSeries::Style::kSteps:
-      return "with fsteps " + line;
+      return "with steps " + line;
     case PlotSeries::Style::kPoints:
       return fmt::format("with points lc rgb '{}' lw 1.2 {}", series.color, point);
     case PlotSeries::Style::kLineWithPoints:
@@ -85,17 +87,49 @@ std::string data_of(const PlotSeries& series) {
   return text;
 }
 
+/// Ticks at 1, 2 and 5 times powers of ten and a range a little wider than the data, for an axis
+/// that gnuplot would widen to whole powers of ten.
+std::string logarithmic_axis(const Plot& plot, char axis) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = 0.0;
+  for (const PlotSeries& series : plot.series) {
+    for (const glm::dvec2& point : series.points) {
+      const double value = axis == 'x' ? point.x : point.y;
+      low = value > 0.0 ? std::min(low, value) : low;
+      high = std::max(high, value);
+    }
+  }
+  if (!(low <= high)) {
+    return {};
+  }
+  low /= 1.6;
+  high *= 1.6;
+  std::string ticks;
+  for (double power = std::pow(10.0, std::floor(std::log10(low))); power <= high; power *= 10.0) {
+    for (const double step : {1.0, 2.0, 5.0}) {
+      // Over many decades only their beginnings fit.
+      if (step == 1.0 || high < 500.0 * low) {
+        ticks += fmt::format("{}{:.6g}", ticks.empty() ? "" : ",", step * power);
+      }
+    }
+  }
+  return fmt::format("set logscale {0}\nset {0}range [{1:.6g}:{2:.6g}]\nset {0}tics ({3})\n", axis,
+                     low, high, ticks);
+}
+
 std::string script_of(const Plot& plot, const std::string& name) {
   std::string script = fmt::format(
       "reset\n"
       "set terminal svg size {},{} noenhanced font 'sans-serif,14' name '{}'\n"
       "set output '{}.svg'\n"
       "set border 3\nset tics nomirror\nset grid lc rgb '#cccccc' dt 1\n"
-      "set key {} samplen 2 spacing 1.1 opaque\n"
-      "set format '%g'\nset xlabel {}\nset ylabel {}\n",
-      kWidth, kHeight, name, name, plot.legend, quoted(plot.x_label), quoted(plot.y_label));
-  script += plot.log_x ? "set logscale x\n" : "set offsets graph 0, graph 0.03, 0, 0\n";
-  script += plot.log_y ? "set logscale y\n" : "";
+      "set key {} samplen 2 spacing 1.1\n"
+      "set format '%g'\nset xlabel {} offset 0,0.4\nset ylabel {}\n",
+      kWidth, kHeight, name, name,
+      plot.legend_inside ? "top right" : "outside bottom center horizontal", quoted(plot.x_label),
+      quoted(plot.y_label));
+  script += plot.logarithmic ? logarithmic_axis(plot, 'x') + logarithmic_axis(plot, 'y')
+                             : std::string("set offsets graph 0, graph 0.03, graph 0.05, 0\n");
   std::string draws;
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const PlotSeries& series = plot.series[i];

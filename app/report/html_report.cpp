@@ -112,7 +112,13 @@ std::string overview_table(std::span<const MeasuredCase> cases) {
       "<div class=\"wide\"><table><caption>The larger of the errors of force and torque "
       "(%)</caption>\n<tr><th>models</th>";
   for (const MeasuredCase& measured : cases) {
-    html += fmt::format("<th>{}</th>", escaped(measured.reference_case.name));
+    // Long names may break after an underscore.
+    std::string heading = escaped(measured.reference_case.name);
+    for (std::size_t at = heading.find('_'); at != std::string::npos;
+         at = heading.find('_', at + 6)) {
+      heading.insert(at + 1, "<wbr>");
+    }
+    html += fmt::format("<th>{}</th>", heading);
   }
   html += "</tr>\n";
   for (const std::string& label : labels) {
@@ -218,8 +224,8 @@ std::vector<Plot> overview_plots(std::span<const MeasuredCase> cases) {
     }
     Plot plot = speed_plot(chosen);
     plot.caption = fmt::format(
-        "Speed against error over all {} cases {}: the largest error of force or torque in any of "
-        "them, and the slowest median step.",
+        "Speed against error over all {} cases {}: geometric means of the median step and of the "
+        "larger error of force and torque. Numbers at patch: cells of a region.",
         chosen.size(), finite ? "with finite bodies" : "on a half-space");
     plots.push_back(std::move(plot));
   }

@@ -16,7 +16,7 @@ caption { text-align: left; font-weight: bold; padding-bottom: 0.3rem; }
 th, td { padding: 0.15rem 0.7rem; text-align: right; border-bottom: 1px solid #ddd;
          font-variant-numeric: tabular-nums; }
 th { border-bottom: 2px solid #444; vertical-align: bottom; }
-th:first-child, td:first-child { text-align: left; }
+th:first-child, td:first-child { text-align: left; white-space: nowrap; }
 td.best { font-weight: bold; }
 tr.group td, tr.group th { border-top: 1px solid #888; }
 .wide { overflow-x: auto; }

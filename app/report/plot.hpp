@@ -24,9 +24,8 @@ struct Plot {
   std::string caption;  // below the plot
   std::string x_label;  // with its unit
   std::string y_label;
-  bool log_x = false;
-  bool log_y = false;
-  std::string legend = "top left";  // gnuplot's place of the key
+  bool logarithmic = false;    // both axes
+  bool legend_inside = false;  // top right; else below
   std::vector<PlotSeries> series;
 };
 

@@ -17,15 +17,14 @@ constexpr std::array<const char*, 4> kContactColors = {"#000000", "#D55E00", "#0
 // gnuplot's numbers of dashes and points, in the order of the enum BodyModel.
 constexpr std::array<int, 4> kBodyDashes = {1, 1, 2, 4};
 constexpr std::array<int, 4> kBodyPoints = {7, 7, 9, 5};
+// Wide below, narrow on top, so that curves that coincide are all seen; in the order of the enum.
+constexpr std::array<double, 4> kContactWidths = {1.6, 1.6, 3.6, 1.4};
 constexpr double kSmallestError = 1e-5;  // below this a logarithmic axis says nothing
 
-const char* color_of(ContactModel model) {
-  return kContactColors[std::min(static_cast<std::size_t>(model), kContactColors.size() - 1)];
-}
-
-template <std::size_t n>
-int mark_of(const std::array<int, n>& marks, BodyModel model) {
-  return marks[std::min(static_cast<std::size_t>(model), n - 1)];
+/// The model's entry; the last one for a model that is newer than the array.
+template <class T, std::size_t n, class Model>
+T entry_of(const std::array<T, n>& entries, Model model) {
+  return entries[std::min(static_cast<std::size_t>(model), n - 1)];
 }
 
 std::string pair_label(const ModelPair& models) {
@@ -57,9 +56,7 @@ Plot plot_of(const std::vector<SpeedPoint>& points) {
   Plot plot;
   plot.x_label = "median of a step (\u00b5s)";
   plot.y_label = "error (%)";
-  plot.log_x = true;
-  plot.log_y = true;
-  plot.legend = "outside right top";
+  plot.logarithmic = true;
   PlotSeries front;
   front.label = "Pareto front";
   front.style = PlotSeries::Style::kSteps;
@@ -72,8 +69,8 @@ Plot plot_of(const std::vector<SpeedPoint>& points) {
     PlotSeries& series = by_pair[pair_label(point.models)];
     series.label = pair_label(point.models);
     series.style = PlotSeries::Style::kPoints;
-    series.color = color_of(point.models.contact);
-    series.point = mark_of(kBodyPoints, point.models.body);
+    series.color = entry_of(kContactColors, point.models.contact);
+    series.point = entry_of(kBodyPoints, point.models.body);
     series.points.emplace_back(point.step_us, 100.0 * point.error);
     // The front of a patch is told by the sides of its grids; with a body model they repeat.
     if (point.models.contact == ContactModel::kPatch && point.models.body == BodyModel::kNone) {
@@ -110,8 +107,9 @@ std::vector<const MeasuredRun*> drawn_runs(const MeasuredCase& measured) {
 PlotSeries series_of(const ModelPair& models) {
   PlotSeries series;
   series.label = label_of(models);
-  series.color = color_of(models.contact);
-  series.dash = mark_of(kBodyDashes, models.body);
+  series.color = entry_of(kContactColors, models.contact);
+  series.width = entry_of(kContactWidths, models.contact);
+  series.dash = entry_of(kBodyDashes, models.body);
   return series;
 }
 
@@ -142,7 +140,6 @@ Plot curve_plot(const MeasuredCase& measured, const Takes& takes) {
   Plot plot;
   plot.x_label = one.x.label;
   plot.y_label = one.y.label;
-  plot.legend = "outside right top";
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < one.path.size(); ++i) {
     const bool starts = one.connected && one.path[i].leg == Leg::kApproach &&
@@ -188,19 +185,26 @@ Plot speed_plot(const MeasuredCase& measured) {
 }
 
 Plot speed_plot(std::span<const MeasuredCase* const> cases) {
-  std::vector<SpeedPoint> points;
+  std::vector<SpeedPoint> points;  // sums of logarithms, then means
+  std::vector<double> counts;
   for (const MeasuredCase* measured : cases) {
     for (const MeasuredRun& one : measured->runs) {
-      const ModelPair& models = one.run.models;
-      auto point = std::ranges::find_if(points, [&](const SpeedPoint& known) {
-        return label_of(known.models) == label_of(models);
+      const auto known = std::ranges::find_if(points, [&](const SpeedPoint& point) {
+        return label_of(point.models) == label_of(one.run.models);
       });
-      if (point == points.end()) {
-        point = points.insert(point, SpeedPoint{models, 0.0, 0.0});
+      const auto row = static_cast<std::size_t>(known - points.begin());
+      if (known == points.end()) {
+        points.push_back({one.run.models, 0.0, 0.0});
+        counts.push_back(0.0);
       }
-      point->step_us = std::max(point->step_us, one.run.step_us_median);
-      point->error = std::max(point->error, worst_error(one.errors));
+      points[row].step_us += std::log(one.run.step_us_median);
+      points[row].error += std::log(worst_error(one.errors));
+      counts[row] += 1.0;
     }
+  }
+  for (std::size_t row = 0; row < points.size(); ++row) {
+    points[row].step_us = std::exp(points[row].step_us / counts[row]);
+    points[row].error = std::exp(points[row].error / counts[row]);
   }
   return plot_of(points);
 }
@@ -224,7 +228,7 @@ Plot field_plot(const MeasuredCase& measured) {
   plot.caption = "Twist of the surface over the tool\u2019s, at the largest twist.";
   plot.x_label = "radius over the contact\u2019s";
   plot.y_label = "twist over the tool\u2019s";
-  plot.legend = "top right";
+  plot.legend_inside = true;
   const auto add = [&](PlotSeries series, const std::vector<double>& twists, std::size_t stride) {
     for (std::size_t i = 0; i < field.radii.size(); i += stride) {
       series.points.emplace_back(field.radii[i] / field.contact_radius,

@@ -13,7 +13,8 @@ double worst_error(const CaseErrors& errors);
 /// Time of a step against worst_error, one point for each run, with the Pareto front.
 Plot speed_plot(const MeasuredCase& measured);
 
-/// The same over several cases: the slowest median and the largest error of each choice of models.
+/// The same over several cases: geometric means of the medians and of the errors of each choice of
+/// models.
 Plot speed_plot(std::span<const MeasuredCase* const> cases);
 
 /// What the case is about, first loading only: its y against its x, and the reference.

@@ -17,15 +17,23 @@ constexpr double kFieldReach = 8.0;  // contact radii
 constexpr int kFieldPoints = 80;
 
 std::string error_text(const std::optional<double>& error) {
-  return error ? fmt::format("{:.2g} %", 100.0 * *error) : "not known";
+  return error ? fmt::format("{:.2g}\u00a0%", 100.0 * *error) : "not known";
 }
 
 std::string reference_text(const ElementCurve& curve) {
   return fmt::format(
-      "Finite elements with Coulomb friction and history, quadratic, {} to a contact radius "
-      "(GetFEM). Between this mesh and the next coarser one the force differs by {}, the torque "
+      "Finite elements (GetFEM) with Coulomb friction and history, {} quadratic ones to the radius "
+      "of the contact or its shorter half axis. Between this mesh and the next coarser one the "
+      "force differs by {}, the torque "
       "by {} of the largest value.",
       curve.divisions, error_text(curve.force_error), error_text(curve.torque_error));
+}
+
+std::string path_text(const ElementCurve& curve) {
+  const auto by_twist = std::ranges::minmax(curve.rows, {}, &ElementCurve::Row::twist);
+  return fmt::format(
+      " It is pressed {:.4g} mm deep, twisted to {:.3g} rad and back to \u2212{:.3g} rad.",
+      1e3 * curve.rows.back().depth, by_twist.max.twist, -by_twist.min.twist);
 }
 
 /// What moves the tool in the finite element path: depth below the first touch and twist.
@@ -81,7 +89,7 @@ std::vector<ReferenceCase> element_cases(bool quick) {
     ReferenceCase one;
     one.name = element_scene.name;
     one.title = element_scene.title;
-    one.description = element_scene.description;
+    one.description = element_scene.description + path_text(curve);
     one.reference = reference_text(curve);
     one.force_meaning = "normal force";
     one.torque_meaning = "torque about the axis of the twist";

@@ -141,7 +141,8 @@ ReferenceCase twist_case(bool quick) {
   result.reference = fmt::format(
       "Hertz for the force, Lubkin (1951) for torque and twist field, Masing\u2019s rule after "
       "each "
-      "turn; evaluated to 1e-11. Taking the sphere for a paraboloid changes the force by {:.2g} %.",
+      "turn; evaluated to 1e-11. Taking the sphere for a paraboloid changes the force by "
+      "{:.2g}\u00a0%.",
       100.0 * paraboloid_error());
   result.force_meaning = "normal force, pressing and twisting";
   result.torque_meaning = "torque about the axis of the twist";

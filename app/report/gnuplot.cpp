@@ -21,8 +21,10 @@ extern char** environ;
 namespace torsion {
 namespace {
 
-constexpr int kWidth = 560;  // of a plot, in units of its text
-constexpr int kHeight = 440;
+constexpr int kWidth = 560;   // of a plot, in units of its text
+constexpr int kHeight = 360;  // without its legend
+constexpr int kLegendRow = 19;
+constexpr int kLegendColumns = 2;
 
 /// A folder that is gone with the object.
 class TemporaryFolder {
@@ -117,19 +119,29 @@ std::string logarithmic_axis(const Plot& plot, char axis) {
                      low, high, ticks);
 }
 
+/// Height with the legend below, if it is there.
+int height_of(const Plot& plot) {
+  const auto entries = static_cast<int>(
+      std::ranges::count_if(plot.series, [](const PlotSeries& one) { return !one.label.empty(); }));
+  return kHeight +
+         (plot.legend_inside ? 0 : kLegendRow * ((entries + kLegendColumns - 1) / kLegendColumns));
+}
+
 std::string script_of(const Plot& plot, const std::string& name) {
   std::string script = fmt::format(
       "reset\n"
       "set terminal svg size {},{} noenhanced font 'sans-serif,14' name '{}'\n"
       "set output '{}.svg'\n"
       "set border 3\nset tics nomirror\nset grid lc rgb '#cccccc' dt 1\n"
-      "set key {} samplen 2 spacing 1.1\n"
+      "set key {} samplen 2 spacing 1.1 font ',13' maxcolumns {}\n"
       "set format '%g'\nset xlabel {} offset 0,0.4\nset ylabel {}\n",
-      kWidth, kHeight, name, name,
-      plot.legend_inside ? "top right" : "outside bottom center horizontal", quoted(plot.x_label),
-      quoted(plot.y_label));
-  script += plot.logarithmic ? logarithmic_axis(plot, 'x') + logarithmic_axis(plot, 'y')
-                             : std::string("set offsets graph 0, graph 0.03, graph 0.05, 0\n");
+      kWidth, height_of(plot), name, name,
+      plot.legend_inside ? "top right" : "outside bottom center horizontal", kLegendColumns,
+      quoted(plot.x_label), quoted(plot.y_label));
+  script +=
+      plot.logarithmic
+          ? logarithmic_axis(plot, 'x') + logarithmic_axis(plot, 'y')
+          : std::string("set autoscale xfix\nset offsets graph 0, graph 0.03, graph 0.05, 0\n");
   std::string draws;
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const PlotSeries& series = plot.series[i];
@@ -165,11 +177,11 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
 }
 
 /// gnuplot writes a file of its own with names that are the same in every file.
-std::string to_inline(std::string svg, const std::string& name) {
+std::string to_inline(std::string svg, const std::string& name, int height) {
   svg.erase(0, svg.find("<svg"));
   const std::size_t head_end = svg.find('>');
   svg.replace(0, head_end + 1,
-              fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\">", kWidth, kHeight));
+              fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\">", kWidth, height));
   for (const char* mark : {"gp", "gnuplot_", "textbox", "greybox"}) {
     for (const char quote : {'\'', '"'}) {
       replace_all(svg, fmt::format("id={}{}", quote, mark),
@@ -239,8 +251,8 @@ Result<std::vector<std::string>> draw_plots(std::span<const Plot> plots) {
   }
   std::vector<std::string> drawn;
   for (std::size_t i = 0; i < plots.size(); ++i) {
-    drawn.push_back(
-        to_inline(text_of(folder.path() / (name_of_plot(i) + ".svg")), name_of_plot(i)));
+    drawn.push_back(to_inline(text_of(folder.path() / (name_of_plot(i) + ".svg")), name_of_plot(i),
+                              height_of(plots[i])));
   }
   return drawn;
 }

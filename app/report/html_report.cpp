@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -57,9 +58,9 @@ std::string percent(const std::optional<double>& error) {
     return "\u2013";
   }
   const double value = 100.0 * *error;
-  return value >= 100.0  ? fmt::format("{:.0f}", value)
-         : value >= 10.0 ? fmt::format("{:.1f}", value)
-                         : fmt::format("{:.2g}", value);
+  return value >= 99.95  ? fmt::format("{:.0f}", value)
+         : value >= 9.95 ? fmt::format("{:.1f}", value)
+                         : fmt::format("{:#.2g}", value);
 }
 
 std::string figure(const std::string& svg, const std::string& caption) {
@@ -191,10 +192,13 @@ std::string case_html(const MeasuredCase& measured, const std::string& picture,
   const ReferenceCase& one = measured.reference_case;
   std::string html = fmt::format(
       "<section class=\"case\" id=\"{}\">\n<h2>{}</h2>\n<div class=\"intro\"><div>\n<p>{}</p>\n"
-      "<p><strong>Reference.</strong> {}</p>\n<p><strong>Compared.</strong> F: {}.{}</p>\n</div>\n",
+      "<p><strong>Reference.</strong> {}</p>\n<p><strong>Compared.</strong> F: {}.{}</p>\n"
+      "<p>The path takes {} steps of 1 ms.</p>\n</div>\n",
       one.name, escaped(one.title), escaped(one.description), escaped(one.reference),
       escaped(one.force_meaning),
-      one.torque_meaning.empty() ? "" : fmt::format(" T: {}.", escaped(one.torque_meaning)));
+      one.torque_meaning.empty() ? "" : fmt::format(" T: {}.", escaped(one.torque_meaning)),
+      std::transform_reduce(one.path.begin(), one.path.end(), 0, std::plus<>{},
+                            [](const PathPoint& point) { return point.steps; }));
   if (!picture.empty()) {
     html += fmt::format(
         "<figure><img alt=\"The scene\" src=\"data:image/png;base64,{}\">"

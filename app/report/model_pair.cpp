@@ -44,7 +44,7 @@ std::string label_of(const ModelPair& models) {
   const std::string body =
       models.body == BodyModel::kNone ? "" : fmt::format(" + {}", name_of(models.body));
   return models.contact == ContactModel::kPatch
-             ? fmt::format("patch {0}\u00d7{0}{1}", models.grid_side, body)
+             ? fmt::format("patch {}\u00b2{}", models.grid_side, body)
              : fmt::format("{}{}", name_of(models.contact), body);
 }
 

@@ -18,7 +18,7 @@ struct ModelPair {
 /// @param quick  fewer grids
 std::vector<ModelPair> model_pairs(const ReferenceCase& reference_case, bool quick);
 
-/// "patch 12 + skeleton": models with the grid's side where it is chosen.
+/// "patch 12² + skeleton": models with the grid's side where it is chosen.
 std::string label_of(const ModelPair& models);
 
 }  // namespace torsion

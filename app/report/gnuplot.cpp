@@ -22,7 +22,7 @@ namespace torsion {
 namespace {
 
 constexpr int kWidth = 560;   // of a plot, in units of its text
-constexpr int kHeight = 360;  // without its legend
+constexpr int kHeight = 370;  // without its legend
 constexpr int kLegendRow = 19;
 constexpr int kLegendColumns = 2;
 
@@ -134,7 +134,7 @@ std::string script_of(const Plot& plot, const std::string& name) {
       "set output '{}.svg'\n"
       "set border 3\nset tics nomirror\nset grid lc rgb '#cccccc' dt 1\n"
       "set key {} samplen 2 spacing 1.1 font ',13' maxcolumns {}\n"
-      "set format '%g'\nset xlabel {} offset 0,0.4\nset ylabel {}\n",
+      "set format '%g'\nset xlabel {}.\"\\n \" offset 0,0.3\nset ylabel {}\n",
       kWidth, height_of(plot), name, name,
       plot.legend_inside ? "top right" : "outside bottom center horizontal", kLegendColumns,
       quoted(plot.x_label), quoted(plot.y_label));

@@ -26,7 +26,7 @@ figure svg, figure img { width: 100%; height: auto; display: block; }
 figcaption { font-size: 0.85rem; color: #333; margin-top: 0.2rem; }
 .intro { display: grid; grid-template-columns: 3fr 2fr; gap: 1.5rem; align-items: start; }
 .intro p:first-child { margin-top: 0; }
-@media (max-width: 50rem) { .figures, .intro { grid-template-columns: 1fr; } }
+@media screen and (max-width: 50rem) { .figures, .intro { grid-template-columns: 1fr; } }
 @media print {
   @page { size: A4; margin: 15mm; }
   body { font-size: 9.5pt; margin: 0; padding: 0; max-width: none; }

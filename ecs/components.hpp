@@ -300,8 +300,29 @@ struct PatchState {
 
 /// How the contact model `mdr` stands in a region. Written by: mdr_forces.
 struct MdrState {
-  double radius = 0.0;         // m: a of the last step, 0 before the first
+  double radius = 0.0;      // m: a of the last step, 0 before the first
+  double flat_share = 0.0;  // of the force: by a flat punch's pressure, the rest by a paraboloid's
   double kinetic_share = 0.0;  // 0: mu_s, 1: mu_d
+};
+
+inline constexpr std::uint32_t kFieldDiscs = 6;
+inline constexpr std::uint32_t kFieldBlocks = 5;
+
+/// Normal force that a part of a region presses into the body.
+struct PressedBlock {
+  glm::dvec2 place{0.0};  // m, grid: its pressure centre
+  double force = 0.0;     // N
+};
+
+/// What a region of an elastic half-space does to the body around it, small enough for a snapshot:
+/// bonded discs turned by small angles, and forces. Their exact fields add up to that of the
+/// region. Written by: region_fields; all zero for contact model `paper`.
+struct RegionField {
+  glm::dvec2 center{0.0};         // m, grid: of the discs
+  double radius = 0.0;            // m: of the largest disc; 0: there is no such field
+  double spread = 0.0;            // m: width over which the force of a block is spread
+  double turn[kFieldDiscs] = {};  // rad: of the disc of radius (j + 1) / kFieldDiscs * radius
+  PressedBlock blocks[kFieldBlocks * kFieldBlocks];
 };
 
 /// Written by: region_wrenches.

@@ -64,7 +64,7 @@ using ToolTable =
     Table<Entity, ToolPose, ToolMotion, MassProperties, ToolWrench, OwnedRows, Bounds>;
 using RegionTable =
     Table<RegionIdentity, RegionFrame, RegionCarrier, TractionFrame, RegionGeometry, RegionMotion,
-          RegionNormal, RegionFriction, PatchState, MdrState, RegionWrench>;
+          RegionNormal, RegionFriction, PatchState, MdrState, RegionField, RegionWrench>;
 using CellTable = Table<CellGeometry, CellTraction>;
 using PatchCellTable = Table<PatchCell, PatchChange>;
 using MdrLayerTable = Table<MdrLayer>;

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <glm/geometric.hpp>
 
 #include "systems/body_models/main_beam.hpp"
 #include "systems/frames.hpp"
+#include "systems/half_space_source.hpp"
 
 namespace torsion {
 namespace {
@@ -75,13 +77,103 @@ Profiles half_space_profiles(double r) {
   return {((2.0 - r * r) * angle + std::sqrt(r * r - 1.0)) / kPi, 2.0 / kPi * angle};
 }
 
+/// The sums of a half-space model in a region; radius 0 where it has none.
+TurnedDiscs turned_discs(const Snapshot& snapshot, std::uint32_t region) {
+  const RegionField& field = snapshot.regions.at<RegionField>(region);
+  const RegionFrame& frame = snapshot.regions.at<RegionFrame>(region);
+  TurnedDiscs discs;
+  discs.center = grid_to_body(frame, {field.center, 0.0});
+  discs.normal = frame.normal;
+  discs.radius = field.radius;
+  for (std::size_t j = 0; j < kFieldDiscs; ++j) {
+    const double s = field.radius * static_cast<double>(j + 1) / kFieldDiscs;
+    discs.turn[j] = field.turn[j];
+    discs.far_turn += 4.0 / (3.0 * kPi) * s * s * s * field.turn[j];
+  }
+  return discs;
+}
+
+/// The forces of a half-space model in a region; count 0 where it has none.
+/// @param share  of their displacement that is drawn
+PressedSurface pressed_surface(const World& world, const Snapshot& snapshot, std::uint32_t region,
+                               double share) {
+  const RegionField& field = snapshot.regions.at<RegionField>(region);
+  const RegionFrame& frame = snapshot.regions.at<RegionFrame>(region);
+  const Elasticity& elasticity =
+      world.bodies.at<Elasticity>(snapshot.regions.at<RegionIdentity>(region).body);
+  PressedSurface pressed;
+  const double normal_force = snapshot.regions.at<RegionNormal>(region).force;
+  if (field.radius <= 0.0 || normal_force <= 0.0) {
+    return pressed;
+  }
+  const glm::dvec3 drag =
+      tangent_to_body(frame, snapshot.regions.at<RegionFriction>(region).force) / -normal_force;
+  for (const PressedBlock& block : field.blocks) {
+    if (block.force > 0.0) {
+      const glm::dvec3 force = (drag - frame.normal) * block.force;
+      pressed.forces[pressed.count++] = {grid_to_body(frame, {block.place, 0.0}), force};
+      pressed.all.force += force;
+    }
+  }
+  pressed.all.place = grid_to_body(frame, {field.center, 0.0});
+  pressed.normal = frame.normal;
+  pressed.radius = field.radius;
+  pressed.spread = field.spread;
+  pressed.shear_modulus = elasticity.shear_modulus();
+  pressed.poisson_ratio = elasticity.poisson_ratio;
+  pressed.share = share;
+  return pressed;
+}
+
 }  // namespace
+
+double TurnedDiscs::angle(const glm::dvec3& point) const {
+  const glm::dvec3 away = point - center;
+  const double height = glm::dot(away, normal);
+  const double square = glm::dot(away, away);
+  const double lateral = std::max(square - height * height, 0.0);
+  const double near = 1.0 - smooth_step(std::sqrt(square) / radius - 3.0);
+  const double far = near < 1.0 ? far_turn / (square * std::sqrt(square)) : 0.0;
+  if (near == 0.0) {
+    return far;
+  }
+  double sum = 0.0;
+  for (std::size_t j = 0; j < kFieldDiscs; ++j) {
+    const double s = radius * static_cast<double>(j + 1) / kFieldDiscs;
+    const double z = height / s;
+    const double excess = (lateral + height * height) / (s * s) - 1.0;
+    const double zeta_2 = 0.5 * (excess + std::sqrt(excess * excess + 4.0 * z * z));
+    const double zeta = std::sqrt(std::max(zeta_2, 0.0));
+    sum += turn[j] * 2.0 / kPi * (0.5 * kPi - std::atan(zeta) - zeta / (1.0 + zeta_2));
+  }
+  return near * sum + (1.0 - near) * far;
+}
+
+glm::dvec3 PressedSurface::displacement(const glm::dvec3& point) const {
+  const HalfSpace half_space{normal, shear_modulus, poisson_ratio};
+  const double distance = glm::distance(point, all.place) / radius;
+  const double near = 1.0 - smooth_step(distance - 3.0);
+  const glm::dvec3 far =
+      near < 1.0 ? displacement_by_force(half_space, point - all.place, all.force, spread)
+                 : glm::dvec3(0.0);
+  if (near == 0.0) {
+    return share * far;
+  }
+  glm::dvec3 sum(0.0);
+  for (const Force& each : std::span(forces).first(count)) {
+    sum += displacement_by_force(half_space, point - each.place, each.force, spread);
+  }
+  return share * (near * sum + (1.0 - near) * far);
+}
 
 double HeightShare::at(const glm::dvec3& point) const {
   return std::clamp(glm::dot(point - origin, slope), 0.0, 1.0);
 }
 
 double RegionTwist::angle(const glm::dvec3& rest) const {
+  if (discs.radius > 0.0) {
+    return discs.angle(rest);
+  }
   double turn = 0.0;
   if (through > 0.0 && stick_turn != 0.0) {
     const glm::dvec3 offset = rest - point;
@@ -106,6 +198,12 @@ RegionTwist region_twist(const World& world, const Snapshot& snapshot, std::uint
   const glm::dvec3 contact = geometry.rest_point;
 
   RegionTwist twist;
+  twist.discs = turned_discs(snapshot, region);
+  if (twist.discs.radius > 0.0) {
+    twist.axis.point = glm::vec4(glm::vec3(twist.discs.center), 0.0F);
+    twist.axis.direction = glm::vec4(glm::vec3(frame.normal), 0.0F);
+    return twist;
+  }
   twist.through = motion.axis_share;
   twist.stick_turn = friction.stick_turn;
   twist.stick_radius = std::max(friction.stick_radius, 1e-3 * geometry.radius);
@@ -155,9 +253,12 @@ glm::dvec3 RegionDent::displacement(const glm::dvec3& point) const {
   if (radius <= 0.0) {
     return glm::dvec3(0.0);
   }
+  if (pressed.count > 0) {
+    return pressed.displacement(point);
+  }
   const Profiles profile = half_space_profiles(reach(point));
-  const double pressed = depth * (flatness * profile.punch + (1.0 - flatness) * profile.hertz);
-  return drag * profile.punch - normal * pressed;
+  const double down = depth * (flatness * profile.punch + (1.0 - flatness) * profile.hertz);
+  return drag * profile.punch - normal * down;
 }
 
 double RegionDent::far_share(const glm::dvec3& point) const {
@@ -191,6 +292,7 @@ RegionDent region_dent(const World& world, const Snapshot& snapshot, std::uint32
   dent.drag = tangent_to_body(frame, friction.force) * -compliance;
   dent.pressure =
       geometry.area > 0.0 ? snapshot.regions.at<RegionNormal>(region).force / geometry.area : 0.0;
+  dent.pressed = pressed_surface(world, snapshot, region, dent.depth / geometry.largest_depth);
   dent.full_overlap = 0.1 * geometry.largest_depth;
   return dent;
 }

@@ -3,6 +3,7 @@
 // What one contact region does to the surface around it: turn and dent, as functions of the place.
 // docs/models.md, "Twist angles" and "Local dent".
 
+#include <array>
 #include <cstdint>
 
 #include <glm/vec3.hpp>
@@ -21,14 +22,29 @@ struct HeightShare {
   [[nodiscard]] double at(const glm::dvec3& point) const;
 };
 
+/// Bonded discs that turn the surface of an elastic half-space, about one centre.
+struct TurnedDiscs {
+  glm::dvec3 center{0.0};  // m, body
+  glm::dvec3 normal{0.0};  // body, unit, outward
+  double radius = 0.0;     // m: of the largest; 0: there are none
+  double far_turn = 0.0;   // rad m^3: far away the angle is this over R^3
+  std::array<double, kFieldDiscs>
+      turn{};  // rad: of the disc of radius (j + 1) / kFieldDiscs * radius
+
+  /// Angle by which the material at a point turns about the normal through the centre, rad.
+  /// Source: Reissner & Sagoci, J. Appl. Phys. 15, 1944, in oblate spheroidal coordinates.
+  [[nodiscard]] double angle(const glm::dvec3& point) const;
+};
+
 /// The twist of a body by one region, (10) to (13) of the paper as docs/models.md reads them.
 struct RegionTwist {
-  TwistAxis axis;              // for the vertices' turn
-  glm::dvec3 point{0.0};       // m, body: on the axis
-  glm::dvec3 direction{0.0};   // body, unit
-  double through = 0.0;        // share of the branch "the axis goes through the region"
-  double stick_turn = 0.0;     // phi_m, rad
-  double stick_radius = 0.0;   // r_m, m, > 0 where stick_turn is not 0
+  TwistAxis axis;             // for the vertices' turn
+  TurnedDiscs discs;          // of a half-space model; then all below but the axis is of no account
+  glm::dvec3 point{0.0};      // m, body: on the axis
+  glm::dvec3 direction{0.0};  // body, unit
+  double through = 0.0;       // share of the branch "the axis goes through the region"
+  double stick_turn = 0.0;    // phi_m, rad
+  double stick_radius = 0.0;  // r_m, m, > 0 where stick_turn is not 0
   HeightShare through_height;  // along the region's normal
   double past_turn = 0.0;      // rad at the contact: |T| l / (G J) with its sign
   HeightShare past_height;     // along the tool's axis
@@ -40,6 +56,26 @@ struct RegionTwist {
 /// @param region  row in snapshot.regions
 RegionTwist region_twist(const World& world, const Snapshot& snapshot, std::uint32_t region);
 
+/// Forces on the surface of an elastic half-space, each spread over a little area.
+struct PressedSurface {
+  struct Force {
+    glm::dvec3 place{0.0};  // m, body
+    glm::dvec3 force{0.0};  // N, body, on the material
+  };
+  std::array<Force, kFieldBlocks * kFieldBlocks> forces{};
+  std::uint32_t count = 0;     // 0: there are none
+  Force all;                   // the sum, at the pressure centre
+  glm::dvec3 normal{0.0};      // body, unit, outward
+  double radius = 0.0;         // m: of the contact
+  double spread = 0.0;         // m
+  double shear_modulus = 0.0;  // Pa
+  double poisson_ratio = 0.0;
+  double share = 1.0;  // of the displacement that is drawn; the rest is the whole body's
+
+  /// Displacement of the material at a point [m, body].
+  [[nodiscard]] glm::dvec3 displacement(const glm::dvec3& point) const;
+};
+
 /// The dent that a contact presses and drags into an elastic half-space.
 struct RegionDent {
   glm::dvec3 center{0.0};     // m, body
@@ -50,6 +86,7 @@ struct RegionDent {
   glm::dvec3 drag{0.0};       // m, body: tangential displacement of the contact
   double pressure = 0.0;      // Pa, mean
   double full_overlap = 0.0;  // m: overlap from which the pressure is drawn in full
+  PressedSurface pressed;  // of a half-space model: then depth, flatness and drag are of no account
 
   /// Distance of a point of the surface from the centre, in radii.
   [[nodiscard]] double reach(const glm::dvec3& point) const;

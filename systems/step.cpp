@@ -7,6 +7,7 @@
 #include "systems/contact_models/mdr.hpp"
 #include "systems/contact_models/paper.hpp"
 #include "systems/contact_models/patch.hpp"
+#include "systems/contact_models/region_fields.hpp"
 #include "systems/couple_tools.hpp"
 #include "systems/detect_contacts.hpp"
 #include "systems/group_regions.hpp"
@@ -43,9 +44,15 @@ bool any_friction(const StepContext& context) {
          });
 }
 
-bool any_moving(const StepContext& context) {
-  return any_friction(context) || any_contact_model<ContactModel::kPatch>(context) ||
+constexpr std::uint32_t kFieldPeriod = 8;  // steps; frames are farther apart
+
+bool any_half_space(const StepContext& context) {
+  return any_contact_model<ContactModel::kPatch>(context) ||
          any_contact_model<ContactModel::kMdr>(context);
+}
+
+bool any_moving(const StepContext& context) {
+  return any_friction(context) || any_half_space(context);
 }
 
 bool any_paper_friction(const StepContext& context) {
@@ -78,6 +85,8 @@ std::vector<System<StepContext>> step_systems() {
        "a body with contact model patch", any_contact_model<ContactModel::kPatch>, patch_forces},
       {"paper_friction_forces", "friction and contact torque, equations (2)-(9), (14)",
        "a body with contact model paper and friction", any_paper_friction, paper_friction_forces},
+      {"region_fields", "what a region does to the surface around it, for those who draw it",
+       "a body with contact model mdr or patch", any_half_space, region_fields, kFieldPeriod},
       {"region_wrenches", "force and torque of every region, equation (1)", "a tool and a body",
        any_tool_and_body, region_wrenches},
       {"skeleton", "beam skeleton: displacement of the anchors", "a body with body model skeleton",

@@ -81,7 +81,14 @@ RoundContact contact_of(const World& world, std::uint32_t region) {
   return contact;
 }
 
-/// Pressure for those who draw it and count cells: that of the mean over the ellipse's area.
+/// Pressure over its mean at r = share * a.
+double pressure_share(double share, double flat_share) {
+  constexpr double kRim = 0.1;  // a flat punch's pressure has no limit at the rim
+  const double root = std::sqrt(std::max(1.0 - share * share, 0.0));
+  return (1.0 - flat_share) * 1.5 * root + flat_share * 0.5 / std::max(root, kRim);
+}
+
+/// Pressure for those who draw it and count cells.
 void set_cells(World& world, std::uint32_t region, const RoundContact& contact, bool sticks) {
   const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
@@ -95,10 +102,12 @@ void set_cells(World& world, std::uint32_t region, const RoundContact& contact, 
   for (std::uint32_t j = 0; j < side; ++j) {
     for (std::uint32_t i = 0; i < side; ++i, ++cell) {
       const glm::dvec2 arm = cell_center(frame, side, i, j) - contact.center;
-      const bool inside =
-          cells[cell].coverage > 0.0 && glm::dot(arm, arm) < contact.radius * contact.radius;
+      const double share = glm::length(arm) / std::max(contact.radius, 1e-300);
+      const bool inside = cells[cell].coverage > 0.0 && share < 1.0;
       tractions[cell] = CellTraction{};
-      tractions[cell].pressure = inside ? pressure : 0.0;
+      tractions[cell].pressure =
+          inside ? pressure * pressure_share(share, contact.flat_share) : 0.0;
+      tractions[cell].coverage = inside ? 1.0 : 0.0;
       tractions[cell].sticks = inside && sticks ? 1U : 0U;
     }
   }
@@ -145,6 +154,7 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
   resize_layers(thresholds_of(tables, round.flat_share), state.radius, round.radius, layers);
   const MdrForces forces = move_layers(tables, contact, layers);
   state.radius = round.radius;
+  state.flat_share = round.flat_share;
   // mu_s comes down to mu_d over a short slip and is back after as long an elastic path.
   const double stiffness =
       8.0 * contact.shear_modulus * round.radius / (2.0 - contact.poisson_ratio);

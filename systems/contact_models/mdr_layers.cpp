@@ -31,6 +31,13 @@ SpringLimits limits_at(double place, double flat_share) {
           round * 3.0 / (4.0 * kPi) * (k - e) + flat_share * k / (4.0 * kPi)};
 }
 
+/// Share of all friction that has slipped once `layers` layers have: finer where the first and the
+/// last springs slip, where the exact curve bends most.
+double slipped_share(std::size_t layers) {
+  const double t = static_cast<double>(layers) / static_cast<double>(kMdrLayers);
+  return t * t * (3.0 - 2.0 * t);
+}
+
 /// For one pressure: the places at which given shares of all friction lie outside.
 MdrThresholds make_thresholds(double flat_share) {
   constexpr std::size_t kFine = 20000;
@@ -54,7 +61,7 @@ MdrThresholds make_thresholds(double flat_share) {
   };
   MdrThresholds thresholds;
   for (std::size_t layer = 0; layer < kMdrLayers; ++layer) {
-    const double share = (static_cast<double>(layer) + 0.5) / static_cast<double>(kMdrLayers);
+    const double share = 0.5 * (slipped_share(layer) + slipped_share(layer + 1));
     MdrThreshold& threshold = thresholds[layer];
     threshold.shift_place = place_of(shift_beyond, share);
     threshold.turn_place = place_of(turn_beyond, share);
@@ -185,8 +192,8 @@ MdrForces move_layers(const MdrTables& tables, const MdrContact& contact,
   // Largest couple (3 pi / 16) or (pi / 4) mu F a: docs/models.md.
   const double couple_arm =
       kPi * mix(3.0 / 16.0, 0.25, contact.flat_share) * contact.radius * contact.torque_share;
-  const double share = 1.0 / static_cast<double>(kMdrLayers);
   for (std::size_t k = 0; k < kMdrLayers; ++k) {
+    const double share = slipped_share(k + 1) - slipped_share(k);
     MdrLayer& layer = layers[k];
     const double shift_limit = thresholds[k].shift_limit * shift_unit;
     const double turn_limit = thresholds[k].turn_limit * turn_unit;

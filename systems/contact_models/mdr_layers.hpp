@@ -15,8 +15,8 @@
 namespace torsion {
 
 /// Of one layer: where its spring sits in the one-dimensional foundation and at which deflection it
-/// slips. Layer k slips after k / n of the whole friction has slipped, in pure sliding as in pure
-/// spinning, so all layers have limit curves of one shape and their sum never leaves it.
+/// slips. Layer k slips after the same share of the whole friction has slipped in pure sliding as
+/// in pure spinning, so all layers have limit curves of one shape and their sum never leaves it.
 struct MdrThreshold {
   double shift_place = 0.0;  // x / a of the tangential spring
   double shift_limit = 0.0;  // deflection at slip over mu F / (Gt a)

@@ -153,6 +153,9 @@ void start_anew(Patch& patch) {
   for (std::size_t cell = 0; cell < patch.cells.size(); ++cell) {
     patch.cells[cell].displacement = {columns.moved_x[cell], columns.moved_y[cell]};
     patch.cells[cell].depression = columns.depression[cell];
+    patch.tractions[cell].pressure = columns.pressure[cell];
+    patch.tractions[cell].traction =
+        -glm::dvec2(columns.traction_x[cell], columns.traction_y[cell]);
   }
   patch.problem.sweeps = std::max(patch.problem.sweeps, kSweepsAnew);
   patch.problem.skip = kSkipAnew;

@@ -237,8 +237,10 @@ class Deep:
                 value = step @ self.balance(unknown + share * step, pose)[0]
                 return value if np.isfinite(value) else -1e300
 
-            share, balance = 1.0, self.balance(unknown + step, pose)
-            if not step @ balance[0] >= -0.5 * abs(step @ rest):
+            share, balance, begin = 1.0, self.balance(unknown + step, pose), step @ rest
+            # Where friction makes the tangent lean so much that `begin` is negative, no zero is
+            # certain: then the whole step, and in the worst case a shorter way of the ball.
+            if begin > 0.0 and not step @ balance[0] >= -0.5 * begin:
                 share = max(brentq(work, 0.0, 1.0, xtol=1e-3, rtol=0.1), 1e-3)
                 balance = self.balance(unknown + share * step, pose)
             unknown = unknown + share * step

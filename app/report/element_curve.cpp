@@ -96,8 +96,7 @@ std::vector<std::string_view> element_case_names() {
     names.push_back(parts_of(file.name).case_name);
   }
   std::ranges::sort(names);
-  const auto repeated = std::ranges::unique(names);
-  names.erase(repeated.begin(), repeated.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
 }
 

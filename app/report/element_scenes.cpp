@@ -66,12 +66,23 @@ ToolDescription tool_of(std::vector<PartDescription> parts) {
   ToolDescription tool;
   tool.node = "tool";
   std::vector<SurfaceMesh> surfaces;
+  surfaces.reserve(parts.size());
   for (const PartDescription& part : parts) {
     surfaces.push_back(part.surface);
   }
   tool.draw = drawn(surfaces, true, kToolColor);
   tool.parts = std::move(parts);
   return tool;
+}
+
+/// What of a large ball is above a block of that width, so that the block can be seen.
+DrawMesh cap_of_ball(double radius, double width) {
+  SurfaceMesh ball = shape_surface(ShapeKind::kSphere, glm::dvec3(radius), 161);
+  std::erase_if(ball.triangles, [&](const glm::uvec3& triangle) {
+    const glm::dvec3& corner = ball.positions[triangle.x];
+    return corner.y > 0.0 || std::hypot(corner.x, corner.z) > 0.8 * width;
+  });
+  return drawn({ball}, true, kToolColor);
 }
 
 ElementScene ball_on_block(std::string name, std::string title, double radius, double width,
@@ -88,6 +99,9 @@ ElementScene ball_on_block(std::string name, std::string title, double radius, d
       block(width, height, material, result.finite_body ? width : 20.0 * kContact));
   result.scene.tools.push_back(
       tool_of({exact_part(ShapeKind::kSphere, glm::dvec3(radius), {}, 41)}));
+  if (radius > width) {
+    result.scene.tools[0].draw = cap_of_ball(radius, width);
+  }
   result.touching = {glm::dvec3(0.0, radius, 0.0), kUpright};
   return result;
 }

@@ -107,7 +107,10 @@ std::string logarithmic_axis(const Plot& plot, char axis) {
   low /= 1.6;
   high *= 1.6;
   std::string ticks;
-  for (double power = std::pow(10.0, std::floor(std::log10(low))); power <= high; power *= 10.0) {
+  const auto first = static_cast<int>(std::floor(std::log10(low)));
+  const auto last = static_cast<int>(std::floor(std::log10(high)));
+  for (int decade = first; decade <= last; ++decade) {
+    const double power = std::pow(10.0, decade);
     for (const double step : {1.0, 2.0, 5.0}) {
       // Over many decades only their beginnings fit.
       if (step == 1.0 || high < 500.0 * low) {
@@ -181,7 +184,7 @@ std::string to_inline(std::string svg, const std::string& name, int height) {
   svg.erase(0, svg.find("<svg"));
   const std::size_t head_end = svg.find('>');
   svg.replace(0, head_end + 1,
-              fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\">", kWidth, height));
+              fmt::format(R"(<svg viewBox="0 0 {} {}" role="img">)", kWidth, height));
   for (const char* mark : {"gp", "gnuplot_", "textbox", "greybox"}) {
     for (const char quote : {'\'', '"'}) {
       replace_all(svg, fmt::format("id={}{}", quote, mark),

@@ -4,7 +4,8 @@ namespace torsion {
 
 /// The report's style sheet, for the screen and for paper.
 inline constexpr const char* kReportStyle = R"css(
-body { font: 16px/1.45 "DejaVu Sans", "Helvetica Neue", Arial, sans-serif; color: #111;
+html { font-size: 16px; }
+body { font: 1rem/1.45 "DejaVu Sans", "Helvetica Neue", Arial, sans-serif; color: #111;
        max-width: 76rem; margin: 2rem auto; padding: 0 1.5rem; }
 h1 { font-size: 1.9rem; margin-bottom: 0.2rem; }
 h2 { font-size: 1.35rem; border-top: 1px solid #999; padding-top: 1.2rem; margin-top: 2.5rem; }
@@ -29,10 +30,13 @@ figcaption { font-size: 0.85rem; color: #333; margin-top: 0.2rem; }
 @media screen and (max-width: 50rem) { .figures, .intro { grid-template-columns: 1fr; } }
 @media print {
   @page { size: A4; margin: 15mm; }
-  body { font-size: 9.5pt; margin: 0; padding: 0; max-width: none; }
+  html { font-size: 8.5pt; }
+  body { margin: 0; padding: 0; max-width: none; }
   h2 { break-after: avoid; }
   section.case { break-before: page; }
-  table { font-size: 7.5pt; break-inside: avoid; }
+  section.case h2 { margin-top: 0; border-top: none; }
+  .figures { gap: 0.4rem 1rem; }
+  table { font-size: 0.8rem; margin: 0.5rem 0; break-inside: avoid; }
   th, td { padding: 0.1rem 0.35rem; }
   .wide { overflow: visible; }
 }

@@ -98,6 +98,7 @@ std::vector<const MeasuredRun*> drawn_runs(const MeasuredCase& measured) {
     }
   }
   std::vector<const MeasuredRun*> runs;
+  runs.reserve(chosen.size());
   for (const auto& [pair, run] : chosen) {
     runs.push_back(run);
   }

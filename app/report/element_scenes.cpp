@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -27,6 +28,10 @@ struct Material {
 std::string material_text(const Material& material) {
   return fmt::format("E = {:.4g} MPa, \u03bd = {:.4g}, \u03bc = {:.3g}",
                      1e-6 * material.youngs_modulus, material.poisson_ratio, material.friction);
+}
+
+std::string length_text(double metres) {
+  return metres < 1.0 ? fmt::format("{:.4g} mm", 1e3 * metres) : fmt::format("{:.3g} m", metres);
 }
 
 BodyDescription body_of(const Material& material) {
@@ -75,14 +80,24 @@ ToolDescription tool_of(std::vector<PartDescription> parts) {
   return tool;
 }
 
-/// What of a large ball is above a block of that width, so that the block can be seen.
+/// What of a large ball is above a block of that width, so that the block can be seen: a lens.
 DrawMesh cap_of_ball(double radius, double width) {
-  SurfaceMesh ball = shape_surface(ShapeKind::kSphere, glm::dvec3(radius), 161);
-  std::erase_if(ball.triangles, [&](const glm::uvec3& triangle) {
-    const glm::dvec3& corner = ball.positions[triangle.x];
-    return corner.y > 0.0 || std::hypot(corner.x, corner.z) > 0.8 * width;
+  SurfaceMesh lens = shape_surface(ShapeKind::kSphere, glm::dvec3(radius), 161);
+  const double rim = 0.8 * width;
+  const double top = -std::sqrt(radius * radius - rim * rim);
+  std::erase_if(lens.triangles, [&](const glm::uvec3& triangle) {
+    const glm::dvec3& corner = lens.positions[triangle.x];
+    return corner.y > 0.0 || std::hypot(corner.x, corner.z) > rim;
   });
-  return drawn({ball}, true, kToolColor);
+  // Its flat upper side: the same triangles, lifted and turned over.
+  SurfaceMesh flat = lens;
+  for (glm::dvec3& position : flat.positions) {
+    position.y = top;
+  }
+  for (glm::uvec3& triangle : flat.triangles) {
+    std::swap(triangle.y, triangle.z);
+  }
+  return drawn({lens, flat}, true, kToolColor);
 }
 
 ElementScene ball_on_block(std::string name, std::string title, double radius, double width,
@@ -91,9 +106,9 @@ ElementScene ball_on_block(std::string name, std::string title, double radius, d
   result.name = std::move(name);
   result.title = std::move(title);
   result.description = fmt::format(
-      "A rigid ball of radius {:.4g} mm on a block of {:.4g} mm width and {:.4g} mm height ({}), "
-      "held at its bottom.",
-      1e3 * radius, 1e3 * width, 1e3 * height, material_text(material));
+      "A rigid ball of radius {:.4g} mm on a block of {} width and {} height ({}), held at its "
+      "bottom.",
+      1e3 * radius, length_text(width), length_text(height), material_text(material));
   result.finite_body = width < 1.0;
   result.scene.bodies.push_back(
       block(width, height, material, result.finite_body ? width : 20.0 * kContact));

@@ -122,12 +122,11 @@ std::string logarithmic_axis(const Plot& plot, char axis) {
                      low, high, ticks);
 }
 
-/// Height with the legend below, if it is there.
+/// Height with the legend below.
 int height_of(const Plot& plot) {
   const auto entries = static_cast<int>(
       std::ranges::count_if(plot.series, [](const PlotSeries& one) { return !one.label.empty(); }));
-  return kHeight +
-         (plot.legend_inside ? 0 : kLegendRow * ((entries + kLegendColumns - 1) / kLegendColumns));
+  return kHeight + kLegendRow * ((entries + kLegendColumns - 1) / kLegendColumns);
 }
 
 std::string script_of(const Plot& plot, const std::string& name) {
@@ -136,15 +135,15 @@ std::string script_of(const Plot& plot, const std::string& name) {
       "set terminal svg size {},{} noenhanced font 'sans-serif,14' name '{}'\n"
       "set output '{}.svg'\n"
       "set border 3\nset tics nomirror\nset grid lc rgb '#cccccc' dt 1\n"
-      "set key {} samplen 2 spacing 1.1 font ',13' maxcolumns {}\n"
+      "set key outside bottom center horizontal samplen 2 spacing 1.1 font ',13' maxcolumns {}\n"
       "set format '%g'\nset xlabel {}.\"\\n \" offset 0,0.3\nset ylabel {}\n",
-      kWidth, height_of(plot), name, name,
-      plot.legend_inside ? "top right" : "outside bottom center horizontal", kLegendColumns,
-      quoted(plot.x_label), quoted(plot.y_label));
+      kWidth, height_of(plot), name, name, kLegendColumns, quoted(plot.x_label),
+      quoted(plot.y_label));
   script +=
       plot.logarithmic
           ? logarithmic_axis(plot, 'x') + logarithmic_axis(plot, 'y')
           : std::string("set autoscale xfix\nset offsets graph 0, graph 0.03, graph 0.05, 0\n");
+  script += plot.from_zero ? "set yrange [0:]\n" : "";
   std::string draws;
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const PlotSeries& series = plot.series[i];

@@ -84,7 +84,8 @@ constexpr const char* kDefinitions = R"html(<h2>How the errors are defined</h2>
 |T<sub>ref</sub>|.</dd>
 <dt>twist</dt><dd>The root mean square of the difference of the surface&rsquo;s twist over 80 radii,
 evenly from the axis to 8 contact radii or the body&rsquo;s edge, over the twist of the tool. The
-twist at a radius is the displacement around the axis over the radius.</dd>
+twist at a radius is the displacement around the axis, mean of four directions, over the
+radius.</dd>
 <dt>step</dt><dd>Wall time of one step with contact: median and 99th percentile over the
 path.</dd>
 <dt>memory</dt><dd>All tables of the physics world, as reserved.</dd>

@@ -24,8 +24,8 @@ struct Plot {
   std::string caption;  // below the plot
   std::string x_label;  // with its unit
   std::string y_label;
-  bool logarithmic = false;    // both axes
-  bool legend_inside = false;  // top right; else below
+  bool logarithmic = false;  // both axes
+  bool from_zero = false;    // y starts at 0
   std::vector<PlotSeries> series;
 };
 

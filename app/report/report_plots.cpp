@@ -229,7 +229,7 @@ Plot field_plot(const MeasuredCase& measured) {
   plot.caption = "Twist of the surface over the tool\u2019s, at the largest twist.";
   plot.x_label = "radius over the contact\u2019s";
   plot.y_label = "twist over the tool\u2019s";
-  plot.legend_inside = true;
+  plot.from_zero = true;
   const auto add = [&](PlotSeries series, const std::vector<double>& twists, std::size_t stride) {
     for (std::size_t i = 0; i < field.radii.size(); i += stride) {
       series.points.emplace_back(field.radii[i] / field.contact_radius,

@@ -1,6 +1,7 @@
 #include "app/report/run_case.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -40,10 +41,13 @@ void move_to_point(Simulation& simulation, const std::vector<PathPoint>& path, s
   }
 }
 
-/// How far points at these radii, on the body's top along +x from under the tool, go around the
-/// axis, over the radius. The points are the only vertices of a body that is drawn.
+/// How far the body's top goes around the axis under the tool at each radius of the field, over
+/// the radius: the mean of four directions, so that a shift of all does not count. The points are
+/// the only vertices of a body that is drawn.
 std::vector<double> surface_twists(const ReferenceCase& reference_case,
                                    const Simulation& simulation) {
+  constexpr std::array<glm::dvec2, 4> kDirections = {
+      {{1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}}};
   const ReferenceField& field = reference_case.field;
   SceneDescription scene = reference_case.scene;
   const glm::dvec3 center = reference_case.path[field.point].tool.position;
@@ -51,20 +55,29 @@ std::vector<double> surface_twists(const ReferenceCase& reference_case,
   DrawMesh& drawn = scene.bodies[0].draw;
   drawn = DrawMesh{};
   for (const double r : field.radii) {
-    drawn.positions.emplace_back(center.x + r, bounds.highest.y, center.z);
-    drawn.normals.emplace_back(0.0F, 1.0F, 0.0F);
+    for (const glm::dvec2& direction : kDirections) {
+      drawn.positions.emplace_back(center.x + r * direction.x, bounds.highest.y,
+                                   center.z + r * direction.y);
+      drawn.normals.emplace_back(0.0F, 1.0F, 0.0F);
+    }
   }
   FrameWorld frame = prepare_frame(scene, simulation.world);
   Snapshot snapshot;
   snapshot.reserve(simulation.world);
   capture(simulation.world, snapshot);
   surface_field(simulation.world, snapshot, frame);
-  std::vector<glm::vec4> moved(field.radii.size());
+  std::vector<glm::vec4> moved(drawn.positions.size());
   deform_vertices(frame, 0, moved);
   std::vector<double> twists;
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    // Turning +x about +y goes to -z.
-    twists.push_back(-(static_cast<double>(moved[i].z) - center.z) / field.radii[i]);
+  for (std::size_t i = 0; i < field.radii.size(); ++i) {
+    double around = 0.0;  // m, sum over the directions
+    for (std::size_t k = 0; k < kDirections.size(); ++k) {
+      const std::size_t row = kDirections.size() * i + k;
+      const glm::dvec3 shift = glm::dvec3(moved[row]) - glm::dvec3(drawn.positions[row]);
+      // A turn about +y takes +x to -z and +z to +x.
+      around += shift.x * kDirections[k].y - shift.z * kDirections[k].x;
+    }
+    twists.push_back(around / (static_cast<double>(kDirections.size()) * field.radii[i]));
   }
   return twists;
 }

@@ -23,7 +23,7 @@ TEST(ProgramUsageTest, WrongUsageIsExitCodeTwo) {
       {"fly"},
       {"simulate"},
       {"simulate", scene("ball_on_cube"), "--rate", "0"},
-      {"simulate", scene("ball_on_cube"), "--contact-model", "mdr"},
+      {"simulate", scene("ball_on_cube"), "--contact-model", "hertz"},
       {"simulate", scene("ball_on_cube"), "--speed", "3"},
       {"export", scene("ball_on_cube"), "--at", "1"},
       {"export", scene("ball_on_cube"), "--at", "1", "--out", "x.obj"},
@@ -184,8 +184,8 @@ TEST(ProgramBadInputTest, SceneWithoutMotionNeedsALength) {
 }
 
 TEST(ProgramUsageTest, ModelThatIsNotThereIsRefusedWithThoseThatAre) {
-  const Ran ran = run_torsion({"simulate", scene("ball_on_cube"), "--contact-model", "mdr"});
-  EXPECT_NE(ran.err.find("no model \"mdr\"; it has auto, paper"), std::string::npos) << ran.err;
+  const Ran ran = run_torsion({"simulate", scene("ball_on_cube"), "--contact-model", "hertz"});
+  EXPECT_NE(ran.err.find("no model \"hertz\"; it has auto, paper, mdr, patch"), std::string::npos) << ran.err;
 }
 
 TEST(ProgramBadInputTest, OutputThatCannotBeWrittenIsSaidAndLeavesNothing) {

@@ -16,17 +16,18 @@ constexpr double kClearance = 1e-5;  // m
 constexpr double kFieldReach = 8.0;  // contact radii
 constexpr int kFieldPoints = 80;
 
-std::string error_text(const std::optional<double>& error) {
-  return error ? fmt::format("{:.2g}\u00a0%", 100.0 * *error) : "not known";
-}
-
 std::string reference_text(const ElementCurve& curve) {
+  const std::string error =
+      curve.force_error && curve.torque_error
+          ? fmt::format(
+                "Between this mesh and the next coarser one the force differs by "
+                "{:.2g}\u00a0%, the torque by {:.2g}\u00a0% of the largest value.",
+                100.0 * *curve.force_error, 100.0 * *curve.torque_error)
+          : "This is the only mesh: its own error is not known.";
   return fmt::format(
       "Finite elements (GetFEM) with Coulomb friction and history, {} quadratic ones to the radius "
-      "of the contact or its shorter half axis. Between this mesh and the next coarser one the "
-      "force differs by {}, the torque "
-      "by {} of the largest value.",
-      curve.divisions, error_text(curve.force_error), error_text(curve.torque_error));
+      "of the contact or its shorter half axis. {}",
+      curve.divisions, error);
 }
 
 std::string path_text(const ElementCurve& curve) {
@@ -97,7 +98,9 @@ std::vector<ReferenceCase> element_cases(bool quick) {
     one.finite_body = element_scene.finite_body;
     one.path = path_of(curve, element_scene.touching, quick ? 8 : 40);
     one.x = {PlotAxis::Quantity::kAbscissa, "twist of the tool (mrad)", 1e3};
-    one.y = {PlotAxis::Quantity::kTorque, "torque (mN m)", 1e3};
+    const bool large = std::ranges::max(curve.rows, {}, &ElementCurve::Row::torque).torque > 1.0;
+    one.y = {PlotAxis::Quantity::kTorque, large ? "torque (N m)" : "torque (mN m)",
+             large ? 1.0 : 1e3};
     if (element_scene.flat_top && !curve.field.empty()) {
       one.field = field_of(curve);
     }

@@ -250,6 +250,7 @@ ReferenceCase slide_and_spin_case(bool quick) {
     result.path.push_back({pose_at(kDepth, turn, shift), 8 * sphere.steps, Leg::kLoad, angle,
                            limit * load.force, limit * radius * load.moment});
   }
+  result.connected = false;
   result.x = {PlotAxis::Quantity::kForce, "friction force (N)", 1.0};
   result.y = {PlotAxis::Quantity::kTorque, "friction torque (mN m)", 1e3};
   return result;

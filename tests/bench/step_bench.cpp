@@ -51,7 +51,7 @@ class StepTimes {
 };
 
 /// Steps through the scripted motion between two times of full contact, to and fro.
-void time_contact(benchmark::State& state, Session session) {
+void time_contact(benchmark::State& state, Session& session) {
   constexpr double kFirst = 1.0;  // s
   constexpr double kLast = 3.3;   // s
   const double dt = session.simulation.world.clock.at<Clock>(0).dt;
@@ -80,13 +80,43 @@ void time_contact(benchmark::State& state, Session session) {
   }
 }
 
+/// The paper's models, which the goals of the whole step were set for.
+PrepareOptions papers_models() {
+  PrepareOptions options;
+  options.contact_model = ContactModel::kPaper;
+  options.body_model = BodyModel::kSkeleton;
+  return options;
+}
+
 void step_of_scene(benchmark::State& state, const std::string& name) {
-  Result<Session> session = open_session(scene_path(name), {});
+  Result<Session> session = open_session(scene_path(name), papers_models());
   if (!session) {
     state.SkipWithError(session.error().text.c_str());
     return;
   }
-  time_contact(state, std::move(session).value());
+  Session opened = std::move(session).value();
+  time_contact(state, opened);
+}
+
+/// A half-space model: the whole step, and the model's own share of it as a counter.
+void step_of_model(benchmark::State& state, const std::string& name, ContactModel model,
+                   std::string_view system) {
+  PrepareOptions options;
+  options.contact_model = model;
+  options.body_model = BodyModel::kNone;
+  options.settings.grid_side = static_cast<std::uint32_t>(state.range(0));
+  Result<Session> opened = open_session(scene_path(name), options);
+  if (!opened) {
+    state.SkipWithError(opened.error().text.c_str());
+    return;
+  }
+  Session session = std::move(opened).value();
+  time_contact(state, session);
+  for (const auto& row : session.simulation.schedule.rows()) {
+    if (row.system.name == system) {
+      state.counters["model_us"] = 1e6 * row.timing.total_s / static_cast<double>(row.timing.runs);
+    }
+  }
 }
 
 /// ball_on_cube with the cube as a mesh of about 6 n^2 vertices.
@@ -96,7 +126,7 @@ void step_of_mesh(benchmark::State& state) {
   part = test::make_part(ShapeKind::kBox, part.shape.half_extent, part.shape.pose, true,
                          static_cast<std::uint32_t>(state.range(0)));
   const auto start = SteadyClock::now();
-  Result<Simulation> simulation = prepare(*loaded.scene, {});
+  Result<Simulation> simulation = prepare(*loaded.scene, papers_models());
   if (!simulation) {
     state.SkipWithError(simulation.error().text.c_str());
     return;
@@ -105,7 +135,7 @@ void step_of_mesh(benchmark::State& state) {
   state.counters["vertices"] = static_cast<double>(part.surface.positions.size());
   Session session{std::move(*loaded.scene), std::move(simulation).value(), {}};
   session.tool_poses.resize(1);
-  time_contact(state, std::move(session));
+  time_contact(state, session);
 }
 
 /// Writes a scene of a body of about 100 000 triangles and a ball.
@@ -148,7 +178,7 @@ void load_large_scene(benchmark::State& state, bool cached) {
     }
     const auto start = SteadyClock::now();
     const LoadedScene loaded = load_gltf(path);
-    const Result<Simulation> simulation = prepare(*loaded.scene, {});
+    const Result<Simulation> simulation = prepare(*loaded.scene, papers_models());
     const FrameWorld frame = prepare_frame(*loaded.scene, simulation.value().world);
     state.SetIterationTime(seconds_since(start));
     triangles = frame.body_triangles.size();
@@ -162,7 +192,7 @@ void whole_run(benchmark::State& state) {
   double simulated = 0.0;
   double wall = 0.0;
   for (auto _ : state) {
-    Result<Session> session = open_session(scene_path("ball_on_cube"), {});
+    Result<Session> session = open_session(scene_path("ball_on_cube"), papers_models());
     Progress silent("", true);
     const double duration = session.value().scene.duration;
     const RunStatistics statistics =
@@ -191,6 +221,25 @@ BENCHMARK_CAPTURE(step_of_scene, compass_on_ellipsoid, "compass_on_ellipsoid")
     ->Iterations(5000)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(step_of_scene, ball_on_cube_soft, "ball_on_cube_soft")
+    ->UseManualTime()
+    ->Iterations(5000)
+    ->Unit(benchmark::kMicrosecond);
+// Cells along a side of the grid: 12 puts 50 to 90 into a round contact, 16 110 to 170.
+BENCHMARK_CAPTURE(step_of_model, mdr_ball_on_cube, "ball_on_cube", ContactModel::kMdr, "mdr_forces")
+    ->Arg(12)
+    ->UseManualTime()
+    ->Iterations(20000)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step_of_model, patch_ball_on_cube, "ball_on_cube", ContactModel::kPatch,
+                  "patch_forces")
+    ->Arg(12)
+    ->Arg(16)
+    ->UseManualTime()
+    ->Iterations(20000)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step_of_model, patch_many_regions, "many_regions", ContactModel::kPatch,
+                  "patch_forces")
+    ->Arg(12)
     ->UseManualTime()
     ->Iterations(5000)
     ->Unit(benchmark::kMicrosecond);

@@ -82,9 +82,16 @@ TEST(FiniteElementsTest, HalfSpaceMatchesSneddonAndLubkin) {
 }
 
 // What other tests may expect of these references: every case's two meshes are within 1 % of each
-// other over the whole path, in force and torque, of the greatest value.
+// other over the whole path, in force and torque, of the greatest value. At large strain both
+// meshes are coarser, with 4 and 6 elements to a contact radius: there it is 1.5 % (measured: 1.0
+// %, early on the way back).
 TEST(FiniteElementsTest, TwoMeshesAgree) {
-  const char* cases[][2] = {
+  struct Pair {
+    const char* coarse;
+    const char* fine;
+    double difference = 0.01;
+  };
+  const Pair cases[] = {
       {"ball_on_cube_nu30_6", "ball_on_cube_nu30_9"},
       {"ball_on_cube_nu49_6", "ball_on_cube_nu49_9"},
       {"thin_layer_6", "thin_layer_9"},
@@ -92,8 +99,9 @@ TEST(FiniteElementsTest, TwoMeshesAgree) {
       {"mallet_on_ellipsoid_3", "mallet_on_ellipsoid_4"},
       {"compass_on_ellipsoid_4", "compass_on_ellipsoid_6"},
       {"large_strain_linear_6", "large_strain_linear_9"},
+      {"large_strain_4", "large_strain_6", 0.015},
   };
-  for (const auto& [coarse_name, fine_name] : cases) {
+  for (const auto& [coarse_name, fine_name, difference] : cases) {
     const std::vector<Pose> coarse = read_case(coarse_name);
     const std::vector<Pose> fine = read_case(fine_name);
     ASSERT_GT(fine.size(), 2U) << fine_name;
@@ -103,8 +111,10 @@ TEST(FiniteElementsTest, TwoMeshesAgree) {
     for (std::size_t i = 0; i < fine.size(); ++i) {
       EXPECT_EQ(coarse[i].depth, fine[i].depth) << fine_name << ", pose " << i;
       EXPECT_EQ(coarse[i].phi, fine[i].phi) << fine_name << ", pose " << i;
-      EXPECT_NEAR(coarse[i].force, fine[i].force, 0.01 * force) << fine_name << ", pose " << i;
-      EXPECT_NEAR(coarse[i].torque, fine[i].torque, 0.01 * torque) << fine_name << ", pose " << i;
+      EXPECT_NEAR(coarse[i].force, fine[i].force, difference * force)
+          << fine_name << ", pose " << i;
+      EXPECT_NEAR(coarse[i].torque, fine[i].torque, difference * torque)
+          << fine_name << ", pose " << i;
     }
   }
 }

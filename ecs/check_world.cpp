@@ -105,6 +105,8 @@ void check_owned_rows(const World& world, std::string_view table, const OwnedRow
                    "its anchors are not there");
   findings.require(inside(owned.influences, world.influences.size()), table, row,
                    "its influence tables are not there");
+  findings.require(inside(owned.compliance, world.compliance.size()), table, row,
+                   "its compliance is not there");
 }
 
 void check_owners(const World& world, Findings& findings) {

@@ -145,7 +145,7 @@ struct FixedVolume {
 };
 
 enum class ContactModel : std::uint32_t { kAuto, kPaper, kMdr, kPatch };
-enum class BodyModel : std::uint32_t { kAuto, kNone, kSkeleton };
+enum class BodyModel : std::uint32_t { kAuto, kNone, kSkeleton, kCompliance };
 
 /// What the scene asked for and, once prepared, what runs (never kAuto). Written by: load.
 struct BodyModels {
@@ -162,6 +162,7 @@ struct OwnedRows {
   Range balls;       // in `balls`; tools only
   Range anchors;     // in `anchors`; bodies only
   Range influences;  // in `influences`; bodies with contact model patch only
+  Range compliance;  // in `compliance`: (6 anchors)^2 values, row-major; body model compliance only
 };
 
 /// Axis-aligned box of the rest shape in the owner's frame. Written by: load.
@@ -238,6 +239,16 @@ struct RegionFrame {
 struct RegionCarrier {
   glm::dvec3 translation{0.0};  // m, body, of the grid's origin
   glm::dvec3 rotation{0.0};     // rad, body: rotation vector
+};
+
+/// How the whole body's deformation has moved the material under the region, as a rigid body.
+/// Written by: compliance; zero with other body models.
+struct RegionSupport {
+  glm::dvec3 about{0.0};             // m, body: the point that has gone by `translation`
+  glm::dvec3 translation{0.0};       // m, body
+  glm::dvec3 rotation{0.0};          // rad, body: rotation vector
+  glm::dvec3 translation_step{0.0};  // m: by the last step
+  glm::dvec3 rotation_step{0.0};     // rad
 };
 
 /// Where the tractions are: the grid as it was when they were last carried over to it, moved since
@@ -394,6 +405,13 @@ struct MdrLayer {
 /// A point of the body's rest surface at which the body model gives displacement. Written by: load.
 struct AnchorRest {
   glm::dvec3 position{0.0};  // m, body
+  glm::dvec3 normal{0.0};    // body, unit, outward; body model compliance only
+};
+
+/// One value of the matrix of a body with body model `compliance`: how wrenches at its anchors move
+/// the material at them beyond what half-spaces do. Written by: load.
+struct ComplianceValue {
+  double value = 0.0;  // m/N, rad/N, m/(N m), rad/(N m)
 };
 
 /// Sum over the body's regions. Written by: the body model (systems/body_models/).

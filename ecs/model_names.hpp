@@ -13,7 +13,8 @@ namespace torsion {
 
 inline constexpr std::array<std::string_view, 4> kContactModelNames = {"auto", "paper", "mdr",
                                                                        "patch"};
-inline constexpr std::array<std::string_view, 3> kBodyModelNames = {"auto", "none", "skeleton"};
+inline constexpr std::array<std::string_view, 4> kBodyModelNames = {"auto", "none", "skeleton",
+                                                                    "compliance"};
 
 constexpr std::string_view name_of(ContactModel model) {
   return kContactModelNames[static_cast<std::size_t>(model)];

@@ -25,6 +25,7 @@ void World::reserve(const Capacities& capacities, const Settings& chosen) {
 void World::reserve_models(const Capacities& capacities, const Settings& chosen) {
   settings.reserve(1);
   influences.reserve(capacities.influences);
+  compliance.reserve(capacities.compliance_values);
   regions.reserve(capacities.regions);
   cells.reserve(capacities.regions * chosen.grid_side * chosen.grid_side);
   patch_cells.reserve(capacities.influences > 0 ? cells.capacity() : 0);

@@ -22,8 +22,9 @@ struct Capacities {
   std::uint32_t balls = 0;
   std::uint32_t anchors = 0;
   std::uint32_t regions = 0;
-  std::uint32_t mdr_bodies = 0;  // with contact model mdr
-  std::uint32_t influences = 0;  // 0 when no body has contact model patch
+  std::uint32_t mdr_bodies = 0;         // with contact model mdr
+  std::uint32_t compliance_values = 0;  // 0 when no body has body model compliance
+  std::uint32_t influences = 0;         // 0 when no body has contact model patch
 };
 
 /// What can go wrong in a step. The step still ends; the tools' wrenches fade to zero while a fault
@@ -62,9 +63,9 @@ using BodyTable =
     Table<Entity, Pose, Elasticity, Friction, FixedRegion, BodyModels, OwnedRows, Bounds>;
 using ToolTable =
     Table<Entity, ToolPose, ToolMotion, MassProperties, ToolWrench, OwnedRows, Bounds>;
-using RegionTable =
-    Table<RegionIdentity, RegionFrame, RegionCarrier, TractionFrame, RegionGeometry, RegionMotion,
-          RegionNormal, RegionFriction, PatchState, MdrState, RegionField, RegionWrench>;
+using RegionTable = Table<RegionIdentity, RegionFrame, RegionCarrier, RegionSupport, TractionFrame,
+                          RegionGeometry, RegionMotion, RegionNormal, RegionFriction, PatchState,
+                          MdrState, RegionField, RegionWrench>;
 using CellTable = Table<CellGeometry, CellTraction>;
 using PatchCellTable = Table<PatchCell, PatchChange>;
 using MdrLayerTable = Table<MdrLayer>;
@@ -83,6 +84,7 @@ struct World {
   Table<SurfaceSample> samples;
   Table<SurfaceBall> balls;
   Table<Influence> influences;
+  Table<ComplianceValue> compliance;
   Table<BeamSection> sections;  // kBeamStations rows an anchor, in the order of `anchors`
   // written by the step
   Table<Clock> clock;
@@ -108,13 +110,13 @@ struct World {
 
   [[nodiscard]] auto tables() {
     return std::tie(settings, parts, fields, field_nodes, field_bricks, fixed_volumes, samples,
-                    balls, influences, sections, clock, bodies, tools, regions, cells, patch_cells,
-                    mdr_layers, anchors);
+                    balls, influences, compliance, sections, clock, bodies, tools, regions, cells,
+                    patch_cells, mdr_layers, anchors);
   }
   [[nodiscard]] auto tables() const {
     return std::tie(settings, parts, fields, field_nodes, field_bricks, fixed_volumes, samples,
-                    balls, influences, sections, clock, bodies, tools, regions, cells, patch_cells,
-                    mdr_layers, anchors);
+                    balls, influences, compliance, sections, clock, bodies, tools, regions, cells,
+                    patch_cells, mdr_layers, anchors);
   }
   [[nodiscard]] auto pools() { return std::tie(body_handles, tool_handles, region_handles); }
   [[nodiscard]] auto pools() const { return std::tie(body_handles, tool_handles, region_handles); }

@@ -152,13 +152,13 @@ std::pair<ContactModel, std::string> auto_contact(const ExpectedContact& contact
 
 std::pair<BodyModel, std::string> auto_body(const ExpectedContact& contact, double tolerance) {
   if (!contact.known) {
-    return {BodyModel::kSkeleton, "auto: moved by hand, so pressed as deep as the hand will"};
+    return {BodyModel::kCompliance, "auto: moved by hand, so pressed as deep as the hand will"};
   }
   const double error =
       contact.any ? kFiniteBodyError * contact.radius / std::max(contact.body_depth, 1e-300) : 0.0;
   const std::string text = "auto: the body is not endless, which changes the force by about " +
                            percent(error) + ", tolerance " + percent(tolerance);
-  return {error <= 0.5 * tolerance ? BodyModel::kNone : BodyModel::kSkeleton, text};
+  return {error <= 0.5 * tolerance ? BodyModel::kNone : BodyModel::kCompliance, text};
 }
 
 }  // namespace
@@ -192,7 +192,7 @@ ExpectedContact expect_contact(const World& world, std::uint32_t body,
 
 ModelChoice choose_models(const BodyModels& scene, const PrepareOptions& options,
                           const ExpectedContact& contact) {
-  ModelChoice choice{scene, "the scene says so", "the scene says so"};
+  ModelChoice choice{scene, "the scene says so", "the scene says so", false};
   if (options.contact_model != ContactModel::kAuto) {
     choice.models.contact = options.contact_model;
     choice.contact_why = "the command line says so";
@@ -204,7 +204,8 @@ ModelChoice choose_models(const BodyModels& scene, const PrepareOptions& options
   if (choice.models.contact == ContactModel::kAuto) {
     std::tie(choice.models.contact, choice.contact_why) = auto_contact(contact, scene.tolerance);
   }
-  if (choice.models.body == BodyModel::kAuto) {
+  choice.body_is_auto = choice.models.body == BodyModel::kAuto;
+  if (choice.body_is_auto) {
     std::tie(choice.models.body, choice.body_why) = auto_body(contact, scene.tolerance);
   }
   return choice;

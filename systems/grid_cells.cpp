@@ -28,6 +28,14 @@ Pose moved_grid_in_body(const Grid& grid) {
     moved.rotation = glm::angleAxis(angle, carrier.rotation / angle) * moved.rotation;
   }
   moved.position += carrier.translation;
+  const RegionSupport& support = grid.support;
+  const double turn = glm::length(support.rotation);
+  if (turn > 0.0) {
+    const glm::dquat rotation = glm::angleAxis(turn, support.rotation / turn);
+    moved.rotation = rotation * moved.rotation;
+    moved.position = support.about + rotation * (moved.position - support.about);
+  }
+  moved.position += support.translation;
   return moved;
 }
 

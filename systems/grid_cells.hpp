@@ -16,6 +16,7 @@ struct Grid {
   RegionIdentity identity;
   RegionFrame& frame;
   const RegionCarrier& carrier;
+  const RegionSupport& support;
   std::uint32_t side;
   std::span<CellGeometry> cells;
 };
@@ -28,6 +29,7 @@ inline Grid grid_of(StepContext& context, std::uint32_t region) {
           identity,
           world.regions.at<RegionFrame>(region),
           world.regions.at<RegionCarrier>(region),
+          world.regions.at<RegionSupport>(region),
           world.settings.at<Settings>(0).grid_side,
           world.cells.rows<CellGeometry>(identity.cells)};
 }

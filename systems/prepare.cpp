@@ -6,6 +6,7 @@
 #include "systems/distance_field_build.hpp"
 #include "systems/frames.hpp"
 #include "systems/prepare_anchors.hpp"
+#include "systems/prepare_compliance.hpp"
 #include "systems/sample_surface.hpp"
 #include "systems/scratch.hpp"
 #include "systems/step.hpp"
@@ -203,10 +204,44 @@ std::vector<ModelChoice> choose_all(const World& world, const PrepareOptions& op
   return choices;
 }
 
+/// Body model compliance's anchors and matrices of all bodies that have it; empty for the others.
+/// Where it cannot be had and nobody insists on it, the choice becomes skeleton.
+Result<std::vector<PreparedCompliance>> build_compliances(const World& world,
+                                                          const SceneDescription& scene,
+                                                          std::span<ModelChoice> choices,
+                                                          bool use_cache) {
+  std::vector<PreparedCompliance> all(choices.size());
+  for (std::uint32_t row = 0; row < choices.size(); ++row) {
+    if (choices[row].models.body == BodyModel::kCompliance) {
+      Result<PreparedCompliance> built =
+          prepare_compliance(scene.bodies[row], world, row, use_cache);
+      if (!built && choices[row].body_is_auto) {
+        choices[row].models.body = BodyModel::kSkeleton;
+        choices[row].body_why = "auto: " + built.error().text;
+        continue;
+      }
+      if (!built) {
+        return built.error();
+      }
+      all[row] = std::move(built).value();
+    }
+  }
+  return all;
+}
+
 /// What the chosen models of a body need.
 void append_models(World& world, std::uint32_t row, const BodyDescription& body,
-                   ModelChoice& choice) {
+                   const PreparedCompliance& compliant, ModelChoice& choice) {
   OwnedRows& owned = world.bodies.at<OwnedRows>(row);
+  if (!compliant.anchors.empty()) {
+    owned.anchors = append_rows<AnchorRest>(world.anchors, compliant.anchors);
+    owned.compliance = append_rows<ComplianceValue>(world.compliance, compliant.values);
+    const auto sections = static_cast<std::uint32_t>(compliant.anchors.size()) * kBeamStations;
+    TORSION_ASSERT(world.sections.append(sections).has_value());
+  } else if (choice.models.body == BodyModel::kCompliance) {
+    choice.models.body = BodyModel::kNone;
+    choice.body_why = "hardly any of the body is free";
+  }
   if (choice.models.body == BodyModel::kSkeleton) {
     const Range volumes = world.bodies.at<FixedRegion>(row).volumes;
     const PreparedAnchors prepared = prepare_anchors(body, world, owned.parts, volumes);
@@ -229,8 +264,8 @@ void append_models(World& world, std::uint32_t row, const BodyDescription& body,
 }
 
 /// Chooses models and fills all tables that depend on them.
-void append_choices(Simulation& simulation, const SceneDescription& scene,
-                    const PrepareOptions& options, Capacities capacities) {
+Result<Done> append_choices(Simulation& simulation, const SceneDescription& scene,
+                            const PrepareOptions& options, Capacities capacities) {
   World& world = simulation.world;
   simulation.choices = choose_all(world, options);
   Settings settings = options.settings;
@@ -241,13 +276,22 @@ void append_choices(Simulation& simulation, const SceneDescription& scene,
     capacities.influences += choice.models.contact == ContactModel::kPatch ? influences : 0U;
     capacities.mdr_bodies += choice.models.contact == ContactModel::kMdr ? 1U : 0U;
   }
+  const Result<std::vector<PreparedCompliance>> compliances =
+      build_compliances(world, scene, simulation.choices, options.use_cache);
+  if (!compliances) {
+    return compliances.error();
+  }
+  for (const PreparedCompliance& compliant : compliances.value()) {
+    capacities.compliance_values += static_cast<std::uint32_t>(compliant.values.size());
+  }
   world.reserve_models(capacities, settings);
   for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
-    append_models(world, row, scene.bodies[row], simulation.choices[row]);
+    append_models(world, row, scene.bodies[row], compliances.value()[row], simulation.choices[row]);
   }
   TORSION_ASSERT(world.cells.append(world.cells.capacity()).has_value());
   TORSION_ASSERT(world.mdr_layers.append(world.mdr_layers.capacity()).has_value());
   TORSION_ASSERT(world.patch_cells.append(world.patch_cells.capacity()).has_value());
+  return Done{};
 }
 
 }  // namespace
@@ -271,7 +315,10 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
   world.reserve(capacities, Settings{1, 0});
   world.clock.at<Clock>(0).dt = 1.0 / options.rate;
   append_scene(world, scene, built.value());
-  append_choices(simulation, scene, options, capacities);
+  const Result<Done> done = append_choices(simulation, scene, options, capacities);
+  if (!done) {
+    return done.error();
+  }
   simulation.scratch->reserve(world);
   simulation.schedule =
       Schedule<StepContext>(step_systems(), StepContext{world, {}, *simulation.scratch});

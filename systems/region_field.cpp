@@ -292,7 +292,9 @@ RegionDent region_dent(const World& world, const Snapshot& snapshot, std::uint32
   dent.drag = tangent_to_body(frame, friction.force) * -compliance;
   dent.pressure =
       geometry.area > 0.0 ? snapshot.regions.at<RegionNormal>(region).force / geometry.area : 0.0;
-  dent.pressed = pressed_surface(world, snapshot, region, dent.depth / geometry.largest_depth);
+  const bool in_series = world.bodies.at<BodyModels>(identity.body).body == BodyModel::kCompliance;
+  dent.pressed = pressed_surface(world, snapshot, region,
+                                 in_series ? 1.0 : dent.depth / geometry.largest_depth);
   dent.full_overlap = 0.1 * geometry.largest_depth;
   return dent;
 }

@@ -80,8 +80,11 @@ void region_motion(StepContext& context) {
     const glm::dvec3 pivot = grid_to_body(frame, glm::dvec3(motion.pivot, 0.0) + height);
     const glm::dvec3 velocity =
         tool.velocity + glm::cross(tool.angular_velocity, pivot - tool.center);
-    motion.slide = glm::dvec2(body_to_grid_direction(frame, velocity)) * dt;
-    motion.spin = glm::dot(tool.angular_velocity, frame.normal) * dt;
+    const RegionSupport& support = world.regions.at<RegionSupport>(region);
+    const glm::dvec3 carried =
+        support.translation_step + glm::cross(support.rotation_step, pivot - support.about);
+    motion.slide = glm::dvec2(body_to_grid_direction(frame, velocity * dt - carried));
+    motion.spin = glm::dot(tool.angular_velocity * dt - support.rotation_step, frame.normal);
     motion.turn += motion.spin;
     const bool has_axis = glm::dot(tool.axis, tool.axis) > 0.0;
     motion.lever =

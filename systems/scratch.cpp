@@ -36,6 +36,11 @@ void Scratch::reserve(const World& world) {
         &cell_columns.depth, &cell_columns.depth_change}) {
     *each = column();
   }
+  if (!world.compliance.empty()) {
+    constexpr std::size_t kRows = std::size_t{6} * kMaxRegionsPerBody;
+    compliance_matrix.resize(kRows * kRows);
+    compliance_residuals.resize(kRows);
+  }
   if (!world.mdr_layers.empty()) {
     mdr_tables = make_mdr_tables();
   }

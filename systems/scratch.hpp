@@ -94,6 +94,10 @@ struct Scratch {
   std::vector<CarriedCell> carried_cells;  // (cells of one region and a border of one around them)
   std::vector<std::uint32_t> near_parts;   // (parts of all bodies and tools)
 
+  // compliance
+  std::vector<double> compliance_matrix;     // (6 kMaxRegionsPerBody)^2, row-major
+  std::vector<double> compliance_residuals;  // (6 kMaxRegionsPerBody)
+
   // mdr_forces
   MdrTables mdr_tables;  // constant; empty without contact model mdr
   // patch_forces

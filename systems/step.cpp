@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "systems/body_models/compliance.hpp"
 #include "systems/body_models/skeleton.hpp"
 #include "systems/carry_tractions.hpp"
 #include "systems/contact_models/mdr.hpp"
@@ -35,6 +36,13 @@ bool any_skeleton(const StepContext& context) {
          std::ranges::any_of(
              context.world.bodies.column<BodyModels>(),
              [](const BodyModels& models) { return models.body == BodyModel::kSkeleton; });
+}
+
+bool any_compliance(const StepContext& context) {
+  return any_tool_and_body(context) &&
+         std::ranges::any_of(
+             context.world.bodies.column<BodyModels>(),
+             [](const BodyModels& models) { return models.body == BodyModel::kCompliance; });
 }
 
 bool any_friction(const StepContext& context) {
@@ -91,6 +99,8 @@ std::vector<System<StepContext>> step_systems() {
        any_tool_and_body, region_wrenches},
       {"skeleton", "beam skeleton: displacement of the anchors", "a body with body model skeleton",
        any_skeleton, skeleton},
+      {"compliance", "the whole body's deformation: under its regions and at its anchors",
+       "a body with body model compliance", any_compliance, compliance},
       {"sum_wrenches", "the wrench on every tool, faults, work", "a tool", nullptr, sum_wrenches},
   };
 }

@@ -29,6 +29,7 @@ struct ModelChoice {
   BodyModels models;  // never kAuto
   std::string contact_why;
   std::string body_why;
+  bool body_is_auto = false;
 };
 
 /// A world with the schedule that moves it and the memory that the schedule needs.

@@ -156,7 +156,9 @@ BodyField body_field(const World& world, const Snapshot& snapshot, const FrameWo
   }
   fill_slots(snapshot, field);
   fill_touchers(snapshot, field);
-  if (field.has_weights && !field.slots.empty()) {
+  // A body with compliance has what its contacts do to the half-space in the dents alone.
+  const bool anchors_have_dents = world.bodies.at<BodyModels>(body).body == BodyModel::kSkeleton;
+  if (field.has_weights && !field.slots.empty() && anchors_have_dents) {
     solve_interpolation(inverse, centers, center_values(snapshot, data, field.slots, centers),
                         field.weights);
   }

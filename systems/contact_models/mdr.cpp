@@ -72,7 +72,9 @@ RoundContact contact_of(const World& world, std::uint32_t region) {
   contact.force = round_force + flat_force;
   contact.flat_share = flat_force / contact.force;
   contact.torque_share = 1.0 + round_share * (ellipse.torque_share - 1.0);
-  const double thickness = layer_thickness(world, identity.body, frame);
+  // A body model in series has the body's thickness itself.
+  const bool in_series = world.bodies.at<BodyModels>(identity.body).body == BodyModel::kCompliance;
+  const double thickness = in_series ? 0.0 : layer_thickness(world, identity.body, frame);
   if (thickness > 0.0) {
     contact.force *= layer_force_share(contact.radius / thickness, elasticity.poisson_ratio);
   }

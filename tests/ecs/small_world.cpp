@@ -49,8 +49,8 @@ void mend_owners(World& world) {
     world.balls.at<SurfaceBall>(row).sample = row % 2 == 0 ? kNoRow : row % 20 / 2;
   }
   for (std::uint32_t row = 0; row < 2; ++row) {
-    world.tools.at<OwnedRows>(row) = {{row, 1}, {row * 10, 10}, {row * 20, 20}, {}, {}};
-    world.bodies.at<OwnedRows>(row) = {{row + 1, 1}, {}, {}, {row * 3, 3}, {}};
+    world.tools.at<OwnedRows>(row) = {{row, 1}, {row * 10, 10}, {row * 20, 20}, {}, {}, {}};
+    world.bodies.at<OwnedRows>(row) = {{row + 1, 1}, {}, {}, {row * 3, 3}, {}, {}};
     world.bodies.at<FixedRegion>(row).volumes = {row, 1};
     auto& region = world.regions.at<RegionIdentity>(row);
     region.body = row;
@@ -77,6 +77,7 @@ World small_world(unsigned seed) {
   capacities.regions = 4;
   capacities.influences = 3;
   capacities.mdr_bodies = 1;
+  capacities.compliance_values = 2;
   Settings settings;
   settings.grid_side = 4;
   world.reserve(capacities, settings);
@@ -94,6 +95,7 @@ World small_world(unsigned seed) {
   world.regions.append(2);
   world.cells.append(2 * settings.grid_side * settings.grid_side);
   world.influences.append(3);
+  world.compliance.append(2);
   world.patch_cells.append(world.cells.size());
   world.mdr_layers.append(world.mdr_layers.capacity());
   world.anchors.append(6);

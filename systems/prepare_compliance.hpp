@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "ecs/result.hpp"
+#include "ecs/scene_description.hpp"
+#include "ecs/world.hpp"
+
+namespace torsion {
+
+/// Anchors of a body with body model compliance, and the matrix between them.
+struct PreparedCompliance {
+  std::vector<AnchorRest> anchors;
+  std::vector<ComplianceValue> values;  // (6 anchors)^2, row-major
+};
+
+/// Where the body is clamped: its fixed face or volumes; at a fixed point a ball of a quarter of
+/// the body's shortest side, because a point cannot hold an elastic body. Load time only; the first
+/// time for a shape and clamp it takes seconds, then it comes from the cache. The same input gives
+/// the same bits.
+/// @param world  shapes and the body `row` are there
+Result<PreparedCompliance> prepare_compliance(const BodyDescription& description,
+                                              const World& world, std::uint32_t row,
+                                              bool use_cache);
+
+}  // namespace torsion

@@ -101,9 +101,10 @@ TEST(ExportTest, BinaryFileHoldsTheTwistedBodyAndItsRestShape) {
     }
     largest = std::max(largest, static_cast<double>(std::abs(twist[i])));
   }
-  // The ball sticks and has turned by 60 degrees: nothing turns farther, what it touches nearly so.
+  // The ball has turned by 60 degrees: nothing turns farther; the rim of the contact slips, and
+  // the middle of it, where it sticks longest, has turned nearly as far.
   const double turned = std::numbers::pi / 3.0;
-  EXPECT_GT(largest, 0.98 * turned);
+  EXPECT_GT(largest, 0.9 * turned);
   EXPECT_LT(largest, turned + 1e-6);
 }
 

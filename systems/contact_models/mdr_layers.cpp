@@ -38,6 +38,10 @@ double slipped_share(std::size_t layers) {
   return t * t * (3.0 - 2.0 * t);
 }
 
+double cube(double x) {
+  return x * x * x;
+}
+
 /// For one pressure: the places at which given shares of all friction lie outside.
 MdrThresholds make_thresholds(double flat_share) {
   constexpr std::size_t kFine = 20000;
@@ -51,6 +55,9 @@ MdrThresholds make_thresholds(double flat_share) {
     turn_beyond[i] = turn_beyond[i + 1] + place * place * limits.turn;
   }
   const auto place_of = [&](const std::vector<double>& beyond, double share) {
+    if (share <= 0.0 || share >= 1.0) {
+      return share <= 0.0 ? 1.0 : 0.0;
+    }
     const double wanted = share * beyond.front();
     const auto at = std::partition_point(beyond.begin(), beyond.end(),
                                          [wanted](double value) { return value > wanted; });
@@ -61,12 +68,19 @@ MdrThresholds make_thresholds(double flat_share) {
   };
   MdrThresholds thresholds;
   for (std::size_t layer = 0; layer < kMdrLayers; ++layer) {
-    const double share = 0.5 * (slipped_share(layer) + slipped_share(layer + 1));
+    const double from = slipped_share(layer);
+    const double to = slipped_share(layer + 1);
+    const double middle = 0.5 * (from + to);
     MdrThreshold& threshold = thresholds[layer];
-    threshold.shift_place = place_of(shift_beyond, share);
-    threshold.turn_place = place_of(turn_beyond, share);
-    threshold.shift_limit = limits_at(threshold.shift_place, flat_share).shift;
-    threshold.turn_limit = limits_at(threshold.turn_place, flat_share).turn;
+    threshold.shift_place = place_of(shift_beyond, middle);
+    threshold.turn_place = place_of(turn_beyond, middle);
+    // The layer's largest load over the stiffness of its springs, so that all layers together have
+    // the exact stiffness before they slip and the exact load after.
+    const double cells = (to - from) / static_cast<double>(kFine);
+    threshold.shift_limit =
+        cells * shift_beyond.front() / (place_of(shift_beyond, from) - place_of(shift_beyond, to));
+    threshold.turn_limit = 3.0 * cells * turn_beyond.front() /
+                           (cube(place_of(turn_beyond, from)) - cube(place_of(turn_beyond, to)));
   }
   return thresholds;
 }

@@ -54,8 +54,8 @@ double normal_force(const Hand& hand) {
 
 // A column three times as high as wide: the disc's twist (Reissner and Sagoci) and the bar's
 // (Saint-Venant, less the length that the disc's own field takes) add. Of the bar the finite
-// elements miss 3 %, interpolation between ports another 3 %. mdr's outermost spring stands for a
-// rim that slips at once, so a contact that hardly turns is 3 % too soft.
+// elements miss 3 %, interpolation between ports another 3 %; mdr's first springs that slip make
+// the contact 0.5 % softer or stiffer than the disc.
 TEST(ComplianceTest, TwistOfAColumnAndOfItsContactAdd) {
   const glm::dvec3 half(0.02, 0.06, 0.02);
   const double side = 2.0 * half.x;
@@ -71,7 +71,7 @@ TEST(ComplianceTest, TwistOfAColumnAndOfItsContactAdd) {
   const double bar = 0.140577 * kShear * std::pow(side, 4) / length;
   const double in_series = disc * bar / (disc + bar);
   ASSERT_GT(disc / bar, 0.05);
-  EXPECT_NEAR(-hand.wrench().torque.y / kTurn / in_series, 1.0, 0.03 + 0.06 * disc / bar);
+  EXPECT_NEAR(-hand.wrench().torque.y / kTurn / in_series, 1.0, 0.005 + 0.06 * disc / bar);
   const RegionSupport& support = hand.world().regions.at<RegionSupport>(0);
   EXPECT_NEAR(support.rotation.y / (kTurn * in_series / bar), 1.0, 0.07);
 }

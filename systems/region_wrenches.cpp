@@ -35,14 +35,23 @@ Wrench computed_wrench(const World& world, std::uint32_t region) {
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
   const RegionFriction& friction = world.regions.at<RegionFriction>(region);
   const Pose& body = world.bodies.at<Pose>(identity.body);
-  const glm::dvec3 force = frame.normal * world.regions.at<RegionNormal>(region).force +
-                           tangent_to_body(frame, friction.force);
-  const glm::dvec3 point =
-      to_outer(body, world.regions.at<RegionGeometry>(region).equivalent_point);
-  const glm::dvec3 arm = point - world.tools.at<ToolMotion>(identity.tool).mass_center;
+  glm::dvec3 force = frame.normal * world.regions.at<RegionNormal>(region).force +
+                     tangent_to_body(frame, friction.force);
+  glm::dvec3 couple = frame.normal * friction.couple;
+  glm::dvec3 point = world.regions.at<RegionGeometry>(region).equivalent_point;
+  // The contact was found in the axes of the material under it, which has gone with the body.
+  const RegionSupport& support = world.regions.at<RegionSupport>(region);
+  const double turn = glm::length(support.rotation);
+  if (turn > 0.0) {
+    const glm::dquat rotation = glm::angleAxis(turn, support.rotation / turn);
+    force = rotation * force;
+    couple = rotation * couple;
+    point = support.about + rotation * (point - support.about) + support.translation;
+  }
+  const glm::dvec3 arm =
+      to_outer(body, point) - world.tools.at<ToolMotion>(identity.tool).mass_center;
   const glm::dvec3 force_in_world = body.rotation * force;
-  return {force_in_world,
-          glm::cross(arm, force_in_world) + body.rotation * (frame.normal * friction.couple)};
+  return {force_in_world, glm::cross(arm, force_in_world) + body.rotation * couple};
 }
 
 /// What the computed wrench of a tool becomes, given whether this step had a fault.

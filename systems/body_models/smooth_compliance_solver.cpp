@@ -136,10 +136,10 @@ bool eliminate(Eigen::MatrixXd& matrix, StiffnessFront& front, Eigen::MatrixXd& 
     return false;
   }
   front.below = matrix.bottomLeftCorner(outer, own);
-  front.diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(
-      front.below);
   rest = matrix.bottomRightCorner(outer, outer);
   if (outer > 0) {
+    front.diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(
+        front.below);
     rest.selfadjointView<Eigen::Lower>().rankUpdate(front.below, -1.0);
   }
   return true;

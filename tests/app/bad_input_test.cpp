@@ -185,7 +185,8 @@ TEST(ProgramBadInputTest, SceneWithoutMotionNeedsALength) {
 
 TEST(ProgramUsageTest, ModelThatIsNotThereIsRefusedWithThoseThatAre) {
   const Ran ran = run_torsion({"simulate", scene("ball_on_cube"), "--contact-model", "hertz"});
-  EXPECT_NE(ran.err.find("no model \"hertz\"; it has auto, paper, mdr, patch"), std::string::npos) << ran.err;
+  EXPECT_NE(ran.err.find("no model \"hertz\"; it has auto, paper, mdr, patch"), std::string::npos)
+      << ran.err;
 }
 
 TEST(ProgramBadInputTest, OutputThatCannotBeWrittenIsSaidAndLeavesNothing) {

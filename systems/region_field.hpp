@@ -62,7 +62,7 @@ struct PressedSurface {
     glm::dvec3 place{0.0};  // m, body
     glm::dvec3 force{0.0};  // N, body, on the material
   };
-  std::array<Force, kFieldBlocks * kFieldBlocks> forces{};
+  std::array<Force, std::size_t{kFieldBlocks} * kFieldBlocks> forces{};
   std::uint32_t count = 0;     // 0: there are none
   Force all;                   // the sum, at the pressure centre
   glm::dvec3 normal{0.0};      // body, unit, outward

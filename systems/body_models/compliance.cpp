@@ -112,7 +112,7 @@ Matrix6 block(const CompliantBody& body, std::uint32_t to, std::uint32_t from) {
   for (std::size_t row = 0; row < 6; ++row) {
     for (std::size_t column = 0; column < 6; ++column) {
       result(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
-          body.values[(6 * to + row) * side + 6 * from + column].value;
+          body.values[(6 * std::size_t{to} + row) * side + 6 * std::size_t{from} + column].value;
     }
   }
   return result;

@@ -50,7 +50,7 @@ void fill_influences(double poisson_ratio, std::uint32_t side, std::span<double>
   TORSION_ASSERT(values.size() == influence_count(side));
   const double shear = 1.0 / (2.0 * std::numbers::pi);
   const double coupling = (1.0 - 2.0 * poisson_ratio) / (4.0 * std::numbers::pi);
-  const std::size_t table = (2 * std::size_t{side} - 1) * (2 * side);
+  const std::size_t table = (2 * std::size_t{side} - 1) * (2 * std::size_t{side});
   std::size_t first = 0;
   for (std::int32_t aspect = -kMostAspect; aspect <= kMostAspect; ++aspect) {
     const double height = std::ldexp(1.0, -aspect);  // of a cell that is 1 long
@@ -80,7 +80,7 @@ void fill_influences(double poisson_ratio, std::uint32_t side, std::span<double>
 InfluenceTables influence_tables(std::span<const double> values, std::uint32_t side,
                                  std::int32_t aspect) {
   TORSION_ASSERT(values.size() == influence_count(side));
-  const std::size_t table = (2 * std::size_t{side} - 1) * (2 * side);
+  const std::size_t table = (2 * std::size_t{side} - 1) * (2 * std::size_t{side});
   const auto place = static_cast<std::size_t>(aspect + kMostAspect);
   InfluenceTables tables;
   tables.side = side;

@@ -20,7 +20,8 @@ inline constexpr std::uint32_t kAspects = 2 * kMostAspect + 1;
 
 /// Number of values of all tables of one body for grids of side x side cells.
 constexpr std::size_t influence_count(std::uint32_t side) {
-  return std::size_t{kAspects} * kInfluenceKinds * (2 * std::size_t{side} - 1) * (2 * side);
+  return std::size_t{kAspects} * kInfluenceKinds * (2 * std::size_t{side} - 1) *
+         (2 * std::size_t{side});
 }
 
 /// Tables for one Poisson's ratio: for every aspect the six kinds, each (2 side - 1) rows of 2 side

@@ -8,7 +8,7 @@
 namespace torsion {
 namespace {
 
-constexpr std::uint32_t kVersion = 1;  // raise it when the same solid and ports give other numbers
+constexpr std::uint32_t kVersion = 2;  // raise it when the same solid and ports give other numbers
 
 CacheKey key_of(const ElasticSolid& solid, std::span<const std::byte> identity,
                 std::span<const Port> ports, const SmoothComplianceOptions& options) {
@@ -20,11 +20,10 @@ CacheKey key_of(const ElasticSolid& solid, std::span<const std::byte> identity,
   return cache_key("smooth_compliance", kVersion, content);
 }
 
-/// The matrix for a Young's modulus of 1 Pa, then the asymmetry.
-std::vector<std::byte> to_bytes(const SmoothCompliance& compliance, double youngs_modulus) {
-  const Eigen::MatrixXd scaled = compliance.matrix * youngs_modulus;
-  const auto matrix =
-      std::as_bytes(std::span(scaled.data(), static_cast<std::size_t>(scaled.size())));
+/// The matrix, then the asymmetry.
+std::vector<std::byte> to_bytes(const SmoothCompliance& compliance) {
+  const auto matrix = std::as_bytes(
+      std::span(compliance.matrix.data(), static_cast<std::size_t>(compliance.matrix.size())));
   const auto asymmetry = std::as_bytes(std::span(&compliance.relative_asymmetry, 1));
   std::vector<std::byte> bytes(matrix.begin(), matrix.end());
   bytes.insert(bytes.end(), asymmetry.begin(), asymmetry.end());
@@ -32,8 +31,7 @@ std::vector<std::byte> to_bytes(const SmoothCompliance& compliance, double young
 }
 
 /// nullopt when that is no matrix for so many ports.
-std::optional<SmoothCompliance> from_bytes(std::span<const std::byte> bytes, std::size_t ports,
-                                           double youngs_modulus) {
+std::optional<SmoothCompliance> from_bytes(std::span<const std::byte> bytes, std::size_t ports) {
   const std::size_t matrix_bytes = 36 * ports * ports * sizeof(double);
   if (bytes.size() != matrix_bytes + sizeof(double)) {
     return std::nullopt;
@@ -42,7 +40,6 @@ std::optional<SmoothCompliance> from_bytes(std::span<const std::byte> bytes, std
   SmoothCompliance compliance{Eigen::MatrixXd(side, side), 0.0};
   std::memcpy(compliance.matrix.data(), bytes.data(), matrix_bytes);
   std::memcpy(&compliance.relative_asymmetry, bytes.data() + matrix_bytes, sizeof(double));
-  compliance.matrix /= youngs_modulus;
   return compliance;
 }
 
@@ -52,22 +49,29 @@ Result<SmoothCompliance> load_or_build_smooth_compliance(const ElasticSolid& sol
                                                          std::span<const std::byte> identity,
                                                          std::span<const Port> ports,
                                                          const SmoothComplianceOptions& options) {
-  const CacheKey key = key_of(solid, identity, ports, options);
   const double youngs_modulus = solid.elasticity.youngs_modulus;
-  if (youngs_modulus > 0.0) {
-    if (const std::optional<std::vector<std::byte>> cached = load_cached(key)) {
-      if (std::optional<SmoothCompliance> compliance =
-              from_bytes(*cached, ports.size(), youngs_modulus)) {
-        return *std::move(compliance);
-      }
+  if (!(youngs_modulus > 0.0)) {
+    return build_smooth_compliance(solid, ports, options);
+  }
+  const CacheKey key = key_of(solid, identity, ports, options);
+  std::optional<SmoothCompliance> found;
+  if (const std::optional<std::vector<std::byte>> cached = load_cached(key)) {
+    found = from_bytes(*cached, ports.size());
+  }
+  if (!found) {
+    // For 1 Pa, so that the same bits come out whether they were cached or not, and by whom.
+    ElasticSolid unit = solid;
+    unit.elasticity.youngs_modulus = 1.0;
+    Result<SmoothCompliance> built = build_smooth_compliance(unit, ports, options);
+    if (!built) {
+      return built.error();
     }
-  }
-  Result<SmoothCompliance> built = build_smooth_compliance(solid, ports, options);
-  if (built) {
+    found = std::move(built).value();
     // a cache that cannot be written only costs time
-    store_cached(key, to_bytes(built.value(), youngs_modulus));
+    store_cached(key, to_bytes(*found));
   }
-  return built;
+  found->matrix /= youngs_modulus;
+  return *std::move(found);
 }
 
 }  // namespace torsion

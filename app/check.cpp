@@ -172,7 +172,7 @@ int check(const CheckOptions& options) {
   }
   PrepareOptions chosen = options.scene.prepare_options();
   chosen.expected_poses = expected_poses(*loaded.scene);
-  Result<Simulation> prepared = prepare(*loaded.scene, chosen);
+  Result<Simulation> prepared = prepare_with_bar(*loaded.scene, chosen, options.json);
   if (!prepared) {
     return report_problems({{options.scene.scene, "", "", "", prepared.error().text, ""}},
                            options.json);

@@ -24,7 +24,8 @@ int export_scene(const ExportOptions& options) {
     fmt::print(stderr, "--out {}: expected a name that ends in .glb or .gltf\n", options.out);
     return kUsage;
   }
-  Result<Session> opened = open_session(options.scene.scene, options.scene.prepare_options());
+  Result<Session> opened =
+      open_session(options.scene.scene, options.scene.prepare_options(), options.quiet);
   if (!opened) {
     return fail(opened.error().text);
   }

@@ -145,7 +145,8 @@ Result<PictureScales> scales_of_run(Session& session, const RenderOptions& optio
 }
 
 int render(const RenderOptions& options) {
-  Result<Session> opened = open_session(options.scene.scene, options.scene.prepare_options());
+  Result<Session> opened =
+      open_session(options.scene.scene, options.scene.prepare_options(), options.quiet);
   if (!opened) {
     return fail(opened.error().text);
   }

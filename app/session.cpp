@@ -3,26 +3,38 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/progress.hpp"
 #include "device/scripted_motion.hpp"
 #include "scenes/load_gltf.hpp"
 #include "systems/fault.hpp"
 
 namespace torsion {
 
-Result<Session> open_session(const std::filesystem::path& path, const PrepareOptions& options) {
+Result<Session> open_session(const std::filesystem::path& path, const PrepareOptions& options,
+                             bool quiet) {
   LoadedScene loaded = load_gltf(path);
   if (!loaded.scene) {
     return Error{to_text(loaded.problems)};
   }
   PrepareOptions informed = options;
   informed.expected_poses = expected_poses(*loaded.scene);
-  Result<Simulation> simulation = prepare(*loaded.scene, informed);
+  Result<Simulation> simulation = prepare_with_bar(*loaded.scene, informed, quiet);
   if (!simulation) {
     return Error{path.string() + ": " + simulation.error().text};
   }
   Session session{std::move(*loaded.scene), std::move(simulation).value(), {}};
   session.tool_poses.resize(session.scene.tools.size());
   return session;
+}
+
+Result<Simulation> prepare_with_bar(const SceneDescription& scene, const PrepareOptions& options,
+                                    bool quiet) {
+  Progress bar("finding the body's compliance", quiet);
+  PrepareOptions shown = options;
+  shown.progress = [&bar](double share) {
+    bar.show(share);
+  };
+  return prepare(scene, shown);
 }
 
 std::vector<std::vector<Pose>> expected_poses(const SceneDescription& scene) {

@@ -15,8 +15,15 @@ struct Session {
   std::vector<Pose> tool_poses;  // (tools)
 };
 
-/// Loads and prepares a scene. The error has all problems of the file, one a line.
-Result<Session> open_session(const std::filesystem::path& path, const PrepareOptions& options);
+/// Loads and prepares a scene, with a bar where that takes long. The error has all problems of the
+/// file, one a line.
+/// @param quiet  no bar
+Result<Session> open_session(const std::filesystem::path& path, const PrepareOptions& options,
+                             bool quiet);
+
+/// prepare() with a bar where that takes long.
+Result<Simulation> prepare_with_bar(const SceneDescription& scene, const PrepareOptions& options,
+                                    bool quiet);
 
 /// Where the tools will be at equal intervals of the scene's animations, (times) of (tools); empty
 /// where something else than an animation moves one of them.

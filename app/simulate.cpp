@@ -27,7 +27,8 @@ std::vector<std::string> tool_names(const SceneDescription& scene) {
 }
 
 int simulate(const SimulateOptions& options) {
-  Result<Session> opened = open_session(options.scene.scene, options.scene.prepare_options());
+  Result<Session> opened = open_session(options.scene.scene, options.scene.prepare_options(),
+                                        options.quiet || options.json);
   if (!opened) {
     return fail(opened.error().text);
   }

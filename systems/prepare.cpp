@@ -209,12 +209,23 @@ std::vector<ModelChoice> choose_all(const World& world, const PrepareOptions& op
 Result<std::vector<PreparedCompliance>> build_compliances(const World& world,
                                                           const SceneDescription& scene,
                                                           std::span<ModelChoice> choices,
-                                                          bool use_cache) {
+                                                          const PrepareOptions& options) {
   std::vector<PreparedCompliance> all(choices.size());
+  const auto compliant =
+      static_cast<double>(std::ranges::count_if(choices, [](const ModelChoice& choice) {
+        return choice.models.body == BodyModel::kCompliance;
+      }));
+  double done = 0.0;  // bodies
+  const auto progress = [&](double share) {
+    if (options.progress) {
+      options.progress((done + share) / compliant);
+    }
+  };
   for (std::uint32_t row = 0; row < choices.size(); ++row) {
     if (choices[row].models.body == BodyModel::kCompliance) {
       Result<PreparedCompliance> built =
-          prepare_compliance(scene.bodies[row], world, row, use_cache);
+          prepare_compliance(scene.bodies[row], world, row, options.use_cache, progress);
+      done += 1.0;
       if (!built && choices[row].body_is_auto) {
         choices[row].models.body = BodyModel::kSkeleton;
         choices[row].body_why = "auto: " + built.error().text;
@@ -277,7 +288,7 @@ Result<Done> append_choices(Simulation& simulation, const SceneDescription& scen
     capacities.mdr_bodies += choice.models.contact == ContactModel::kMdr ? 1U : 0U;
   }
   const Result<std::vector<PreparedCompliance>> compliances =
-      build_compliances(world, scene, simulation.choices, options.use_cache);
+      build_compliances(world, scene, simulation.choices, options);
   if (!compliances) {
     return compliances.error();
   }

@@ -90,8 +90,8 @@ std::vector<std::byte> identity_of(const BodyDescription& description) {
 }  // namespace
 
 Result<PreparedCompliance> prepare_compliance(const BodyDescription& description,
-                                              const World& world, std::uint32_t row,
-                                              bool use_cache) {
+                                              const World& world, std::uint32_t row, bool use_cache,
+                                              const std::function<void(double)>& progress) {
   const Range parts = world.bodies.at<OwnedRows>(row).parts;
   ElasticSolid solid;
   solid.signed_distance = [&world, parts](const glm::dvec3& point) {
@@ -107,7 +107,8 @@ Result<PreparedCompliance> prepare_compliance(const BodyDescription& description
   if (ports.size() <= 4) {
     return prepared;
   }
-  const SmoothComplianceOptions options;
+  SmoothComplianceOptions options;
+  options.progress = progress;
   const Result<SmoothCompliance> built =
       use_cache ? load_or_build_smooth_compliance(solid, identity_of(description), ports, options)
                 : build_smooth_compliance(solid, ports, options);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "ecs/result.hpp"
@@ -18,9 +19,10 @@ struct PreparedCompliance {
 /// the body's shortest side, because a point cannot hold an elastic body. Load time only; the first
 /// time for a shape and clamp it takes seconds, then it comes from the cache. The same input gives
 /// the same bits.
-/// @param world  shapes and the body `row` are there
+/// @param world     shapes and the body `row` are there
+/// @param progress  called with 0 to 1 while there is something to solve, if set
 Result<PreparedCompliance> prepare_compliance(const BodyDescription& description,
-                                              const World& world, std::uint32_t row,
-                                              bool use_cache);
+                                              const World& world, std::uint32_t row, bool use_cache,
+                                              const std::function<void(double)>& progress);
 
 }  // namespace torsion

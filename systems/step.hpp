@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -56,6 +57,9 @@ struct PrepareOptions {
   std::vector<std::vector<Pose>> expected_poses;  // (times) of (tools): what the run will bring as
                                                   // far as that is known, for kAuto; empty: unknown
   bool use_cache = true;  // distance fields and beam sections from the user's cache folder
+  // Called with 0 to 1, never falling, while bodies' compliances are found that no cache has; if
+  // set.
+  std::function<void(double)> progress;
 };
 
 /// Load-time work: distance fields, surface samples, anchors, beam sections; then all tables,

@@ -89,7 +89,7 @@ PrepareOptions papers_models() {
 }
 
 void step_of_scene(benchmark::State& state, const std::string& name) {
-  Result<Session> session = open_session(scene_path(name), papers_models());
+  Result<Session> session = open_session(scene_path(name), papers_models(), true);
   if (!session) {
     state.SkipWithError(session.error().text.c_str());
     return;
@@ -105,7 +105,7 @@ void step_of_model(benchmark::State& state, const std::string& name, ContactMode
   options.contact_model = model;
   options.body_model = BodyModel::kNone;
   options.settings.grid_side = static_cast<std::uint32_t>(state.range(0));
-  Result<Session> opened = open_session(scene_path(name), options);
+  Result<Session> opened = open_session(scene_path(name), options, true);
   if (!opened) {
     state.SkipWithError(opened.error().text.c_str());
     return;
@@ -192,7 +192,7 @@ void whole_run(benchmark::State& state) {
   double simulated = 0.0;
   double wall = 0.0;
   for (auto _ : state) {
-    Result<Session> session = open_session(scene_path("ball_on_cube"), papers_models());
+    Result<Session> session = open_session(scene_path("ball_on_cube"), papers_models(), true);
     Progress silent("", true);
     const double duration = session.value().scene.duration;
     const RunStatistics statistics =

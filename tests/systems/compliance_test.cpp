@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -159,6 +160,29 @@ TEST(ComplianceTest, StaysCalmOnALayerAndOnASoftColumn) {
       EXPECT_EQ(hand.clock().faults_ever, 0U);
     }
   }
+}
+
+TEST(ComplianceTest, SaysHowFarItIsWhileItIsFound) {
+  SceneDescription scene =
+      box_scene(glm::dvec3(0.03), {ball_at(0.0)}, ContactModel::kMdr, BodyModel::kCompliance);
+  scene.bodies.push_back(scene.bodies.front());
+  std::vector<double> shares;
+  PrepareOptions options;
+  options.progress = [&shares](double share) {
+    shares.push_back(share);
+  };
+  const Hand two_bodies(scene, options);
+  ASSERT_GE(shares.size(), 10U);
+  EXPECT_TRUE(std::ranges::is_sorted(shares));
+  EXPECT_GE(shares.front(), 0.0);
+  EXPECT_LT(shares.front(), 0.2);
+  EXPECT_EQ(shares.back(), 1.0);
+  // One body is half of the work.
+  EXPECT_NE(std::ranges::find(shares, 0.5), shares.end());
+  shares.clear();
+  options.body_model = BodyModel::kNone;
+  const Hand without(scene, options);
+  EXPECT_TRUE(shares.empty());
 }
 
 }  // namespace

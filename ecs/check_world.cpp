@@ -103,10 +103,14 @@ void check_owned_rows(const World& world, std::string_view table, const OwnedRow
   findings.require(inside(owned.balls, world.balls.size()), table, row, "its balls are not there");
   findings.require(inside(owned.anchors, world.anchors.size()), table, row,
                    "its anchors are not there");
+  findings.require(owned.anchors.count <= kAnchorsPerBody, table, row, "it has too many anchors");
   findings.require(inside(owned.influences, world.influences.size()), table, row,
                    "its influence tables are not there");
   findings.require(inside(owned.compliance, world.compliance.size()), table, row,
                    "its compliance is not there");
+  const std::uint64_t side = 6ULL * owned.anchors.count;
+  findings.require(owned.compliance.count == 0 || owned.compliance.count == side * side, table, row,
+                   "its compliance is not that of its anchors");
 }
 
 void check_owners(const World& world, Findings& findings) {

@@ -336,6 +336,16 @@ struct RegionField {
   PressedBlock blocks[kFieldBlocks * kFieldBlocks];
 };
 
+inline constexpr std::uint32_t kAnchorsPerBody = 48;
+
+/// Angle about the region's normal by which each anchor of its body turns because of the region,
+/// beyond what the half-space under the region does there; small angles. With it a picture can turn
+/// the body as far as it turns, where AnchorMotion alone would move it along tangents. Written by:
+/// anchor_motions; all zero with other body models than compliance.
+struct AnchorTurns {
+  double turn[kAnchorsPerBody] = {};  // rad
+};
+
 /// Written by: region_wrenches.
 struct RegionWrench {
   Wrench on_tool;            // world, about the tool's mass centre, as let out

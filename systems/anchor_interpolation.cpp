@@ -96,4 +96,53 @@ void interpolate_block(const InterpolationWeights& weights, PointBlock& block) {
   }
 }
 
+void solve_interpolation(std::span<const InterpolationRow> inverse, std::span<const double> values,
+                         ScalarWeights& weights) {
+  const std::size_t count = values.size();
+  const std::size_t side = count + 4;
+  const auto row_times_values = [&](std::size_t row) {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < count; ++j) {
+      sum += values[j] * inverse[row * side + j].value;
+    }
+    return sum;
+  };
+  weights.weights.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    weights.weights[i] = static_cast<float>(row_times_values(i));
+  }
+  weights.constant = row_times_values(count);
+  weights.slope = {row_times_values(count + 1), row_times_values(count + 2),
+                   row_times_values(count + 3)};
+}
+
+double interpolate(const ScalarWeights& weights, std::span<const glm::dvec3> centers,
+                   const glm::dvec3& point) {
+  double value = weights.constant + glm::dot(weights.slope, point);
+  for (std::size_t j = 0; j < centers.size(); ++j) {
+    value += static_cast<double>(weights.weights[j]) * glm::distance(point, centers[j]);
+  }
+  return value;
+}
+
+void interpolate_block(const ScalarWeights& weights,
+                       std::span<const InterpolationWeights::Center> centers,
+                       const PointBlock& block, BlockColumn& column) {
+  const auto constant = static_cast<float>(weights.constant);
+  const glm::vec3 slope(weights.slope);
+  for (std::size_t i = 0; i < kPointBlock; ++i) {
+    column[i] = constant + slope.x * block.x[i] + slope.y * block.y[i] + slope.z * block.z[i];
+  }
+  for (std::size_t j = 0; j < centers.size(); ++j) {
+    const glm::vec3 p = centers[j].position;
+    const float w = weights.weights[j];
+    for (std::size_t i = 0; i < kPointBlock; ++i) {
+      const float dx = block.x[i] - p.x;
+      const float dy = block.y[i] - p.y;
+      const float dz = block.z[i] - p.z;
+      column[i] += w * std::sqrt(dx * dx + dy * dy + dz * dz);
+    }
+  }
+}
+
 }  // namespace torsion

@@ -5,6 +5,7 @@
 // which has the least bending energy of all fields through the anchors and reproduces every affine
 // field (docs/models.md, "From anchors to vertices").
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -36,6 +37,21 @@ void solve_interpolation(std::span<const InterpolationRow> inverse,
                          std::span<const glm::dvec3> centers, std::span<const glm::dvec3> values,
                          InterpolationWeights& weights);
 
+/// Weights of a field of numbers, for instance angles, over the same centers.
+struct ScalarWeights {
+  std::vector<float> weights;  // per m
+  double constant = 0.0;
+  glm::dvec3 slope{0.0};  // per m
+};
+
+/// @param values  one for each center
+void solve_interpolation(std::span<const InterpolationRow> inverse, std::span<const double> values,
+                         ScalarWeights& weights);
+
+/// The field of numbers at one point.
+double interpolate(const ScalarWeights& weights, std::span<const glm::dvec3> centers,
+                   const glm::dvec3& point);
+
 /// The field at one point [m].
 glm::dvec3 interpolate(const InterpolationWeights& weights, const glm::dvec3& point);
 
@@ -51,7 +67,16 @@ struct PointBlock {
   float uz[kPointBlock];
 };
 
+/// A number for each point of a block.
+using BlockColumn = std::array<float, kPointBlock>;
+
 /// The field at all points of the block, in float: 1e-6 of the largest displacement.
 void interpolate_block(const InterpolationWeights& weights, PointBlock& block);
+
+/// Likewise a field of numbers.
+/// @param centers  those of the weights
+void interpolate_block(const ScalarWeights& weights,
+                       std::span<const InterpolationWeights::Center> centers,
+                       const PointBlock& block, BlockColumn& column);
 
 }  // namespace torsion

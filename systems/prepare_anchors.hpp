@@ -14,8 +14,6 @@ struct PreparedAnchors {
   std::vector<BeamSection> sections;
 };
 
-inline constexpr std::uint32_t kAnchorsPerBody = 48;
-
 /// Spreads anchors over a body's rest surface, away from what is fixed, and cuts the straight beam
 /// from the fixed point to each of them. Load time only; the same input gives the same bits.
 /// Returns nothing (empty vectors) only for a body whose whole surface is fixed.

@@ -108,10 +108,17 @@ PressedSurface pressed_surface(const World& world, const Snapshot& snapshot, std
   }
   const glm::dvec3 drag =
       tangent_to_body(frame, snapshot.regions.at<RegionFriction>(region).force) / -normal_force;
+  const double turn = glm::dot(snapshot.regions.at<RegionCarrier>(region).rotation, frame.normal);
+  const double sine = std::sin(turn);
+  const double cosine = std::cos(turn);
   for (const PressedBlock& block : field.blocks) {
     if (block.force > 0.0) {
       const glm::dvec3 force = (drag - frame.normal) * block.force;
-      pressed.forces[pressed.count++] = {grid_to_body(frame, {block.place, 0.0}), force};
+      // The grid is on the material, which has turned under the contact.
+      const glm::dvec2 arm = block.place - field.center;
+      const glm::dvec2 turned(cosine * arm.x - sine * arm.y, sine * arm.x + cosine * arm.y);
+      const glm::dvec3 place(field.center + turned, 0.0);
+      pressed.forces[pressed.count++] = {grid_to_body(frame, place), force};
       pressed.all.force += force;
     }
   }

@@ -99,8 +99,10 @@ std::vector<System<StepContext>> step_systems() {
        any_tool_and_body, region_wrenches},
       {"skeleton", "beam skeleton: displacement of the anchors", "a body with body model skeleton",
        any_skeleton, skeleton},
-      {"compliance", "the whole body's deformation: under its regions and at its anchors",
+      {"compliance", "the whole body's deformation under its regions",
        "a body with body model compliance", any_compliance, compliance},
+      {"anchor_motions", "the whole body's deformation at its anchors, for those who draw it",
+       "a body with body model compliance", any_compliance, anchor_motions, kFieldPeriod},
       {"sum_wrenches", "the wrench on every tool, faults, work", "a tool", nullptr, sum_wrenches},
   };
 }

@@ -1,172 +1,20 @@
 #include "systems/surface_field.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include <glm/geometric.hpp>
 
 #include "systems/anchor_interpolation.hpp"
+#include "systems/body_field.hpp"
 #include "systems/distance.hpp"
 #include "systems/frames.hpp"
-#include "systems/region_field.hpp"
 #include "systems/turn_vertex.hpp"
 
 namespace torsion {
 namespace {
-
-constexpr double kHeldBand =
-    0.03;  // of the body's size: over this width beside what is fixed motion fades to zero
-
-double smooth_step(double x) {
-  const double t = std::clamp(x, 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
-
-/// A region of the body at work, in its slot.
-struct Slot {
-  RegionTwist twist;
-  RegionDent dent;
-  std::uint32_t tool = 0;
-  double depth = 0.0;  // m
-};
-
-/// A tool that touches the body.
-struct Toucher {
-  std::uint32_t tool = 0;
-  Range parts;
-  Bounds bounds;
-  Pose in_body;  // tool frame in the body's
-};
-
-/// All that the vertices of one body need.
-struct BodyField {
-  const World& world;
-  std::uint32_t body = 0;
-  FixedRegion fixed;
-  std::span<const FixedVolume> volumes;
-  double held_band = 0.0;  // m
-  InterpolationWeights weights;
-  bool has_weights = false;
-  std::vector<Slot> slots;
-  std::vector<Toucher> touchers;
-};
-
-// ------------------------------------------------------------------------------------------ what
-// is set up per body
-
-double distance_share_from_volume(const FixedVolume& volume, const glm::dvec3& point) {
-  constexpr double kBand = 0.1;  // of the volume's half size
-  const glm::dvec3 unit = volume.to_unit * (point - volume.center);
-  const double away = volume.kind == VolumeKind::kSphere
-                          ? glm::length(unit)
-                          : std::max({std::abs(unit.x), std::abs(unit.y), std::abs(unit.z)});
-  return smooth_step((away - 1.0) / kBand);
-}
-
-/// How freely a point moves: 0 on the fixed region, 1 a little away from it.
-double freedom(const BodyField& field, const glm::dvec3& point) {
-  const glm::dvec3 away = point - field.fixed.point;
-  switch (field.fixed.kind) {
-    case FixedKind::kFace:
-      return smooth_step(glm::dot(away, field.fixed.normal) / field.held_band);
-    case FixedKind::kPoint:
-      return smooth_step(glm::length(away) / field.held_band);
-    case FixedKind::kVolumes:
-      break;
-  }
-  double share = 1.0;
-  for (const FixedVolume& volume : field.volumes) {
-    share = std::min(share, distance_share_from_volume(volume, point));
-  }
-  return share;
-}
-
-/// Displacements at the interpolation's centers: what the body model says, and zero at the held
-/// points. Where a dent's far field would add to them it is taken out, so that the sum still goes
-/// through the anchors.
-std::vector<glm::dvec3> center_values(const Snapshot& snapshot, const FrameBody& data,
-                                      std::span<const Slot> slots,
-                                      std::span<const glm::dvec3> centers) {
-  std::vector<glm::dvec3> values(centers.size(), glm::dvec3(0.0));
-  for (std::uint32_t j = 0; j < data.anchors.count; ++j) {
-    values[j] = snapshot.anchors.at<AnchorMotion>(data.anchors.first + j).displacement;
-  }
-  for (std::size_t j = 0; j < centers.size(); ++j) {
-    for (const Slot& slot : slots) {
-      values[j] -= slot.dent.displacement(centers[j]) * slot.dent.far_share(centers[j]);
-    }
-  }
-  return values;
-}
-
-/// Regions in their order of formation: each one's dent is what the skeleton and the dents before
-/// it leave of its overlap.
-void fill_slots(const Snapshot& snapshot, BodyField& field) {
-  for (std::uint32_t region = 0; region < snapshot.regions.size(); ++region) {
-    const RegionIdentity& identity = snapshot.regions.at<RegionIdentity>(region);
-    if (identity.body != field.body || field.slots.size() == kMaxRegionsPerBody) {
-      continue;
-    }
-    const RegionGeometry& geometry = snapshot.regions.at<RegionGeometry>(region);
-    glm::dvec3 moved =
-        field.has_weights ? interpolate(field.weights, geometry.rest_point) : glm::dvec3(0.0);
-    for (const Slot& before : field.slots) {
-      moved += before.dent.displacement(geometry.rest_point);
-    }
-    const RegionDent dent = region_dent(field.world, snapshot, region, moved);
-    field.slots.push_back({region_twist(field.world, snapshot, region), dent, identity.tool,
-                           dent.radius > 0.0 ? geometry.largest_depth : 0.0});
-  }
-}
-
-void fill_touchers(const Snapshot& snapshot, BodyField& field) {
-  const Pose& pose = field.world.bodies.at<Pose>(field.body);
-  for (const Slot& slot : field.slots) {
-    const bool known =
-        std::any_of(field.touchers.begin(), field.touchers.end(),
-                    [&](const Toucher& toucher) { return toucher.tool == slot.tool; });
-    if (!known && slot.depth > 0.0) {
-      field.touchers.push_back({slot.tool, field.world.tools.at<OwnedRows>(slot.tool).parts,
-                                field.world.tools.at<Bounds>(slot.tool),
-                                relative(pose, snapshot.tools.at<ToolPose>(slot.tool).now)});
-    }
-  }
-}
-
-BodyField body_field(const World& world, const Snapshot& snapshot, const FrameWorld& frame,
-                     std::uint32_t body) {
-  const FrameBody& data = frame.bodies.at<FrameBody>(body);
-  const Bounds& bounds = world.bodies.at<Bounds>(body);
-  BodyField field{world, body, world.bodies.at<FixedRegion>(body), {}, 0.0, {}, false, {}, {}};
-  field.volumes = world.fixed_volumes.rows<FixedVolume>(field.fixed.volumes);
-  field.held_band = kHeldBand * glm::length(bounds.highest - bounds.lowest);
-  std::vector<glm::dvec3> centers;
-  for (const AnchorRest& anchor : frame.anchor_rest.rows<AnchorRest>(data.anchors)) {
-    centers.push_back(anchor.position);
-  }
-  for (const AnchorRest& held : frame.anchor_rest.rows<AnchorRest>(data.held_points)) {
-    centers.push_back(held.position);
-  }
-  const auto inverse = frame.interpolation.rows<InterpolationRow>(data.interpolation);
-  field.has_weights = !inverse.empty();
-  if (field.has_weights) {
-    solve_interpolation(inverse, centers, center_values(snapshot, data, {}, centers),
-                        field.weights);
-  }
-  fill_slots(snapshot, field);
-  fill_touchers(snapshot, field);
-  // A body with compliance has what its contacts do to the half-space in the dents alone.
-  const bool anchors_have_dents = world.bodies.at<BodyModels>(body).body == BodyModel::kSkeleton;
-  if (field.has_weights && !field.slots.empty() && anchors_have_dents) {
-    solve_interpolation(inverse, centers, center_values(snapshot, data, field.slots, centers),
-                        field.weights);
-  }
-  return field;
-}
-
-// ---------------------------------------------------------------------------------------- what is
-// done per vertex
 
 bool inside_box(const Bounds& bounds, const glm::dvec3& point) {
   return glm::all(glm::greaterThan(point, bounds.lowest)) &&
@@ -284,60 +132,117 @@ struct VertexRows {
   std::span<const TwistAxis> axes;
 };
 
-/// Turns one vertex, noting the angles; where it is then [m, body].
-glm::vec3 twist_vertex(const BodyField& field, const VertexRows& rows, std::size_t vertex,
-                       double free) {
-  glm::vec3 position(rows.rest[vertex].position);
-  const glm::dvec3 rest(position);
+/// What the interpolation says at the points of a block.
+struct BlockField {
+  PointBlock moved;
+  std::array<BlockColumn, kMaxRegionsPerBody> turned;  // rad; those of slots whose turn is on
+};
+
+/// A vertex after turns about the axes, m, body.
+struct TurnedVertex {
+  glm::vec3 by_regions{0.0F};  // by what regions do to the half-space
+  glm::vec3 by_all{0.0F};      // and by the turn of the whole body
+};
+
+/// Turns one vertex, noting the angles.
+/// @param i  its place in the block
+TurnedVertex twist_vertex(const BodyField& field, const VertexRows& rows, const BlockField& block,
+                          std::size_t vertex, std::size_t i, double free) {
+  const glm::vec3 rest(rows.rest[vertex].position);
+  TurnedVertex at{rest, rest};
   for (std::size_t slot = 0; slot < field.slots.size(); ++slot) {
-    const auto angle = static_cast<float>(free * field.slots[slot].twist.angle(rest));
+    const double own = free * field.slots[slot].twist.angle(glm::dvec3(rest));
+    double whole = own;
+    if (field.slots[slot].turn.on) {
+      whole += free * static_cast<double>(block.turned[slot][i]);
+    }
+    const auto angle = static_cast<float>(whole);
     rows.twist[slot * rows.rest.size() + vertex].angle = angle;
     if (angle != 0.0F) {
-      position = turn_vertex(position, rows.axes[slot], angle);
+      at.by_all = turn_vertex(at.by_all, rows.axes[slot], angle);
+    }
+    if (field.turns) {
+      at.by_regions = turn_vertex(at.by_regions, rows.axes[slot], static_cast<float>(own));
     }
   }
-  return position;
+  if (!field.turns) {
+    at.by_regions = at.by_all;
+  }
+  return at;
 }
 
-void move_vertex(const BodyField& field, const VertexRows& rows, std::size_t vertex,
-                 const glm::dvec3& interpolated) {
+/// A direction of the body at rest as the turn of the whole body leaves it.
+glm::dvec3 with_body(const BodyField& field, const BlockField& block, std::size_t i, double free,
+                     glm::dvec3 direction) {
+  for (std::size_t slot = 0; slot < field.slots.size(); ++slot) {
+    const BodyTurn& turn = field.slots[slot].turn;
+    if (turn.on) {
+      const double angle = free * static_cast<double>(block.turned[slot][i]);
+      const glm::dvec3 across = glm::cross(turn.direction, direction);
+      direction +=
+          std::sin(angle) * across + (1.0 - std::cos(angle)) * glm::cross(turn.direction, across);
+    }
+  }
+  return direction;
+}
+
+void move_vertex(const BodyField& field, const VertexRows& rows, const BlockField& block,
+                 std::size_t vertex, std::size_t i) {
   const glm::vec4& rest = rows.rest[vertex].position;
   const double free = rest.w >= 1.0F ? 0.0 : freedom(field, glm::dvec3(rest));
-  const glm::vec3 turned_float = twist_vertex(field, rows, vertex, free);
+  const TurnedVertex at = twist_vertex(field, rows, block, vertex, i, free);
   if (free == 0.0) {
     rows.displacement[vertex].displacement = glm::vec4(0.0F);
     return;
   }
-  const glm::dvec3 turned(turned_float);
-  const glm::dvec3 undented = turned + free * interpolated;
-  glm::dvec3 place = undented;
+  const glm::dvec3 local(at.by_regions);
+  const glm::dvec3 turned(at.by_all);
+  glm::dvec3 smooth(block.moved.ux[i], block.moved.uy[i], block.moved.uz[i]);
+  glm::dvec3 dents(0.0);
   for (const Slot& slot : field.slots) {
-    place += free * slot.dent.displacement(turned);
+    dents += slot.dent.displacement(local);
   }
+  if (field.turns) {
+    // The middle of a section goes as it is pushed; the rest of the section turns about it.
+    const glm::dvec3 middle = middle_at(field, glm::dvec3(rest));
+    smooth = middle + with_body(field, block, i, free, smooth - middle);
+    dents = with_body(field, block, i, free, dents);
+  }
+  const glm::dvec3 undented = turned + free * smooth;
+  glm::dvec3 place = undented + free * dents;
   double pressure = 0.0;
   if (!field.touchers.empty()) {
-    pressure = pressure_at(field, turned, undented);
-    place = push_out(field, turned, place);
+    pressure = pressure_at(field, local, undented);
+    place = push_out(field, local, place);
   }
   rows.displacement[vertex].displacement =
       glm::vec4(glm::vec3(place - turned), static_cast<float>(pressure));
 }
 
+void interpolate_at(const BodyField& field, std::span<const VertexRest> rest, BlockField& block) {
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    block.moved.x[i] = rest[i].position.x;
+    block.moved.y[i] = rest[i].position.y;
+    block.moved.z[i] = rest[i].position.z;
+  }
+  interpolate_block(field.weights, block.moved);
+  for (std::size_t slot = 0; slot < field.slots.size(); ++slot) {
+    if (field.slots[slot].turn.on) {
+      interpolate_block(field.slots[slot].turn.angle, field.weights.centers, block.moved,
+                        block.turned[slot]);
+    }
+  }
+}
+
 void move_vertices(const BodyField& field, const VertexRows& rows) {
-  PointBlock block{};
+  BlockField block{};
   for (std::size_t first = 0; first < rows.rest.size(); first += kPointBlock) {
     const std::size_t count = std::min(kPointBlock, rows.rest.size() - first);
     if (field.has_weights) {
-      for (std::size_t i = 0; i < count; ++i) {
-        const glm::vec4& rest = rows.rest[first + i].position;
-        block.x[i] = rest.x;
-        block.y[i] = rest.y;
-        block.z[i] = rest.z;
-      }
-      interpolate_block(field.weights, block);
+      interpolate_at(field, rows.rest.subspan(first, count), block);
     }
     for (std::size_t i = 0; i < count; ++i) {
-      move_vertex(field, rows, first + i, glm::dvec3(block.ux[i], block.uy[i], block.uz[i]));
+      move_vertex(field, rows, block, first + i, i);
     }
   }
 }

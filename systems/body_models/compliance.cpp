@@ -270,12 +270,17 @@ void move_supports(const CompliantBody& body, const Eigen::Map<Eigen::VectorXd>&
   }
 }
 
+/// What each region does to the anchors through the body, summed, and how each turns them about its
+/// normal.
 void move_anchors(const CompliantBody& body, std::span<AnchorMotion> anchors) {
   for (AnchorMotion& anchor : anchors) {
     anchor.displacement = glm::dvec3(0.0);
   }
   for (std::size_t i = 0; i < body.count; ++i) {
     const Footing& footing = body.footings[i];
+    const Eigen::Vector3d normal = eigen(footing.normal);
+    AnchorTurns& turns = body.world.regions.at<AnchorTurns>(footing.region);
+    turns = AnchorTurns{};
     for (std::size_t j = 0; j < kNearPorts; ++j) {
       const Vector6 wrench = footing.weights[j] *
                              from_port(body, footing.ports[j], footing.point).transpose() *
@@ -283,17 +288,23 @@ void move_anchors(const CompliantBody& body, std::span<AnchorMotion> anchors) {
       for (std::uint32_t anchor = 0; anchor < anchors.size(); ++anchor) {
         const Vector6 motion = block(body, anchor, footing.ports[j]) * wrench;
         anchors[anchor].displacement += glm::dvec3(motion[0], motion[1], motion[2]);
+        turns.turn[anchor] += normal.dot(motion.tail<3>());
       }
     }
   }
 }
 
-void deform_body(StepContext& context, std::uint32_t row) {
-  World& world = context.world;
+CompliantBody compliant_body(World& world, std::uint32_t row) {
   const OwnedRows& owned = world.bodies.at<OwnedRows>(row);
   CompliantBody body{world, row, world.anchors.rows<AnchorRest>(owned.anchors),
                      world.compliance.rows<ComplianceValue>(owned.compliance)};
   find_footings(body);
+  return body;
+}
+
+void deform_body(StepContext& context, std::uint32_t row) {
+  World& world = context.world;
+  const CompliantBody body = compliant_body(world, row);
   const auto size = static_cast<Eigen::Index>(6 * body.count);
   Eigen::Map<RowMatrix> matrix(context.scratch.compliance_matrix.data(), size, size);
   Eigen::Map<Eigen::VectorXd> change(context.scratch.compliance_residuals.data(), size);
@@ -323,7 +334,6 @@ void deform_body(StepContext& context, std::uint32_t row) {
   }
   solve_in_place(matrix, change);
   move_supports(body, change);
-  move_anchors(body, world.anchors.rows<AnchorMotion>(owned.anchors));
 }
 
 }  // namespace
@@ -332,6 +342,16 @@ void compliance(StepContext& context) {
   for (std::uint32_t body = 0; body < context.world.bodies.size(); ++body) {
     if (context.world.bodies.at<BodyModels>(body).body == BodyModel::kCompliance) {
       deform_body(context, body);
+    }
+  }
+}
+
+void anchor_motions(StepContext& context) {
+  World& world = context.world;
+  for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
+    if (world.bodies.at<BodyModels>(body).body == BodyModel::kCompliance) {
+      move_anchors(compliant_body(world, body),
+                   world.anchors.rows<AnchorMotion>(world.bodies.at<OwnedRows>(body).anchors));
     }
   }
 }

@@ -1,5 +1,6 @@
 // Times of the beam skeleton and of the surface field on a cube with one contact region.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -115,6 +116,40 @@ void surface_field_of_ten_regions(benchmark::State& state) {
   }
 }
 BENCHMARK(surface_field_of_ten_regions)->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond);
+
+/// Regions of a half-space model with body model compliance: every vertex gets discs' turns,
+/// blocks' dents and the body's own turn.
+void surface_field_of_half_space(benchmark::State& state) {
+  Frame drawn(state.range(1));
+  World& world = drawn.world;
+  world.bodies.at<BodyModels>(0) = {ContactModel::kPatch, BodyModel::kCompliance};
+  for (std::int64_t i = 1; i < state.range(0); ++i) {
+    const double angle = 0.7 * static_cast<double>(i);
+    add_region(world, {.point = {0.03 * std::cos(angle), 0.05, 0.03 * std::sin(angle)},
+                       .force_on_body = {0.0, -1.0, 0.0},
+                       .radius = 0.005,
+                       .depth = 0.0005});
+  }
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    RegionField& field = world.regions.at<RegionField>(region);
+    field.radius = world.regions.at<RegionGeometry>(region).radius;
+    field.spread = 0.1 * field.radius;
+    std::ranges::fill(field.turn, 0.01);
+    for (std::uint32_t block = 0; block < kFieldBlocks * kFieldBlocks; ++block) {
+      const glm::dvec2 place(block % kFieldBlocks, block / kFieldBlocks);
+      field.blocks[block] = {0.4 * field.radius * (place - 2.0), 0.04};
+    }
+    std::ranges::fill(world.regions.at<AnchorTurns>(region).turn, 0.01);
+  }
+  capture(world, drawn.snapshot);
+  for (auto _ : state) {
+    surface_field(world, drawn.snapshot, drawn.frame);
+    benchmark::ClobberMemory();
+  }
+}
+BENCHMARK(surface_field_of_half_space)
+    ->ArgsProduct({{1, 10}, {10000, 100000}})
+    ->Unit(benchmark::kMillisecond);
 
 void deform_on_the_cpu(benchmark::State& state) {
   Frame drawn(state.range(0));

@@ -1,6 +1,9 @@
 #include "systems/detect_contacts.hpp"
 
 #include <algorithm>
+#include <array>
+
+#include <glm/gtc/quaternion.hpp>
 
 #include "systems/fault.hpp"
 #include "systems/frames.hpp"
@@ -23,33 +26,64 @@ struct Search {
   Pose tool_in_body;
 };
 
+/// Leaves of the tree whose distances are asked for together.
+struct LeafBlock {
+  static constexpr std::size_t kLeaves = 64;
+  std::array<std::uint32_t, kLeaves> balls;
+  std::array<glm::dvec3, kLeaves> points;  // m, body
+  std::array<Distance, kLeaves> distances;
+  std::size_t count = 0;
+};
+
+/// Takes the samples whose ball reaches into the body. Empties the block.
+void take_leaves(Search& search, LeafBlock& block) {
+  Scratch& scratch = search.scratch;
+  signed_distances(search.world, search.body_parts, std::span(block.points).first(block.count),
+                   std::span(block.distances).first(block.count));
+  for (std::size_t i = 0; i < block.count; ++i) {
+    const SurfaceBall& ball =
+        search.world.balls.at<SurfaceBall>(search.tool.balls.first + block.balls[i]);
+    const double distance = block.distances[i].value;
+    if (distance <= ball.radius) {
+      const std::uint32_t sample = search.tool.samples.first + ball.sample;
+      scratch.sample_distance[sample] = distance;
+      scratch.sample_stamp[sample] = scratch.stamp;
+      scratch.sample_point[sample] = kNoRow;
+      scratch.candidates.push_back({sample, distance});
+    }
+  }
+  block.count = 0;
+}
+
 /// Walks the tool's tree of balls: keeps the samples whose ball reaches into the body. The distance
 /// is at least |distance| in every part, so a ball farther away than its radius holds no contact.
 void find_candidates(Search& search) {
   const auto balls = search.world.balls.rows<SurfaceBall>(search.tool.balls);
   const auto samples = search.world.samples.rows<SurfaceSample>(search.tool.samples);
-  Scratch& scratch = search.scratch;
-  scratch.candidates.clear();
-  scratch.stamp += 1;
+  search.scratch.candidates.clear();
+  search.scratch.stamp += 1;
+  const glm::dmat3 turn = glm::mat3_cast(search.tool_in_body.rotation);
+  const auto in_body = [&](const glm::dvec3& point) {
+    return turn * point + search.tool_in_body.position;
+  };
+  LeafBlock block;
   for (std::uint32_t row = 0; row < balls.size();) {
     const SurfaceBall& ball = balls[row];
-    const bool leaf = ball.sample != kNoRow;
-    const glm::dvec3 center =
-        to_outer(search.tool_in_body, leaf ? samples[ball.sample].position : ball.center);
-    const double distance = signed_distance(search.world, search.body_parts, center).value;
-    if (leaf) {
-      if (distance <= ball.radius) {
-        const std::uint32_t sample = search.tool.samples.first + ball.sample;
-        scratch.sample_distance[sample] = distance;
-        scratch.sample_stamp[sample] = scratch.stamp;
-        scratch.sample_point[sample] = kNoRow;
-        scratch.candidates.push_back({sample, distance});
+    if (ball.sample != kNoRow) {
+      block.balls[block.count] = row;
+      block.points[block.count] = in_body(samples[ball.sample].position);
+      block.count += 1;
+      if (block.count == LeafBlock::kLeaves) {
+        take_leaves(search, block);
       }
       row += 1;
     } else {
+      const double distance =
+          signed_distance(search.world, search.body_parts, in_body(ball.center)).value;
       row = distance > ball.radius ? ball.skip : row + 1;
     }
   }
+  take_leaves(search, block);
 }
 
 /// Lowest among its neighbours; between equals the first. A neighbour that was not reached is

@@ -10,6 +10,8 @@
 namespace torsion {
 namespace {
 
+constexpr std::size_t kBucket = 8;  // leaves under one ball: a walk looks at all of them at once
+
 /// Splits the rows at the median of the longest side of their points' box. @return how many are in
 /// the lower half
 std::size_t split(std::span<const glm::dvec3> points, std::span<std::uint32_t> rows) {
@@ -30,28 +32,30 @@ std::size_t split(std::span<const glm::dvec3> points, std::span<std::uint32_t> r
   return half;
 }
 
+void add_leaf(std::span<const glm::dvec3> points, std::uint32_t row, PointTree& tree) {
+  SurfaceBall ball;
+  ball.center = points[row];
+  ball.sample = static_cast<std::uint32_t>(tree.order.size());
+  ball.skip = static_cast<std::uint32_t>(tree.balls.size() + 1);
+  tree.order.push_back(row);
+  tree.balls.push_back(ball);
+}
+
 void add_subtree(std::span<const glm::dvec3> points, std::span<std::uint32_t> rows,
                  PointTree& tree) {
   const std::size_t own = tree.balls.size();
-  SurfaceBall ball;
-  if (rows.size() == 1) {
-    ball.center = points[rows[0]];
-    ball.sample = static_cast<std::uint32_t>(tree.order.size());
-    ball.skip = static_cast<std::uint32_t>(own + 1);
-    tree.order.push_back(rows[0]);
-    tree.balls.push_back(ball);
-    return;
-  }
-  tree.balls.push_back(ball);
-  const std::size_t half = split(points, rows);
-  for (const std::span<std::uint32_t> part : {rows.first(half), rows.subspan(half)}) {
-    if (part.size() < 2) {
-      add_subtree(points, part, tree);
-      continue;
+  tree.balls.push_back(SurfaceBall{});
+  if (rows.size() <= kBucket) {
+    for (const std::uint32_t row : rows) {
+      add_leaf(points, row, tree);
     }
-    const std::size_t quarter = split(points, part);
-    add_subtree(points, part.first(quarter), tree);
-    add_subtree(points, part.subspan(quarter), tree);
+  } else {
+    const std::size_t half = split(points, rows);
+    for (const std::span<std::uint32_t> part : {rows.first(half), rows.subspan(half)}) {
+      const std::size_t quarter = split(points, part);
+      add_subtree(points, part.first(quarter), tree);
+      add_subtree(points, part.subspan(quarter), tree);
+    }
   }
   tree.balls[own].skip = static_cast<std::uint32_t>(tree.balls.size());
 }

@@ -8,8 +8,9 @@
 
 namespace torsion {
 
-/// A tree of balls over points, 4 branches a node, depth first, without radii: `order` says which
-/// point each leaf is, in the order of the leaves. Leaf i has sample = i.
+/// A tree of balls over points, depth first, without radii: 4 branches a node down to nodes of at
+/// most 8 leaves. `order` says which point each leaf is, in the order of the leaves. Leaf i has
+/// sample = i.
 struct PointTree {
   std::vector<SurfaceBall> balls;
   std::vector<std::uint32_t> order;  // row of `points` for leaf 0, 1, 2, ...

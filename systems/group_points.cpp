@@ -85,6 +85,9 @@ std::uint32_t group_points(std::span<const glm::dvec3> points, std::span<const N
   TORSION_ASSERT(order.size() >= count && parent.size() >= count && groups.size() >= count);
   std::iota(parent.begin(), parent.begin() + count, 0U);
   for (const NearPair& pair : near) {
+    if (parent[pair.first] == parent[pair.second]) {
+      continue;
+    }
     const glm::dvec3 gap = points[pair.second] - points[pair.first];
     if (glm::dot(gap, gap) < threshold * threshold) {
       link(parent, pair.first, pair.second);

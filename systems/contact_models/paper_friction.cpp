@@ -18,6 +18,7 @@ struct BrushState {
       0.0;                     // 1/m: elastic deflection at which the translating region slips
   double inverse_limit = 0.0;  // 1/Pa: of the static friction limit
   Friction friction;
+  bool falls = false;     // friction, once a cell slips: mu_d is not mu_s
   glm::dvec2 pivot{0.0};  // m, grid
   glm::dvec2 slide{0.0};  // m, grid, this step
   double spin = 0.0;      // rad, this step
@@ -58,6 +59,7 @@ BrushState brush_of(const World& world, std::uint32_t region) {
   const double normal_force = world.regions.at<RegionNormal>(region).force;
   BrushState brush;
   brush.friction = world.bodies.at<Friction>(body);
+  brush.falls = brush.friction.static_friction != brush.friction.dynamic_friction;
   brush.shear_modulus = elasticity.shear_modulus();
   brush.pressure = geometry.area > 0.0 ? normal_force / geometry.area : 0.0;
   const double stiffness =
@@ -116,8 +118,10 @@ CellSlip update_cell(const BrushState& brush, const glm::dvec2& arm, double twis
     const double trial_size = std::sqrt(trial_square);
     elastic *= limit / trial_size;
     slip.cut = trial - elastic;
-    cell.kinetic_share += (1.0 - cell.kinetic_share) *
-                          travelled(trial_size - limit, brush.inverse_limit / kSlipLength);
+    if (brush.falls) {
+      cell.kinetic_share += (1.0 - cell.kinetic_share) *
+                            travelled(trial_size - limit, brush.inverse_limit / kSlipLength);
+    }
   } else if (cell.kinetic_share > 0.0) {
     cell.kinetic_share *= 1.0 - travelled(glm::distance(elastic, before), brush.inverse_limit);
   }

@@ -8,6 +8,7 @@
 
 #include "systems/distance_field.hpp"
 #include "systems/distance_shapes.hpp"
+#include "systems/widest.hpp"
 
 namespace torsion {
 namespace {
@@ -48,7 +49,7 @@ void with_shape(const World& world, const ShapePart& part, F&& f) {
 
 /// Replaces x, y, z of `block` by the gradient.
 template <class Shape>
-void evaluate_block(Shape shape, Block& block, std::size_t count) {
+TORSION_WIDEST void evaluate_block(Shape shape, Block& block, std::size_t count) {
   double* __restrict x = block.x.data();
   double* __restrict y = block.y.data();
   double* __restrict z = block.z.data();
@@ -137,6 +138,7 @@ ColumnPlacement column_placement(const Pose& part, const Pose& frame) {
 // The loops below vectorise only where the compiler knows that what they write is nothing that they
 // read: hence the local copies and __restrict.
 
+TORSION_WIDEST
 void load_columns(const ColumnPlacement& placement, const DistanceColumns& columns,
                   std::size_t first, std::size_t count, Block& block) {
   const glm::dmat3 r = placement.turn;
@@ -155,6 +157,7 @@ void load_columns(const ColumnPlacement& placement, const DistanceColumns& colum
 }
 
 /// Turns gradients back into the columns' frame.
+TORSION_WIDEST
 void turn_back(const ColumnPlacement& placement, std::size_t count, Block& block) {
   const glm::dmat3 r = placement.turn;
   double* __restrict x = block.x.data();

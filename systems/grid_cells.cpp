@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <functional>
 
 #include "systems/distance_shapes.hpp"
 #include "systems/frames.hpp"
+#include "systems/widest.hpp"
 
 namespace torsion {
 namespace {
@@ -48,43 +51,61 @@ Pose grid_in_tool(const Grid& grid) {
 
 /// The cells' centres as columns of points, in the grid's frame.
 void place_centers(const Grid& grid) {
-  const CellColumns& columns = grid.scratch.cell_columns;
-  std::uint32_t cell = 0;
-  for (std::uint32_t j = 0; j < grid.side; ++j) {
-    for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
-      const glm::dvec2 center = cell_center(grid.frame, grid.side, i, j);
-      columns.points.x[cell] = center.x;
-      columns.points.y[cell] = center.y;
-      columns.points.z[cell] = grid.cells[cell].height;
+  const DistanceColumns& points = grid.scratch.cell_columns.points;
+  for (std::uint32_t i = 0; i < grid.side; ++i) {
+    const glm::dvec2 diagonal = cell_center(grid.frame, grid.side, i, i);
+    for (std::uint32_t j = 0; j < grid.side; ++j) {
+      points.x[std::size_t{j} * grid.side + i] = diagonal.x;
+      points.y[std::size_t{i} * grid.side + j] = diagonal.y;
     }
   }
+  for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
+    points.z[cell] = grid.cells[cell].height;
+  }
+}
+
+/// The largest of `values` and 0; NaN counts as 0. Several at a time, as one at a time would wait
+/// for the one before.
+template <class F>
+double largest(std::span<const double> values, F&& of) {
+  constexpr std::size_t kLanes = 8;
+  std::array<double, kLanes> lanes{};
+  std::size_t first = 0;
+  for (; first + kLanes <= values.size(); first += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      lanes[lane] = larger(of(values[first + lane]), lanes[lane]);
+    }
+  }
+  for (; first < values.size(); ++first) {
+    lanes[0] = larger(of(values[first]), lanes[0]);
+  }
+  return *std::ranges::max_element(lanes);
+}
+
+/// How far the cells' places are below the grid's plane, m.
+double deepest_place(const Grid& grid) {
+  return largest(grid.scratch.cell_columns.points.z, std::negate<>());
 }
 
 /// Radius about the grid's origin that holds what of a surface can lie under the cells' centres and
 /// below the rest surface.
 double reach_of(const Grid& grid) {
-  double deepest = 0.0;
-  for (const double height : grid.scratch.cell_columns.points.z) {
-    deepest = std::max(deepest, -height);
-  }
-  return glm::length(grid.frame.half_size) + deepest;
+  return glm::length(grid.frame.half_size) + deepest_place(grid);
 }
 
 /// Cells that found nothing of the tool near the rest surface look again from below: where they are
 /// now may be above the tool, and from there no step leads to its underside.
 void return_from_above(const Grid& grid) {
   const double size = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
-  double lowest = 0.0;
-  for (const CellGeometry& cell : grid.cells) {
-    lowest = std::min(lowest, cell.height);
-  }
-  for (CellGeometry& cell : grid.cells) {
-    cell.height = cell.height < 0.5 * size ? cell.height : lowest;
+  const double lowest = -deepest_place(grid);
+  for (double& height : grid.scratch.cell_columns.points.z) {
+    height = height < 0.5 * size ? height : lowest;
   }
 }
 
 /// One step of Newton's method along the normal from every cell to the tool's underside.
 /// @return the largest change of a height below the rest surface, m
+TORSION_WIDEST
 double step_to_surface(const DistanceColumns& points, double size) {
   const std::size_t count = points.z.size();
   const double* __restrict normal = points.gradient_z.data();
@@ -97,7 +118,7 @@ double step_to_surface(const DistanceColumns& points, double size) {
     z[cell] = height < size ? height : size;
     value[cell] = height < 0.0 ? std::abs(change) : 0.0;
   }
-  return *std::ranges::max_element(points.value);
+  return largest(points.value, std::identity());
 }
 
 /// Puts the cells' heights on the tool's underside. Leaves the tool's normals of the last step but
@@ -123,15 +144,13 @@ void find_tool_surface(const Grid& grid) {
 
 /// Depth under the body's rest surface, and how much it changes across the cell, from the surfaces'
 /// first-order shape there.
-void find_depths(const Grid& grid) {
-  const CellColumns& columns = grid.scratch.cell_columns;
+/// @param half  m: half a cell
+TORSION_WIDEST
+void find_depths(const CellColumns& columns, const glm::dvec2& half) {
   const DistanceColumns& points = columns.points;
-  const auto parts =
-      parts_near(grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts,
-                 grid.frame.origin, reach_of(grid), grid.scratch.near_parts);
-  signed_distances(grid.world, parts, grid_in_body(grid.frame), points);
-  const glm::dvec2 half = cell_half_size(grid);
   const std::size_t count = points.z.size();
+  const double half_x = half.x;
+  const double half_y = half.y;
   const double* __restrict value = points.value.data();
   const double* __restrict body_x = points.gradient_x.data();
   const double* __restrict body_y = points.gradient_y.data();
@@ -147,8 +166,16 @@ void find_depths(const Grid& grid) {
     depth[cell] = -value[cell] * over_body_slope;
     const double change_x = tool_x[cell] * over_tool_slope + body_x[cell] * over_body_slope;
     const double change_y = tool_y[cell] * over_tool_slope + body_y[cell] * over_body_slope;
-    depth_change[cell] = 2.0 * (std::abs(change_x) * half.x + std::abs(change_y) * half.y) + 1e-30;
+    depth_change[cell] = 2.0 * (std::abs(change_x) * half_x + std::abs(change_y) * half_y) + 1e-30;
   }
+}
+
+/// Distance of the cells' places on the tool to the body's rest surface.
+void find_rest_surface(const Grid& grid) {
+  const auto parts =
+      parts_near(grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts,
+                 grid.frame.origin, reach_of(grid), grid.scratch.near_parts);
+  signed_distances(grid.world, parts, grid_in_body(grid.frame), grid.scratch.cell_columns.points);
 }
 
 /// The share of a cell with depth > 0, to first order.
@@ -226,7 +253,8 @@ bool spread_one_step(const Grid& grid, CellBits& free, CellBits& bits) {
 /// Takes the coverage from cells that are not joined to the region's own contact points, or are
 /// nearer to those of another cluster, in steps from cell to cell. Returns those that keep it.
 CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact) {
-  CellBits free = covered_cells(grid);
+  const CellBits covered = covered_cells(grid);
+  CellBits free = covered;
   CellBits own{};
   CellBits foreign{};
   bool any_own = false;
@@ -256,9 +284,10 @@ CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact) {
     more = spread_one_step(grid, free, own);
     more = spread_one_step(grid, free, foreign) || more;
   }
-  for (std::uint32_t cell = 0; cell < grid.cells.size(); ++cell) {
-    if ((own[cell / grid.side] >> (cell % grid.side) & 1U) == 0) {
-      grid.cells[cell].coverage = 0.0;
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    for (std::uint64_t lost = covered[j] & ~own[j]; lost != 0; lost &= lost - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(lost));
+      grid.cells[std::size_t{j} * grid.side + i].coverage = 0.0;
     }
   }
   return own;
@@ -278,10 +307,11 @@ CellBits covered_cells(const Grid& grid) {
 }
 
 CellBits find_cells(const Grid& grid, const RegionPoints& contact) {
-  return_from_above(grid);
   place_centers(grid);
+  return_from_above(grid);
   find_tool_surface(grid);
-  find_depths(grid);
+  find_rest_surface(grid);
+  find_depths(grid.scratch.cell_columns, cell_half_size(grid));
   find_coverage(grid);
   return keep_own_cells(grid, contact);
 }

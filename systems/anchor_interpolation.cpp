@@ -68,30 +68,48 @@ glm::dvec3 interpolate(const InterpolationWeights& weights, const glm::dvec3& po
   return value;
 }
 
-void interpolate_block(const InterpolationWeights& weights, PointBlock& block) {
+void interpolate_block(const InterpolationWeights& weights, const BlockVectors& points,
+                       BlockVectors& field, std::span<const ScalarColumn> columns) {
   const glm::vec3 constant(weights.constant);
   const glm::vec3 along_x(weights.slope[0]);
   const glm::vec3 along_y(weights.slope[1]);
   const glm::vec3 along_z(weights.slope[2]);
   for (std::size_t i = 0; i < kPointBlock; ++i) {
-    block.ux[i] =
-        constant.x + along_x.x * block.x[i] + along_y.x * block.y[i] + along_z.x * block.z[i];
-    block.uy[i] =
-        constant.y + along_x.y * block.x[i] + along_y.y * block.y[i] + along_z.y * block.z[i];
-    block.uz[i] =
-        constant.z + along_x.z * block.x[i] + along_y.z * block.y[i] + along_z.z * block.z[i];
+    const float x = points.x[i];
+    const float y = points.y[i];
+    const float z = points.z[i];
+    field.x[i] = constant.x + along_x.x * x + along_y.x * y + along_z.x * z;
+    field.y[i] = constant.y + along_x.y * x + along_y.y * y + along_z.y * z;
+    field.z[i] = constant.z + along_x.z * x + along_y.z * y + along_z.z * z;
   }
-  for (const InterpolationWeights::Center& center : weights.centers) {
-    const glm::vec3 p = center.position;
-    const glm::vec3 w = center.weight;
+  for (const ScalarColumn& column : columns) {
+    const auto start = static_cast<float>(column.weights->constant);
+    const glm::vec3 slope(column.weights->slope);
     for (std::size_t i = 0; i < kPointBlock; ++i) {
-      const float dx = block.x[i] - p.x;
-      const float dy = block.y[i] - p.y;
-      const float dz = block.z[i] - p.z;
+      (*column.values)[i] =
+          start + slope.x * points.x[i] + slope.y * points.y[i] + slope.z * points.z[i];
+    }
+  }
+  BlockColumn distances;
+  for (std::size_t j = 0; j < weights.centers.size(); ++j) {
+    const glm::vec3 p = weights.centers[j].position;
+    const glm::vec3 w = weights.centers[j].weight;
+    for (std::size_t i = 0; i < kPointBlock; ++i) {
+      const float dx = points.x[i] - p.x;
+      const float dy = points.y[i] - p.y;
+      const float dz = points.z[i] - p.z;
       const float distance = std::sqrt(dx * dx + dy * dy + dz * dz);
-      block.ux[i] += w.x * distance;
-      block.uy[i] += w.y * distance;
-      block.uz[i] += w.z * distance;
+      distances[i] = distance;
+      field.x[i] += w.x * distance;
+      field.y[i] += w.y * distance;
+      field.z[i] += w.z * distance;
+    }
+    for (const ScalarColumn& column : columns) {
+      const float weight = column.weights->weights[j];
+      BlockColumn& values = *column.values;
+      for (std::size_t i = 0; i < kPointBlock; ++i) {
+        values[i] += weight * distances[i];
+      }
     }
   }
 }
@@ -123,26 +141,6 @@ double interpolate(const ScalarWeights& weights, std::span<const glm::dvec3> cen
     value += static_cast<double>(weights.weights[j]) * glm::distance(point, centers[j]);
   }
   return value;
-}
-
-void interpolate_block(const ScalarWeights& weights,
-                       std::span<const InterpolationWeights::Center> centers,
-                       const PointBlock& block, BlockColumn& column) {
-  const auto constant = static_cast<float>(weights.constant);
-  const glm::vec3 slope(weights.slope);
-  for (std::size_t i = 0; i < kPointBlock; ++i) {
-    column[i] = constant + slope.x * block.x[i] + slope.y * block.y[i] + slope.z * block.z[i];
-  }
-  for (std::size_t j = 0; j < centers.size(); ++j) {
-    const glm::vec3 p = centers[j].position;
-    const float w = weights.weights[j];
-    for (std::size_t i = 0; i < kPointBlock; ++i) {
-      const float dx = block.x[i] - p.x;
-      const float dy = block.y[i] - p.y;
-      const float dz = block.z[i] - p.z;
-      column[i] += w * std::sqrt(dx * dx + dy * dy + dz * dz);
-    }
-  }
 }
 
 }  // namespace torsion

@@ -5,13 +5,13 @@
 // which has the least bending energy of all fields through the anchors and reproduces every affine
 // field (docs/models.md, "From anchors to vertices").
 
-#include <array>
 #include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "ecs/frame_world.hpp"
+#include "systems/vertex_block.hpp"
 
 namespace torsion {
 
@@ -55,28 +55,15 @@ double interpolate(const ScalarWeights& weights, std::span<const glm::dvec3> cen
 /// The field at one point [m].
 glm::dvec3 interpolate(const InterpolationWeights& weights, const glm::dvec3& point);
 
-inline constexpr std::size_t kPointBlock = 256;
-
-/// Columns of a block of points: coordinates in, field out.
-struct PointBlock {
-  float x[kPointBlock];  // m, body
-  float y[kPointBlock];
-  float z[kPointBlock];
-  float ux[kPointBlock];  // m, body
-  float uy[kPointBlock];
-  float uz[kPointBlock];
+/// A field of numbers and where its values at the points of a block go.
+struct ScalarColumn {
+  const ScalarWeights* weights = nullptr;
+  BlockColumn* values = nullptr;
 };
 
-/// A number for each point of a block.
-using BlockColumn = std::array<float, kPointBlock>;
-
-/// The field at all points of the block, in float: 1e-6 of the largest displacement.
-void interpolate_block(const InterpolationWeights& weights, PointBlock& block);
-
-/// Likewise a field of numbers.
-/// @param centers  those of the weights
-void interpolate_block(const ScalarWeights& weights,
-                       std::span<const InterpolationWeights::Center> centers,
-                       const PointBlock& block, BlockColumn& column);
+/// The field and the fields of numbers over the same centers at all points of the block, in float:
+/// 1e-6 of the largest value.
+void interpolate_block(const InterpolationWeights& weights, const BlockVectors& points,
+                       BlockVectors& field, std::span<const ScalarColumn> columns);
 
 }  // namespace torsion

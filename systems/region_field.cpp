@@ -156,10 +156,13 @@ double TurnedDiscs::angle(const glm::dvec3& point) const {
   return near * sum + (1.0 - near) * far;
 }
 
+double PressedSurface::near_share(const glm::dvec3& point) const {
+  return 1.0 - smooth_step(glm::distance(point, all.place) / radius - 3.0);
+}
+
 glm::dvec3 PressedSurface::displacement(const glm::dvec3& point) const {
   const HalfSpace half_space{normal, shear_modulus, poisson_ratio};
-  const double distance = glm::distance(point, all.place) / radius;
-  const double near = 1.0 - smooth_step(distance - 3.0);
+  const double near = near_share(point);
   const glm::dvec3 far =
       near < 1.0 ? displacement_by_force(half_space, point - all.place, all.force, spread)
                  : glm::dvec3(0.0);

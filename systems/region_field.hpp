@@ -10,6 +10,7 @@
 
 #include "ecs/snapshot.hpp"
 #include "ecs/world.hpp"
+#include "systems/vertex_block.hpp"
 
 namespace torsion {
 
@@ -34,6 +35,8 @@ struct TurnedDiscs {
   /// Angle by which the material at a point turns about the normal through the centre, rad.
   /// Source: Reissner & Sagoci, J. Appl. Phys. 15, 1944, in oblate spheroidal coordinates.
   [[nodiscard]] double angle(const glm::dvec3& point) const;
+  /// The same for the first `used` points of a block.
+  void angles(const BlockVectors& points, std::size_t used, BlockColumn& angles) const;
 };
 
 /// The twist of a body by one region, (10) to (13) of the paper as docs/models.md reads them.
@@ -51,6 +54,8 @@ struct RegionTwist {
 
   /// Twist angle of a point of the rest shape [rad].
   [[nodiscard]] double angle(const glm::dvec3& rest) const;
+  /// The same for the first `used` points of a block.
+  void angles(const BlockVectors& rest, std::size_t used, BlockColumn& angles) const;
 };
 
 /// @param region  row in snapshot.regions
@@ -74,6 +79,10 @@ struct PressedSurface {
 
   /// Displacement of the material at a point [m, body].
   [[nodiscard]] glm::dvec3 displacement(const glm::dvec3& point) const;
+  /// Adds it for the first `used` points of a block.
+  void add_displacements(const BlockVectors& points, std::size_t used, BlockVectors& sum) const;
+  /// Share of the forces one by one in it; the rest is that of their sum.
+  [[nodiscard]] double near_share(const glm::dvec3& point) const;
 };
 
 /// The dent that a contact presses and drags into an elastic half-space.
@@ -92,6 +101,8 @@ struct RegionDent {
   [[nodiscard]] double reach(const glm::dvec3& point) const;
   /// Displacement of a point of the surface [m, body].
   [[nodiscard]] glm::dvec3 displacement(const glm::dvec3& point) const;
+  /// Adds it for the first `used` points of a block.
+  void add_displacements(const BlockVectors& points, std::size_t used, BlockVectors& sum) const;
   /// How much of the displacement at a far anchor is taken out again: 0 near the contact, 1 far
   /// away.
   [[nodiscard]] double far_share(const glm::dvec3& point) const;

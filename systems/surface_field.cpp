@@ -11,7 +11,7 @@
 #include "systems/body_field.hpp"
 #include "systems/distance.hpp"
 #include "systems/frames.hpp"
-#include "systems/turn_vertex.hpp"
+#include "systems/vertex_block.hpp"
 
 namespace torsion {
 namespace {
@@ -132,117 +132,130 @@ struct VertexRows {
   std::span<const TwistAxis> axes;
 };
 
-/// What the interpolation says at the points of a block.
-struct BlockField {
-  PointBlock moved;
-  std::array<BlockColumn, kMaxRegionsPerBody> turned;  // rad; those of slots whose turn is on
+/// A block of vertices at work.
+struct VertexBlock {
+  std::size_t first = 0;                             // row
+  std::size_t count = 0;                             // of kPointBlock
+  std::array<double, kPointBlock> free;              // 0: fixed, 1: not
+  BlockVectors rest;                                 // m, body
+  BlockVectors smooth;                               // m, body: the interpolation's, unturned
+  std::array<BlockColumn, kMaxRegionsPerBody> turn;  // rad: of slots whose turn is on
+  BlockVectors turned;                               // m, body: by all angles
+  BlockVectors turned_by_regions;                    // m, body: without the whole body's
+  BlockVectors dents;                                // m, body
 };
 
-/// A vertex after turns about the axes, m, body.
-struct TurnedVertex {
-  glm::vec3 by_regions{0.0F};  // by what regions do to the half-space
-  glm::vec3 by_all{0.0F};      // and by the turn of the whole body
-};
+void take_rows(const BodyField& field, const VertexRows& rows, VertexBlock& block) {
+  for (std::size_t i = 0; i < block.count; ++i) {
+    const glm::vec4& rest = rows.rest[block.first + i].position;
+    const glm::dvec3 point(rest);
+    block.rest.set(i, point);
+    block.free[i] = rest.w >= 1.0F ? 0.0 : freedom(field, point);
+  }
+}
 
-/// Turns one vertex, noting the angles.
-/// @param i  its place in the block
-TurnedVertex twist_vertex(const BodyField& field, const VertexRows& rows, const BlockField& block,
-                          std::size_t vertex, std::size_t i, double free) {
-  const glm::vec3 rest(rows.rest[vertex].position);
-  TurnedVertex at{rest, rest};
+void interpolate_block(const BodyField& field, VertexBlock& block) {
+  std::array<ScalarColumn, kMaxRegionsPerBody> columns;
+  std::size_t turning = 0;
   for (std::size_t slot = 0; slot < field.slots.size(); ++slot) {
-    const double own = free * field.slots[slot].twist.angle(glm::dvec3(rest));
-    double whole = own;
     if (field.slots[slot].turn.on) {
-      whole += free * static_cast<double>(block.turned[slot][i]);
+      columns[turning++] = {&field.slots[slot].turn.angle, &block.turn[slot]};
     }
-    const auto angle = static_cast<float>(whole);
-    rows.twist[slot * rows.rest.size() + vertex].angle = angle;
-    if (angle != 0.0F) {
-      at.by_all = turn_vertex(at.by_all, rows.axes[slot], angle);
+  }
+  interpolate_block(field.weights, block.rest, block.smooth, std::span(columns).first(turning));
+  for (const ScalarColumn& column : std::span(columns).first(turning)) {
+    for (std::size_t i = 0; i < block.count; ++i) {
+      (*column.values)[i] *= static_cast<float>(block.free[i]);
     }
+  }
+}
+
+/// Turns the vertices, noting the angles.
+void turn_vertices(const BodyField& field, const VertexRows& rows, VertexBlock& block) {
+  block.turned = block.rest;
+  block.turned_by_regions = block.rest;
+  BlockColumn angles{};
+  for (std::size_t slot = 0; slot < field.slots.size(); ++slot) {
+    field.slots[slot].twist.angles(block.rest, block.count, angles);
+    for (std::size_t i = 0; i < block.count; ++i) {
+      angles[i] *= static_cast<float>(block.free[i]);
+    }
+    std::fill(angles.begin() + static_cast<std::ptrdiff_t>(block.count), angles.end(), 0.0F);
     if (field.turns) {
-      at.by_regions = turn_vertex(at.by_regions, rows.axes[slot], static_cast<float>(own));
+      turn_block(rows.axes[slot], angles, block.turned_by_regions);
+    }
+    if (field.slots[slot].turn.on) {
+      for (std::size_t i = 0; i < block.count; ++i) {
+        angles[i] += block.turn[slot][i];
+      }
+    }
+    turn_block(rows.axes[slot], angles, block.turned);
+    for (std::size_t i = 0; i < block.count; ++i) {
+      rows.twist[slot * rows.rest.size() + block.first + i].angle = angles[i];
     }
   }
   if (!field.turns) {
-    at.by_regions = at.by_all;
+    block.turned_by_regions = block.turned;
   }
-  return at;
 }
 
-/// A direction of the body at rest as the turn of the whole body leaves it.
-glm::dvec3 with_body(const BodyField& field, const BlockField& block, std::size_t i, double free,
-                     glm::dvec3 direction) {
+/// Turns what moves the vertices with the body: a section's middle goes as it is pushed, the rest
+/// of the section turns about it.
+void turn_displacements(const BodyField& field, VertexBlock& block) {
+  BlockVectors middles;
+  for (std::size_t i = 0; i < block.count; ++i) {
+    const glm::dvec3 middle = middle_at(field, block.rest.at(i));
+    middles.set(i, middle);
+    block.smooth.set(i, block.smooth.at(i) - middle);
+  }
   for (std::size_t slot = 0; slot < field.slots.size(); ++slot) {
     const BodyTurn& turn = field.slots[slot].turn;
     if (turn.on) {
-      const double angle = free * static_cast<double>(block.turned[slot][i]);
-      const glm::dvec3 across = glm::cross(turn.direction, direction);
-      direction +=
-          std::sin(angle) * across + (1.0 - std::cos(angle)) * glm::cross(turn.direction, across);
+      const TwistAxis direction{glm::vec4(0.0F), glm::vec4(glm::vec3(turn.direction), 0.0F)};
+      turn_block(direction, block.turn[slot], block.smooth);
+      turn_block(direction, block.turn[slot], block.dents);
     }
   }
-  return direction;
+  for (std::size_t i = 0; i < block.count; ++i) {
+    block.smooth.set(i, block.smooth.at(i) + middles.at(i));
+  }
 }
 
-void move_vertex(const BodyField& field, const VertexRows& rows, const BlockField& block,
-                 std::size_t vertex, std::size_t i) {
-  const glm::vec4& rest = rows.rest[vertex].position;
-  const double free = rest.w >= 1.0F ? 0.0 : freedom(field, glm::dvec3(rest));
-  const TurnedVertex at = twist_vertex(field, rows, block, vertex, i, free);
-  if (free == 0.0) {
-    rows.displacement[vertex].displacement = glm::vec4(0.0F);
-    return;
+/// Displacement [m, body] and pressure [Pa] of one vertex of the block.
+glm::vec4 displacement_of(const BodyField& field, const VertexBlock& block, std::size_t i) {
+  if (block.free[i] == 0.0) {
+    return glm::vec4(0.0F);
   }
-  const glm::dvec3 local(at.by_regions);
-  const glm::dvec3 turned(at.by_all);
-  glm::dvec3 smooth(block.moved.ux[i], block.moved.uy[i], block.moved.uz[i]);
-  glm::dvec3 dents(0.0);
-  for (const Slot& slot : field.slots) {
-    dents += slot.dent.displacement(local);
-  }
-  if (field.turns) {
-    // The middle of a section goes as it is pushed; the rest of the section turns about it.
-    const glm::dvec3 middle = middle_at(field, glm::dvec3(rest));
-    smooth = middle + with_body(field, block, i, free, smooth - middle);
-    dents = with_body(field, block, i, free, dents);
-  }
-  const glm::dvec3 undented = turned + free * smooth;
-  glm::dvec3 place = undented + free * dents;
+  const glm::dvec3 turned = block.turned.at(i);
+  const glm::dvec3 undented = turned + block.free[i] * block.smooth.at(i);
+  glm::dvec3 place = undented + block.free[i] * block.dents.at(i);
   double pressure = 0.0;
   if (!field.touchers.empty()) {
-    pressure = pressure_at(field, local, undented);
-    place = push_out(field, local, place);
+    const glm::dvec3 on_body = block.turned_by_regions.at(i);
+    pressure = pressure_at(field, on_body, undented);
+    place = push_out(field, on_body, place);
   }
-  rows.displacement[vertex].displacement =
-      glm::vec4(glm::vec3(place - turned), static_cast<float>(pressure));
-}
-
-void interpolate_at(const BodyField& field, std::span<const VertexRest> rest, BlockField& block) {
-  for (std::size_t i = 0; i < rest.size(); ++i) {
-    block.moved.x[i] = rest[i].position.x;
-    block.moved.y[i] = rest[i].position.y;
-    block.moved.z[i] = rest[i].position.z;
-  }
-  interpolate_block(field.weights, block.moved);
-  for (std::size_t slot = 0; slot < field.slots.size(); ++slot) {
-    if (field.slots[slot].turn.on) {
-      interpolate_block(field.slots[slot].turn.angle, field.weights.centers, block.moved,
-                        block.turned[slot]);
-    }
-  }
+  return {glm::vec3(place - turned), static_cast<float>(pressure)};
 }
 
 void move_vertices(const BodyField& field, const VertexRows& rows) {
-  BlockField block{};
-  for (std::size_t first = 0; first < rows.rest.size(); first += kPointBlock) {
-    const std::size_t count = std::min(kPointBlock, rows.rest.size() - first);
+  VertexBlock block{};
+  for (; block.first < rows.rest.size(); block.first += kPointBlock) {
+    block.count = std::min(kPointBlock, rows.rest.size() - block.first);
+    take_rows(field, rows, block);
     if (field.has_weights) {
-      interpolate_at(field, rows.rest.subspan(first, count), block);
+      interpolate_block(field, block);
     }
-    for (std::size_t i = 0; i < count; ++i) {
-      move_vertex(field, rows, block, first + i, i);
+    turn_vertices(field, rows, block);
+    block.dents = BlockVectors{};
+    for (const Slot& slot : field.slots) {
+      slot.dent.add_displacements(block.turned_by_regions, block.count, block.dents);
+    }
+    if (field.turns) {
+      turn_displacements(field, block);
+    }
+    for (std::size_t i = 0; i < block.count; ++i) {
+      rows.displacement[block.first + i].displacement = displacement_of(field, block, i);
     }
   }
 }

@@ -16,6 +16,18 @@ struct SineVersine {
   float versine = 0.0F;  // 1 - cos
 };
 
+/// sine_and_versine() of twice an angle in (-pi/4, pi/4): of that without quarter turns, to the
+/// same bits.
+inline SineVersine sine_and_versine_of_half(float h) {
+  const float z = h * h;
+  const float s =
+      h +
+      h * z * (-1.66666667e-1F + z * (8.33333333e-3F + z * (-1.98412698e-4F + z * 2.75573192e-6F)));
+  const float c =
+      1.0F + z * (-0.5F + z * (4.16666667e-2F + z * (-1.38888889e-3F + z * 2.48015873e-5F)));
+  return {2.0F * s * c, 2.0F * s * s};
+}
+
 /// With h = angle / 2: sin = 2 sin h cos h, 1 - cos = 2 sin^2 h, so that small angles keep their
 /// relative precision. h is brought to [-pi/4, pi/4] by quarter turns with pi/2 in three parts
 /// (Cody and Waite 1980); sine and cosine are Taylor series there.

@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "systems/contact_models/region_fields.hpp"
 #include "systems/region_field.hpp"
+#include "systems/turn_vertex.hpp"
 #include "tests/reference/exact/hertz.hpp"
 #include "tests/reference/exact/lubkin.hpp"
 #include "tests/reference/exact/reissner_sagoci.hpp"
@@ -109,6 +111,67 @@ TEST(HalfSpaceDrawingTest, PressedBlocksSinkLikeHertzAroundTheContact) {
     EXPECT_NEAR(moved.x, 0.0, 1e-9) << r;  // nothing moves sideways at nu = 0.5
   }
   EXPECT_NEAR(-pressed.displacement(glm::dvec3(0.0)).z / hertz.depth, 1.0, 0.1);
+}
+
+/// Points near and far from the origin, above and below the surface, that fill a block.
+BlockVectors points_around() {
+  BlockVectors points{};
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (std::size_t i = 0; i < kPointBlock; ++i) {
+    const double reach = kRadius * std::pow(30.0, static_cast<double>(i) / kPointBlock - 0.1);
+    points.set(i, reach * glm::dvec3(normal(random), normal(random), normal(random)));
+  }
+  return points;
+}
+
+// A block does in float what single points get in double: a few dozen roundings of 6e-8.
+TEST(HalfSpaceDrawingTest, BlocksOfPointsGetWhatSinglePointsGet) {
+  const BlockVectors points = points_around();
+  std::array<double, kFieldDiscs> turn{};
+  turn.fill(0.02);
+  const TurnedDiscs discs = discs_with(turn);
+  PressedSurface pressed;
+  pressed.normal = {0.0, 0.0, 1.0};
+  pressed.radius = kRadius;
+  pressed.spread = 0.1 * kRadius;
+  pressed.shear_modulus = kShear;
+  pressed.poisson_ratio = 0.3;
+  pressed.share = 0.7;
+  for (int i = 0; i < 9; ++i) {
+    const glm::dvec3 place(i % 3 - 1, i / 3 - 1, 0.0);
+    pressed.forces[pressed.count] = {0.5 * kRadius * place, {0.3, -0.1, -1.0 + 0.05 * i}};
+    pressed.all.force += pressed.forces[pressed.count++].force;
+  }
+  BlockColumn angles{};
+  BlockVectors moved{};
+  discs.angles(points, kPointBlock, angles);
+  pressed.add_displacements(points, kPointBlock, moved);
+  const double deepest = glm::length(pressed.displacement(glm::dvec3(0.0)));
+  for (std::size_t i = 0; i < kPointBlock; ++i) {
+    EXPECT_NEAR(static_cast<double>(angles[i]), discs.angle(points.at(i)), 2e-6 * 0.2);
+    EXPECT_NEAR(glm::distance(moved.at(i), pressed.displacement(points.at(i))), 0.0,
+                2e-6 * deepest);
+  }
+}
+
+TEST(HalfSpaceDrawingTest, ABlockTurnsToTheBitsOfSingleVertices) {
+  const TwistAxis axis{glm::vec4(0.001F, -0.02F, 0.003F, 0.0F),
+                       glm::vec4(glm::normalize(glm::vec3(0.3F, 1.0F, -0.2F)), 0.0F)};
+  // The second block has turns beyond a quarter.
+  for (const float largest : {1.5F, 8.0F}) {
+    BlockVectors points = points_around();
+    const BlockVectors before = points;
+    BlockColumn angles{};
+    for (std::size_t i = 0; i < kPointBlock; ++i) {
+      angles[i] = largest * std::sin(static_cast<float>(i));
+    }
+    turn_block(axis, angles, points);
+    for (std::size_t i = 0; i < kPointBlock; ++i) {
+      const glm::vec3 one = turn_vertex({before.x[i], before.y[i], before.z[i]}, axis, angles[i]);
+      EXPECT_EQ(glm::vec3(points.x[i], points.y[i], points.z[i]), one);
+    }
+  }
 }
 
 /// Twist of the surface over that of the tool at distances of the axis, after a twist of 0.05 rad

@@ -8,7 +8,8 @@ namespace torsion {
 enum class HeatMap : std::uint32_t {
   kNone,      // the material's own colour
   kTwist,     // twist angle, summed over the regions, signed; the scale goes from -heat_limit to
-              // +heat_limit, rad
+              // +heat_limit, rad, by square roots, because a twist falls off with the third
+              // power of the distance
   kPressure,  // normal contact pressure; the scale goes from 0 to heat_limit, Pa
 };
 

@@ -153,7 +153,7 @@ shared::FrameUniforms frame_uniforms(const SceneExtent& extent, const Camera& ca
                            options.transparent_tools ? kClearToolShade : 1.0));
   uniforms.heat_scale = glm::vec4(glm::dvec4(is_signed ? -heat_range : 0.0,
                                              is_signed ? 0.5 / heat_range : 1.0 / heat_range,
-                                             is_signed ? 0.25 : 0.75, 0.0));
+                                             is_signed ? 0.25 : 0.75, is_signed ? 1.0 : 0.0));
   return uniforms;
 }
 

@@ -40,6 +40,14 @@ struct Scale {
   double low;
   double high;
   std::string title;
+  bool square_roots = false;  // on both sides of the middle; else linear
+
+  /// @param share  place on the bar, 0 to 1
+  [[nodiscard]] double value_at(double share) const {
+    const double part = 2.0 * share - 1.0;
+    const double linear = square_roots ? 0.5 + 0.5 * part * std::abs(part) : share;
+    return low + (high - low) * linear;
+  }
 };
 
 /// The scale in the unit that its numbers read best in.
@@ -47,16 +55,16 @@ Scale scale_of(const OverlayContent& content) {
   const double limit = content.heat_limit;
   if (content.heat_map == HeatMap::kTwist) {
     const double degrees = limit * 180.0 / std::numbers::pi;
-    return {-degrees, degrees, "twist angle [\xC2\xB0]"};
+    return {-degrees, degrees, "twist angle [\xC2\xB0], root scale", true};
   }
   const std::array<std::pair<double, const char*>, 3> units = {
       {{1e6, "MPa"}, {1e3, "kPa"}, {1.0, "Pa"}}};
   for (const auto& [factor, name] : units) {
     if (limit >= factor) {
-      return {0.0, limit / factor, std::string("pressure [") + name + "]"};
+      return {0.0, limit / factor, std::string("pressure [") + name + "]", false};
     }
   }
-  return {0.0, limit, "pressure [Pa]"};
+  return {0.0, limit, "pressure [Pa]", false};
 }
 
 /// A panel as wide as its lines, with its bottom left or top left corner near the picture's.
@@ -102,7 +110,7 @@ void append_color_bar(const OverlayFont& font, const OverlayContent& content, do
     const double share = static_cast<double>(i) / kTicks;
     const double x = bar_left + bar_width * share;
     font.append_box(list, x - 0.5, bar_bottom, x + 0.5, bar_bottom + 0.2 * line, kInk);
-    const std::string text = number(scale.low + (scale.high - scale.low) * share);
+    const std::string text = number(scale.value_at(share));
     font.append_text(list, text, x - 0.5 * font.width_of(text), bar_bottom + 0.2 * line, kInk);
   }
 }

@@ -56,6 +56,10 @@ void main() {
   vec3 base = draw.color.rgb;
   if (draw.rows.z != kHeatNone) {
     float at = clamp((heat - frame.heat_scale.x) * frame.heat_scale.y, 0.0, 1.0);
+    if (frame.heat_scale.w > 0.0) {
+      float part = 2.0 * at - 1.0;
+      at = 0.5 + 0.5 * sign(part) * sqrt(abs(part));
+    }
     base = texture(color_maps, vec2(at * (255.0 / 256.0) + 0.5 / 256.0, frame.heat_scale.z)).rgb;
   }
   base *= 1.0 - 0.25 * rest_position.w;  // what is fixed is a little darker

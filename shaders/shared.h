@@ -56,7 +56,8 @@ struct FrameUniforms {
   vec4 floor_box;           // xz centre, xz half size of the bodies' footprint, m, world
   vec4 floor_level;         // x: y of the floor, m; y: height of the bodies, m; z: radius of the visible floor, m; w: share of the
                             // key light that a tool takes away
-  vec4 heat_scale;          // x: value at 0, y: 1 / (value at 1 - value at 0), z: row of the colour map (0 to 1), w unused
+  vec4 heat_scale;          // x: value at 0, y: 1 / (value at 1 - value at 0), z: row of the colour map (0 to 1),
+                            // w: 1: square roots on both sides of the middle, 0: linear
 };
 
 // A contact region, for the shade in the crease between tool and body.

@@ -1,0 +1,94 @@
+#include "device/protocols/hid_descriptor.hpp"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "tests/device/space_mouse_descriptor.hpp"
+
+namespace torsion {
+namespace {
+
+using test::kSpaceMouseDescriptor;
+
+TEST(HidDescriptorTest, FindsFieldsWhereTheDescriptorPutsThem) {
+  const auto inputs = parse_hid_descriptor(kSpaceMouseDescriptor);
+  ASSERT_TRUE(inputs);
+  EXPECT_TRUE(inputs->numbered);
+  ASSERT_EQ(inputs->fields.size(), 8U);  // six axes, two buttons; what is padding is left out
+  for (std::uint32_t axis = 0; axis < 6; ++axis) {
+    const HidField& field = inputs->fields[axis];
+    EXPECT_EQ(field.usage, kHidX + axis);
+    EXPECT_EQ(field.application, kHidMultiAxisController);
+    EXPECT_EQ(field.report_id, axis < 3 ? 1 : 2);
+    EXPECT_EQ(field.bit_offset, 16 * (axis % 3));
+    EXPECT_EQ(field.bit_size, 16U);
+    EXPECT_EQ(field.logical_min, -350);
+    EXPECT_EQ(field.logical_max, 350);
+  }
+  EXPECT_EQ(inputs->fields[7].usage, 0x0009'0002U);
+  EXPECT_EQ(inputs->fields[7].bit_offset, 1U);
+  EXPECT_EQ(inputs->fields[7].logical_max, 1);
+}
+
+TEST(HidDescriptorTest, ReadsValuesAcrossBytesWithTheirSign) {
+  const HidField field{kHidX, 0, 7, 4, 12, -2048, 2047};
+  const std::array<std::uint8_t, 3> report = {7, 0xF5, 0x80};  // bits 4 to 15 of 0x80F5: 0x80F
+  EXPECT_EQ(hid_value(field, true, report), 0x80F - 4096);
+  HidField positive = field;
+  positive.logical_min = 0;
+  EXPECT_EQ(hid_value(positive, true, report), 0x80F);
+}
+
+TEST(HidDescriptorTest, HasNoValueInAnotherOrAShortReport) {
+  const HidField field{kHidX, 0, 7, 4, 12, -2048, 2047};
+  EXPECT_FALSE(hid_value(field, true, std::array<std::uint8_t, 3>{6, 0, 0}));
+  EXPECT_FALSE(hid_value(field, true, std::array<std::uint8_t, 2>{7, 0}));
+  EXPECT_FALSE(hid_value(field, true, {}));
+  EXPECT_TRUE(hid_value(field, false, std::array<std::uint8_t, 2>{0, 0}));
+}
+
+TEST(HidDescriptorTest, TakesAMaximumForUnsignedWhereTheMinimumIsNotNegative) {
+  // usage page 1, usage X, minimum 0, maximum 255 in one byte, 8 bits, one
+  const std::array<std::uint8_t, 14> descriptor = {0x05, 0x01, 0x09, 0x30, 0x15, 0x00, 0x25,
+                                                   0xFF, 0x75, 0x08, 0x95, 0x01, 0x81, 0x02};
+  const auto inputs = parse_hid_descriptor(descriptor);
+  ASSERT_TRUE(inputs);
+  ASSERT_EQ(inputs->fields.size(), 1U);
+  EXPECT_EQ(inputs->fields[0].logical_max, 255);
+  EXPECT_FALSE(inputs->numbered);
+}
+
+TEST(HidDescriptorTest, RefusesWhatIsCutOffOrDoesNotNest) {
+  // from within the item that opens the first collection
+  for (std::size_t size = 5; size < kSpaceMouseDescriptor.size(); ++size) {
+    EXPECT_FALSE(parse_hid_descriptor(Bytes(kSpaceMouseDescriptor).first(size))) << size;
+  }
+  EXPECT_FALSE(parse_hid_descriptor(std::array<std::uint8_t, 1>{0xC0}));        // an end alone
+  EXPECT_FALSE(parse_hid_descriptor(std::array<std::uint8_t, 1>{0xB4}));        // a pop alone
+  EXPECT_FALSE(parse_hid_descriptor(std::array<std::uint8_t, 2>{0x85, 0x00}));  // report id 0
+  // 2^31 values of 32 bits
+  EXPECT_FALSE(parse_hid_descriptor(
+      std::array<std::uint8_t, 9>{0x75, 0x20, 0x97, 0x00, 0x00, 0x00, 0x80, 0x81, 0x02}));
+}
+
+TEST(HidDescriptorTest, SurvivesAnyBytes) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 20000; ++i) {
+    std::vector<std::uint8_t> bytes(kSpaceMouseDescriptor.begin(), kSpaceMouseDescriptor.end());
+    const auto changes = random() % 8;
+    for (unsigned change = 0; change < changes; ++change) {
+      bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
+    }
+    const auto inputs = parse_hid_descriptor(bytes);
+    for (const HidField& field : inputs ? inputs->fields : std::vector<HidField>{}) {
+      std::array<std::uint8_t, 8> report{};
+      report[0] = field.report_id;
+      const auto value = hid_value(field, inputs->numbered, report);
+      EXPECT_TRUE(!value || *value == 0 || !inputs->numbered || field.report_id == 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace torsion

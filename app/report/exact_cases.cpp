@@ -31,10 +31,19 @@ struct SphereOnHalfSpace {
   int steps = 0;  // between the points of a path
 };
 
+/// A sphere's own contact radius and force, with Hertz' form of the pressure.
+reference::HertzSphere sphere_contact(double modulus, double depth) {
+  const reference::SneddonSphere exact =
+      reference::sneddon_sphere_at_depth(kBallRadius, modulus, depth);
+  reference::HertzSphere contact = reference::hertz_sphere_at_depth(kBallRadius, modulus, depth);
+  contact.force = exact.force;
+  contact.radius = exact.radius;
+  return contact;
+}
+
 SphereOnHalfSpace sphere_on_half_space(bool quick) {
   SphereOnHalfSpace sphere;
-  sphere.hertz =
-      reference::hertz_sphere_at_depth(kBallRadius, sphere.elasticity.contact_modulus(), kDepth);
+  sphere.hertz = sphere_contact(sphere.elasticity.contact_modulus(), kDepth);
   sphere.steps = quick ? 10 : 40;
   return sphere;
 }
@@ -82,9 +91,7 @@ std::vector<PathPoint> press(const SphereOnHalfSpace& sphere, bool force_is_norm
     point.tool = pose_at(depth, 0.0, 0.0);
     point.steps = sphere.steps;
     if (force_is_normal) {
-      point.force =
-          reference::hertz_sphere_at_depth(kBallRadius, sphere.elasticity.contact_modulus(), depth)
-              .force;
+      point.force = sphere_contact(sphere.elasticity.contact_modulus(), depth).force;
     }
     path.push_back(point);
   }
@@ -116,10 +123,13 @@ std::string sphere_text(const SphereOnHalfSpace& sphere) {
       sphere.hertz.force, 1e3 * sphere.hertz.radius);
 }
 
-/// How far Hertz's paraboloid is from the sphere that the program has.
-double paraboloid_error() {
-  const double hertz = reference::hertz_sphere_at_depth(kBallRadius, 1.0, kDepth).force;
-  return std::abs(reference::sneddon_sphere_at_depth(kBallRadius, 1.0, kDepth).force / hertz - 1.0);
+/// How far the largest couple of a sphere is from that of Hertz' pressure of the same force and
+/// radius. A profile with g = x^2 / R + x^4 / (3 R^3) has the line load (1 - x^2) + k (1 - x^4)
+/// over a, k = (a / R)^2 / 3, and a couple of the integral of x times it: 0.375 (1 + 2 k / 15) F a
+/// to first order.
+double pressure_error(const SphereOnHalfSpace& sphere) {
+  const double share = sphere.hertz.radius / kBallRadius;
+  return 2.0 / 15.0 * share * share / 3.0;
 }
 
 ReferenceCase twist_case(bool quick) {
@@ -139,11 +149,10 @@ ReferenceCase twist_case(bool quick) {
           "constant depth.",
           amplitude, amplitude);
   result.reference = fmt::format(
-      "Hertz for the force, Lubkin (1951) for torque and twist field, Masing\u2019s rule after "
-      "each "
-      "turn; evaluated to 1e-11. Taking the sphere for a paraboloid changes the force by "
-      "{:.2g}\u00a0%.",
-      100.0 * paraboloid_error());
+      "Sneddon (1965) for force and contact radius, Lubkin (1951) for torque and twist field, "
+      "Masing\u2019s rule after each turn; evaluated to 1e-11. That a sphere presses not quite as "
+      "Hertz\u2019 paraboloid changes the torque by {:.1g}\u00a0%.",
+      100.0 * pressure_error(sphere));
   result.force_meaning = "normal force, pressing and twisting";
   result.torque_meaning = "torque about the axis of the twist";
   result.scene = scene_of(sphere);

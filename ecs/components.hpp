@@ -309,9 +309,21 @@ struct PatchState {
   std::uint32_t padding = 0;
 };
 
+/// Where smooth exact shapes lie deepest in each other in a region with contact model `mdr`.
+/// Written by: mdr_contacts.
+struct SmoothContact {
+  double share = 0.0;        // 1: known from the shapes; 0: not, what the cells show counts
+  double depth = 0.0;        // m, along the common normal
+  glm::dvec2 place{0.0};     // m, grid
+  double curvature_1 = 0.0;  // 1/m, principal, of both surfaces together
+  double curvature_2 = 0.0;  // 1/m, the larger
+  double beyond = 0.0;  // how far the surfaces part at the edge beyond their paraboloid, relative
+};
+
 /// How the contact model `mdr` stands in a region. Written by: mdr_forces.
 struct MdrState {
   double radius = 0.0;      // m: a of the last step, 0 before the first
+  double elongation = 0.0;  // 1 - b / a
   double flat_share = 0.0;  // of the force: by a flat punch's pressure, the rest by a paraboloid's
   double kinetic_share = 0.0;  // 0: mu_s, 1: mu_d
 };

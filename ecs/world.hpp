@@ -65,7 +65,7 @@ using ToolTable =
     Table<Entity, ToolPose, ToolMotion, MassProperties, ToolWrench, OwnedRows, Bounds>;
 using RegionTable = Table<RegionIdentity, RegionFrame, RegionCarrier, RegionSupport, TractionFrame,
                           RegionGeometry, RegionMotion, RegionNormal, RegionFriction, PatchState,
-                          MdrState, RegionField, AnchorTurns, RegionWrench>;
+                          SmoothContact, MdrState, RegionField, AnchorTurns, RegionWrench>;
 using CellTable = Table<CellGeometry, CellTraction>;
 using PatchCellTable = Table<PatchCell, PatchChange>;
 using MdrLayerTable = Table<MdrLayer>;

@@ -44,6 +44,18 @@ inline glm::dvec3 body_to_grid(const RegionFrame& frame, const glm::dvec3& point
   return body_to_grid_direction(frame, point - frame.origin);
 }
 
+/// Turns the frame so that its normal is `normal` and its x axis turns as little as it can.
+inline void turn_normal_to(RegionFrame& frame, const glm::dvec3& normal) {
+  frame.normal = normal;
+  const glm::dvec3 x = frame.tangent_x - normal * glm::dot(frame.tangent_x, normal);
+  if (glm::dot(x, x) > 1e-6) {
+    frame.tangent_x = glm::normalize(x);
+  } else {
+    frame.tangent_x = glm::normalize(frame.tangent_y - normal * glm::dot(frame.tangent_y, normal));
+  }
+  frame.tangent_y = glm::cross(normal, frame.tangent_x);
+}
+
 /// Centre of grid cell (i, j) of side x side cells, m, grid, z = 0.
 inline glm::dvec2 cell_center(const RegionFrame& frame, std::uint32_t side, std::uint32_t i,
                               std::uint32_t j) {

@@ -17,11 +17,6 @@ constexpr int kMostSurfaceSteps = 10;  // of Newton's method down to the tool's 
 constexpr double kSteepest =
     0.25;  // smallest |cosine| between a surface's normal and the grid's that is divided by
 
-/// The grid's frame in that of its body.
-Pose grid_in_body(const RegionFrame& frame) {
-  return {frame.origin, glm::quat_cast(glm::dmat3(frame.tangent_x, frame.tangent_y, frame.normal))};
-}
-
 /// Where the material under the grid has gone, in the frame of its body.
 Pose moved_grid_in_body(const Grid& grid) {
   const RegionCarrier& carrier = grid.carrier;
@@ -40,13 +35,6 @@ Pose moved_grid_in_body(const Grid& grid) {
   }
   moved.position += support.translation;
   return moved;
-}
-
-/// The same in that of its tool.
-Pose grid_in_tool(const Grid& grid) {
-  const Pose tool_in_body = relative(grid.world.bodies.at<Pose>(grid.identity.body),
-                                     grid.world.tools.at<ToolPose>(grid.identity.tool).now);
-  return relative(tool_in_body, moved_grid_in_body(grid));
 }
 
 /// The cells' centres as columns of points, in the grid's frame.
@@ -294,6 +282,16 @@ CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact) {
 }
 
 }  // namespace
+
+Pose grid_in_body(const RegionFrame& frame) {
+  return {frame.origin, glm::quat_cast(glm::dmat3(frame.tangent_x, frame.tangent_y, frame.normal))};
+}
+
+Pose grid_in_tool(const Grid& grid) {
+  const Pose tool_in_body = relative(grid.world.bodies.at<Pose>(grid.identity.body),
+                                     grid.world.tools.at<ToolPose>(grid.identity.tool).now);
+  return relative(tool_in_body, moved_grid_in_body(grid));
+}
 
 CellBits covered_cells(const Grid& grid) {
   CellBits covered{};

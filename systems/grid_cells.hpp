@@ -43,6 +43,12 @@ inline std::span<const ContactPoint> points_of(const Scratch& scratch,
   return {scratch.points.data() + contact.points.first, contact.points.count};
 }
 
+/// The grid's frame in that of its body.
+Pose grid_in_body(const RegionFrame& frame);
+
+/// The grid's frame, moved as the material under it, in that of its tool.
+Pose grid_in_tool(const Grid& grid);
+
 /// Cells as bits: bit i of word j is cell (i, j).
 using CellBits = std::array<std::uint64_t, kMaxGridSide>;
 

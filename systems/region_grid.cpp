@@ -95,18 +95,6 @@ void fit(const Grid& grid, const PlaneBox& box) {
                   (surface.value / std::max(glm::dot(surface.gradient, frame.normal), kSteepest));
 }
 
-/// Turns the frame so that its normal is `normal` and its x axis turns as little as it can.
-void turn_to(RegionFrame& frame, const glm::dvec3& normal) {
-  frame.normal = normal;
-  const glm::dvec3 x = frame.tangent_x - normal * glm::dot(frame.tangent_x, normal);
-  if (glm::dot(x, x) > 1e-6) {
-    frame.tangent_x = glm::normalize(x);
-  } else {
-    frame.tangent_x = glm::normalize(frame.tangent_y - normal * glm::dot(frame.tangent_y, normal));
-  }
-  frame.tangent_y = glm::cross(normal, frame.tangent_x);
-}
-
 void turn_about_normal(RegionFrame& frame, double angle) {
   const glm::dvec3 x = frame.tangent_x;
   const glm::dvec3 y = frame.tangent_y;
@@ -266,7 +254,7 @@ void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoin
   RegionFrame& frame = grid.frame;
   frame = RegionFrame{};
   frame.origin = deepest;
-  turn_to(frame, glm::normalize(surface.gradient));
+  turn_normal_to(frame, glm::normalize(surface.gradient));
   PlaneBox box;
   const glm::dvec2 start(2.0 * depth);
   box.include(-start, start);
@@ -280,16 +268,19 @@ void follow_contact(StepContext& context, std::uint32_t region, const RegionPoin
   contact_of(context, grid.identity) = contact;
   if (has_patch(context.world, grid.identity)) {
     follow_patch(context, region, contact);
-    turn_to(grid.frame, context.world.regions.at<RegionGeometry>(region).mean_normal);
+    turn_normal_to(grid.frame, context.world.regions.at<RegionGeometry>(region).mean_normal);
     return;
   }
-  follow_material(context.world, region);
+  // The springs of mdr are round: they need no grid that turns with what sticks.
+  if (context.world.bodies.at<BodyModels>(grid.identity.body).contact != ContactModel::kMdr) {
+    follow_material(context.world, region);
+  }
   PlaneBox box = covered_box(grid, covered_cells(grid));
   include_points(grid, contact, box);
   if (!box.empty()) {
     fit(grid, box);
   }
-  turn_to(grid.frame, context.world.regions.at<RegionGeometry>(region).mean_normal);
+  turn_normal_to(grid.frame, context.world.regions.at<RegionGeometry>(region).mean_normal);
 }
 
 void region_grids(StepContext& context) {

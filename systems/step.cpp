@@ -9,6 +9,7 @@
 #include "systems/contact_models/paper.hpp"
 #include "systems/contact_models/patch.hpp"
 #include "systems/contact_models/region_fields.hpp"
+#include "systems/contact_models/smooth_contact.hpp"
 #include "systems/couple_tools.hpp"
 #include "systems/detect_contacts.hpp"
 #include "systems/group_regions.hpp"
@@ -85,6 +86,8 @@ std::vector<System<StepContext>> step_systems() {
        "a body with contact model paper and friction", any_paper_friction, carry_tractions},
       {"paper_normal_forces", "normal force f = k1 x + k3 x^3", "a body with contact model paper",
        any_contact_model<ContactModel::kPaper>, paper_normal_forces},
+      {"mdr_contacts", "where smooth shapes lie deepest in each other",
+       "a body with contact model mdr", any_contact_model<ContactModel::kMdr>, mdr_contacts},
       {"region_motion", "slide, spin and axis of every region", "a body with friction", any_moving,
        region_motion},
       {"mdr_forces", "round contacts of an elastic half-space: force, friction and torque",

@@ -46,7 +46,44 @@ double axis_ratio(double ratio) {
   return axes;
 }
 
+/// Integrals of sin^2 and sin^4 over (1 - m sin^2)^(3/2) from 0 to pi / 2, and of 1.
+struct Directions {
+  double zeroth = 0.0;
+  double square = 0.0;
+  double fourth = 0.0;
+};
+
+Directions over_directions(double m) {
+  if (m < 1e-3) {  // the quotients below lose their digits; to third order in m
+    constexpr double kPi = std::numbers::pi;
+    return {kPi / 2.0 + m * (3.0 * kPi / 8.0 + m * 45.0 * kPi / 128.0),
+            kPi / 4.0 + m * (9.0 * kPi / 32.0 + m * 75.0 * kPi / 256.0),
+            3.0 * kPi / 16.0 + m * (15.0 * kPi / 64.0 + m * 525.0 * kPi / 2048.0)};
+  }
+  const EllipticIntegrals integrals = elliptic_integrals(m);
+  const double zeroth = integrals.second / (1.0 - m);
+  const double square = (zeroth - integrals.first) / m;
+  return {zeroth, square, (square - (integrals.first - integrals.second) / m) / m};
+}
+
 }  // namespace
+
+double bonded_turn_share(double axes, double poisson_ratio) {
+  const double nu = poisson_ratio;
+  const double square = axes * axes;
+  // With a = 1: integrals of R^3 cos^p sin^q over half a turn, R the ellipse's radius, over 2 b^3.
+  const Directions d = over_directions(1.0 - square);
+  const double along = (1.0 - nu) * d.square + nu * d.fourth;
+  const double across =
+      (1.0 - nu) * (d.zeroth - d.square) + nu * (d.zeroth - 2.0 * d.square + d.fourth);
+  const double mixed = nu * (d.square - d.fourth);
+  // A (along) + B (mixed / b^2) = A mixed + B (across / b^2) = G phi / b^3
+  const double determinant = (along * across - mixed * mixed) / square;
+  const double a = (across - mixed) / square / determinant;
+  const double b = (along - mixed) / determinant;
+  const double couple = 2.0 * std::numbers::pi / 3.0 * axes * (a * square + b);
+  return couple / (axes * square) / (16.0 / 3.0 * axes * std::sqrt(axes));
+}
 
 EllipticContact elliptic_contact(double depth, double curvature_1, double curvature_2) {
   const double small = 0.5 * std::min(curvature_1, curvature_2);

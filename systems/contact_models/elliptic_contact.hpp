@@ -13,12 +13,22 @@ struct EllipticIntegrals {
 EllipticIntegrals elliptic_integrals(double m);
 
 struct EllipticContact {
-  double major = 0.0;        // a, m
-  double minor = 0.0;        // b, m
-  double force_share = 1.0;  // force over (4/3) E* sqrt(a b) depth, that of a round contact
+  double major = 0.0;  // a, m
+  double minor = 0.0;  // b, m
+  // Force over (4/3) E* sqrt(a b) depth, that of a round contact; likewise the normal stiffness of
+  // a flat ellipse and, mean over all directions, the compliance of a sliding one (Mindlin, J.
+  // Appl. Mech. 16 (1949) 259).
+  double force_share = 1.0;
   double torque_share =
       1.0;  // largest couple over (3 pi / 16) mu F sqrt(a b): from (3/8) mu F a E(m)
 };
+
+/// Couple over angle of a rigid ellipse bonded to a half-space, over (16/3) G (a b)^(3/2), that of
+/// a disc of equal area. Source: tractions q_x = -A y / w, q_y = B x / w with w^2 = 1 - (x/a)^2 -
+/// (y/b)^2 turn the ellipse as a whole (Mindlin, 1949); A and B from the integral of Cerruti's
+/// solution over all directions.
+/// @param axes  b / a, 0 < axes <= 1
+double bonded_turn_share(double axes, double poisson_ratio);
 
 /// Contact of the rigid paraboloid z = curvature_1 x^2 / 2 + curvature_2 y^2 / 2 pressed `depth`
 /// deep. Axes more than 1 : 100 apart are taken as 1 : 100.

@@ -48,19 +48,17 @@ LimitCurve make_limit_curve() {
 }
 
 glm::dvec2 nearest_inside(const LimitCurve& curve, const glm::dvec2& load,
-                          const glm::dvec2& weights) {
-  // On a convex curve the distance falls and then rises: the segment where it turns is found by
-  // halving.
-  std::size_t low = 0;
-  std::size_t high = kLimitCurveSegments;
-  while (high - low > 1) {
-    const std::size_t middle = (low + high) / 2;
-    if (approach(load, weights, curve.points[middle], curve.points[middle + 1]) > 0.0) {
-      low = middle;
-    } else {
-      high = middle;
-    }
+                          const glm::dvec2& weights, std::size_t& segment) {
+  // On a convex curve the distance falls and then rises: downhill to the segment where it turns.
+  std::size_t low = std::min(segment, std::size_t{kLimitCurveSegments - 1});
+  while (low + 1 < kLimitCurveSegments &&
+         approach(load, weights, curve.points[low + 1], curve.points[low + 2]) > 0.0) {
+    ++low;
   }
+  while (low > 0 && approach(load, weights, curve.points[low], curve.points[low + 1]) <= 0.0) {
+    --low;
+  }
+  segment = low;
   const glm::dvec2& from = curve.points[low];
   const glm::dvec2 along = curve.points[low + 1] - from;
   // The way from pure sliding to pure spinning has the inside on its left.

@@ -18,21 +18,25 @@ constexpr double kWide = 4.0;  // a body at least so many times as wide as thick
 
 /// What a region's overlap says of its contact.
 struct RoundContact {
-  glm::dvec2 center{0.0};   // m, grid
-  double radius = 0.0;      // m: sqrt(a b)
-  double depth = 0.0;       // m
-  double force = 0.0;       // N
-  double flat_share = 0.0;  // of the force
+  glm::dvec2 center{0.0};  // m, grid
+  double radius = 0.0;     // m: sqrt(a b)
+  double depth = 0.0;      // m
+  double force = 0.0;      // N
+  MdrPressure pressure;
+  // Over those of a round contact of the same radius and force.
+  double slide_stiffness = 1.0;
+  double turn_stiffness = 1.0;
   double torque_share = 1.0;
 };
 
 /// Thickness under the contact of a body that is a layer on a fixed face, m; 0 for others.
-double layer_thickness(const World& world, std::uint32_t body, const RegionFrame& frame) {
+double layer_thickness(const World& world, std::uint32_t body, const RegionFrame& frame,
+                       const glm::dvec3& rest_point) {
   const FixedRegion& fixed = world.bodies.at<FixedRegion>(body);
   if (fixed.kind != FixedKind::kFace || glm::dot(fixed.normal, frame.normal) < 0.9) {
     return 0.0;
   }
-  const double thickness = glm::dot(frame.origin - fixed.point, fixed.normal);
+  const double thickness = glm::dot(rest_point - fixed.point, fixed.normal);
   const Bounds& bounds = world.bodies.at<Bounds>(body);
   const glm::dvec3 size = bounds.highest - bounds.lowest;
   const glm::dvec3 across = size - size * glm::abs(fixed.normal);
@@ -42,14 +46,52 @@ double layer_thickness(const World& world, std::uint32_t body, const RegionFrame
   return width > kWide * thickness ? thickness : 0.0;
 }
 
-/// A paraboloid's contact, cut off where the overlap ends before its own edge would be: the rest of
-/// the depth then presses like a flat punch.
-RoundContact contact_of(const World& world, std::uint32_t region) {
+/// What does not depend on how the contact was found: stiffnesses of an ellipse that presses with
+/// `round_share` of Hertz' pressure.
+void set_stiffnesses(const EllipticContact& ellipse, double round_share, double poisson_ratio,
+                     RoundContact& contact) {
+  const double axes = ellipse.minor / ellipse.major;
+  contact.pressure.elongation = round_share * (1.0 - axes);
+  contact.slide_stiffness = std::lerp(1.0, ellipse.force_share, round_share);
+  contact.turn_stiffness =
+      axes < 1.0 ? std::lerp(1.0, bonded_turn_share(axes, poisson_ratio), round_share) : 1.0;
+  contact.torque_share = std::lerp(1.0, ellipse.torque_share, round_share);
+}
+
+/// Of shapes that are known: Hertz' ellipse, and as much less as their surfaces part beyond the
+/// paraboloid. A round profile r^2 / (2 R) + c r^4 has g = x^2 / R + (8/3) c x^4, and so
+/// F = 2 E* (d a - a^3 / (3 R) - (8/15) c a^5) with g(a) = d (Popov & Hess, 2015, ch. 3); its
+/// r^4 term here is the mean over the ellipse's rim.
+RoundContact contact_of_shapes(const SmoothContact& smooth, const Elasticity& elasticity) {
+  RoundContact contact;
+  if (smooth.depth <= 0.0) {
+    return contact;
+  }
+  const double depth = smooth.depth;
+  const EllipticContact ellipse = elliptic_contact(depth, smooth.curvature_1, smooth.curvature_2);
+  const double paraboloid = std::sqrt(ellipse.major * ellipse.minor);
+  // In units of that radius and of the depth: g = x^2 + quartic x^4 with g = 1 at the edge, where
+  // x^2 / R alone made 1, so that `beyond` r^2 / (2 R) at r = 1 is `beyond` / 2.
+  const double quartic = std::max(4.0 / 3.0 * smooth.beyond, -0.2);
+  const double square = 2.0 / (1.0 + std::sqrt(1.0 + 4.0 * quartic));
+  const double radius = std::sqrt(square);
+  contact.center = smooth.place;
+  contact.depth = depth;
+  contact.radius = radius * paraboloid;
+  contact.force = 2.0 * elasticity.contact_modulus() * paraboloid * depth * radius *
+                  (1.0 - square / 3.0 - 0.2 * quartic * square * square) * ellipse.force_share;
+  set_stiffnesses(ellipse, 1.0, elasticity.poisson_ratio, contact);
+  return contact;
+}
+
+/// From the cells: a paraboloid's contact, cut off where the overlap ends before its own edge would
+/// be. The rest of the depth then presses like a flat punch.
+RoundContact contact_of_cells(const World& world, std::uint32_t region,
+                              const Elasticity& elasticity) {
   const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
   const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
-  const ContactShape shape = fit_contact_shape(frame, world.settings.at<Settings>(0).grid_side,
+  const ContactShape shape = fit_contact_shape(world.regions.at<RegionFrame>(region),
+                                               world.settings.at<Settings>(0).grid_side,
                                                world.cells.rows<CellGeometry>(identity.cells));
   RoundContact contact;
   if (shape.depth <= 0.0 || geometry.area <= 0.0) {
@@ -70,21 +112,55 @@ RoundContact contact_of(const World& world, std::uint32_t region) {
                              (1.0 + round_share * (ellipse.force_share - 1.0));
   const double flat_force = 2.0 * modulus * contact.radius * shape.depth * (1.0 - round_share);
   contact.force = round_force + flat_force;
-  contact.flat_share = flat_force / contact.force;
-  contact.torque_share = 1.0 + round_share * (ellipse.torque_share - 1.0);
+  contact.pressure.flat_share = flat_force / contact.force;
+  set_stiffnesses(ellipse, round_share, elasticity.poisson_ratio, contact);
+  return contact;
+}
+
+/// Between the two, where the shapes say only part of it.
+RoundContact mix(const RoundContact& cells, const RoundContact& shapes, double share) {
+  RoundContact contact;
+  contact.center = glm::mix(cells.center, shapes.center, share);
+  contact.radius = std::lerp(cells.radius, shapes.radius, share);
+  contact.depth = std::lerp(cells.depth, shapes.depth, share);
+  contact.force = std::lerp(cells.force, shapes.force, share);
+  contact.pressure.flat_share =
+      std::lerp(cells.pressure.flat_share, shapes.pressure.flat_share, share);
+  contact.pressure.elongation =
+      std::lerp(cells.pressure.elongation, shapes.pressure.elongation, share);
+  contact.slide_stiffness = std::lerp(cells.slide_stiffness, shapes.slide_stiffness, share);
+  contact.turn_stiffness = std::lerp(cells.turn_stiffness, shapes.turn_stiffness, share);
+  contact.torque_share = std::lerp(cells.torque_share, shapes.torque_share, share);
+  return contact;
+}
+
+RoundContact contact_of(const World& world, std::uint32_t region) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
+  const SmoothContact& smooth = world.regions.at<SmoothContact>(region);
+  RoundContact contact;
+  if (smooth.share < 1.0) {
+    contact = contact_of_cells(world, region, elasticity);
+  }
+  if (smooth.share > 0.0) {
+    contact = mix(contact, contact_of_shapes(smooth, elasticity), smooth.share);
+  }
   // A body model in series has the body's thickness itself.
   const bool in_series = world.bodies.at<BodyModels>(identity.body).body == BodyModel::kCompliance;
-  const double thickness = in_series ? 0.0 : layer_thickness(world, identity.body, frame);
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const glm::dvec3 rest_point = grid_to_body(frame, {contact.center, 0.0});
+  const double thickness =
+      in_series ? 0.0 : layer_thickness(world, identity.body, frame, rest_point);
   if (thickness > 0.0) {
     contact.force *= layer_force_share(contact.radius / thickness, elasticity.poisson_ratio);
   }
   return contact;
 }
 
-/// Pressure over its mean at r = share * a.
-double pressure_share(double share, double flat_share) {
+/// Pressure over its mean at r^2 = square * a^2.
+double pressure_share(double square, double flat_share) {
   constexpr double kRim = 0.1;  // a flat punch's pressure has no limit at the rim
-  const double root = std::sqrt(std::max(1.0 - share * share, 0.0));
+  const double root = std::sqrt(std::max(1.0 - square, 0.0));
   return (1.0 - flat_share) * 1.5 * root + flat_share * 0.5 / std::max(root, kRim);
 }
 
@@ -98,15 +174,16 @@ void set_cells(World& world, std::uint32_t region, const RoundContact& contact, 
   const double pressure = contact.radius > 0.0
                               ? contact.force / (std::numbers::pi * contact.radius * contact.radius)
                               : 0.0;
+  const double per_radius = 1.0 / std::max(contact.radius, 1e-300);
   std::uint32_t cell = 0;
   for (std::uint32_t j = 0; j < side; ++j) {
     for (std::uint32_t i = 0; i < side; ++i, ++cell) {
-      const glm::dvec2 arm = cell_center(frame, side, i, j) - contact.center;
-      const double share = glm::length(arm) / std::max(contact.radius, 1e-300);
-      const bool inside = cells[cell].coverage > 0.0 && share < 1.0;
+      const glm::dvec2 arm = (cell_center(frame, side, i, j) - contact.center) * per_radius;
+      const double square = glm::dot(arm, arm);
+      const bool inside = cells[cell].coverage > 0.0 && square < 1.0;
       tractions[cell] = CellTraction{};
       tractions[cell].pressure =
-          inside ? pressure * pressure_share(share, contact.flat_share) : 0.0;
+          inside ? pressure * pressure_share(square, contact.pressure.flat_share) : 0.0;
       tractions[cell].coverage = inside ? 1.0 : 0.0;
       tractions[cell].sticks = inside && sticks ? 1U : 0U;
     }
@@ -143,21 +220,29 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
   MdrContact contact;
   contact.radius = round.radius;
   contact.force = round.force;
-  contact.flat_share = round.flat_share;
+  contact.flat_share = round.pressure.flat_share;
   contact.friction = friction.static_friction +
                      state.kinetic_share * (friction.dynamic_friction - friction.static_friction);
   contact.shear_modulus = elasticity.shear_modulus();
   contact.poisson_ratio = elasticity.poisson_ratio;
+  contact.slide_stiffness = round.slide_stiffness;
+  contact.turn_stiffness = round.turn_stiffness;
   contact.torque_share = round.torque_share;
   contact.slide = slide_at(motion, round.center);
   contact.spin = motion.spin;
-  resize_layers(thresholds_of(tables, round.flat_share), state.radius, round.radius, layers);
-  const MdrForces forces = move_layers(tables, contact, layers);
+  const MdrPlaces places = places_of(tables, round.pressure);
+  const MdrPressure pressure_before{state.flat_share, state.elongation};
+  if (state.radius != round.radius || pressure_before != round.pressure) {
+    resize_layers({places_of(tables, pressure_before), state.radius}, {places, round.radius},
+                  layers);
+  }
+  const MdrForces forces = move_layers(places, tables.limit_curve, contact, layers);
   state.radius = round.radius;
-  state.flat_share = round.flat_share;
+  state.flat_share = round.pressure.flat_share;
+  state.elongation = round.pressure.elongation;
   // mu_s comes down to mu_d over a short slip and is back after as long an elastic path.
-  const double stiffness =
-      8.0 * contact.shear_modulus * round.radius / (2.0 - contact.poisson_ratio);
+  const double stiffness = round.slide_stiffness * 8.0 * contact.shear_modulus * round.radius /
+                           (2.0 - contact.poisson_ratio);
   const double inverse = inverse_of(contact.friction * round.force / stiffness);
   const double path = glm::length(contact.slide) + std::abs(contact.spin) * round.radius;
   state.kinetic_share +=

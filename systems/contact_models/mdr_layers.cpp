@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include <glm/geometric.hpp>
 
@@ -12,185 +11,111 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Limits of the springs at x = place * a: of the tangential one over mu F / (Gt a), of the
-/// torsional one over mu F / (G a^2).
-struct SpringLimits {
-  double shift = 0.0;
-  double turn = 0.0;
-};
+/// Integrals of 1, x and x^2 from 0 to a place, for the measure dx or x^2 dx.
+struct Moments {
+  double zeroth = 0.0;
+  double first = 0.0;
+  double second = 0.0;
 
-/// Tangential: mu times the normal line load, 3 F / (4 a) (1 - x^2 / a^2) or F / (2 a). Torsional:
-/// (mu / 2 G) times the Abel transform of the pressure, which gives K - E or K of m = 1 - x^2 /
-/// a^2.
-SpringLimits limits_at(double place, double flat_share) {
-  const double modulus = std::sqrt(std::max(0.0, 1.0 - place * place));
-  const double k = std::comp_ellint_1(modulus);
-  const double e = std::comp_ellint_2(modulus);
-  const double round = 1.0 - flat_share;
-  return {round * 0.75 * (1.0 - place * place) + flat_share * 0.5,
-          round * 3.0 / (4.0 * kPi) * (k - e) + flat_share * k / (4.0 * kPi)};
-}
-
-/// Share of all friction that has slipped once `layers` layers have: finer where the first and the
-/// last springs slip, where the exact curve bends most.
-double slipped_share(std::size_t layers) {
-  const double t = static_cast<double>(layers) / static_cast<double>(kMdrLayers);
-  return t * t * (3.0 - 2.0 * t);
-}
-
-double cube(double x) {
-  return x * x * x;
-}
-
-/// For one pressure: the places at which given shares of all friction lie outside.
-MdrThresholds make_thresholds(double flat_share) {
-  constexpr std::size_t kFine = 20000;
-  // Shares of the friction beyond place (i / kFine), from the rim inwards.
-  std::vector<double> shift_beyond(kFine + 1, 0.0);
-  std::vector<double> turn_beyond(kFine + 1, 0.0);
-  for (std::size_t i = kFine; i-- > 0;) {
-    const double place = (static_cast<double>(i) + 0.5) / kFine;
-    const SpringLimits limits = limits_at(place, flat_share);
-    shift_beyond[i] = shift_beyond[i + 1] + limits.shift;
-    turn_beyond[i] = turn_beyond[i + 1] + place * place * limits.turn;
-  }
-  const auto place_of = [&](const std::vector<double>& beyond, double share) {
-    if (share <= 0.0 || share >= 1.0) {
-      return share <= 0.0 ? 1.0 : 0.0;
-    }
-    const double wanted = share * beyond.front();
-    const auto at = std::partition_point(beyond.begin(), beyond.end(),
-                                         [wanted](double value) { return value > wanted; });
-    const auto high = static_cast<std::size_t>(at - beyond.begin());
-    const double above = beyond[high - 1];
-    const double part = (above - wanted) / (above - beyond[high]);
-    return (static_cast<double>(high - 1) + part) / static_cast<double>(kFine);
-  };
-  MdrThresholds thresholds;
-  for (std::size_t layer = 0; layer < kMdrLayers; ++layer) {
-    const double from = slipped_share(layer);
-    const double to = slipped_share(layer + 1);
-    const double middle = 0.5 * (from + to);
-    MdrThreshold& threshold = thresholds[layer];
-    threshold.shift_place = place_of(shift_beyond, middle);
-    threshold.turn_place = place_of(turn_beyond, middle);
-    // The layer's largest load over the stiffness of its springs, so that all layers together have
-    // the exact stiffness before they slip and the exact load after.
-    const double cells = (to - from) / static_cast<double>(kFine);
-    threshold.shift_limit =
-        cells * shift_beyond.front() / (place_of(shift_beyond, from) - place_of(shift_beyond, to));
-    threshold.turn_limit = 3.0 * cells * turn_beyond.front() /
-                           (cube(place_of(turn_beyond, from)) - cube(place_of(turn_beyond, to)));
-  }
-  return thresholds;
-}
-
-double mix(double a, double b, double share) {
-  return a + share * (b - a);
-}
-
-/// Catmull-Rom's interpolation between `b` and `c`, kept between them.
-double cubic(double a, double b, double c, double d, double x) {
-  const double value =
-      b + 0.5 * x * (c - a + x * (2.0 * a - 5.0 * b + 4.0 * c - d + x * (3.0 * (b - c) + d - a)));
-  return std::clamp(value, std::min(b, c), std::max(b, c));
-}
-
-/// Places fall from the rim inwards with the layer's number.
-template <class Place>
-struct Lookup {
-  const MdrThresholds& thresholds;
-  Place place;
-  std::size_t next = 0;
-
-  /// Layer and part of the way to the following one where `wanted` lies; wanted falls from call to
-  /// call.
-  std::pair<std::size_t, double> at(double wanted) {
-    while (next + 1 < kMdrLayers && place(thresholds[next + 1]) > wanted) {
-      ++next;
-    }
-    if (next + 1 == kMdrLayers || wanted >= place(thresholds[next])) {
-      return {next, 0.0};
-    }
-    const double from = place(thresholds[next]);
-    return {next, (from - wanted) / (from - place(thresholds[next + 1]))};
+  Moments operator-(const Moments& other) const {
+    return {zeroth - other.zeroth, first - other.first, second - other.second};
   }
 };
 
-/// One component of all layers, resampled.
-template <class Place, class Value>
-void resize(const MdrThresholds& thresholds, double ratio, std::span<MdrLayer> layers, Place place,
-            Value value) {
-  std::array<double, kMdrLayers> old{};
-  for (std::size_t k = 0; k < kMdrLayers; ++k) {
-    old[k] = value(layers[k]);
+template <bool Turn>
+Moments moments_to(double x) {
+  const double square = x * x;
+  if constexpr (Turn) {
+    const double cube = square * x;
+    return {cube / 3.0, square * square / 4.0, cube * square / 5.0};
+  } else {
+    return {x, square / 2.0, square * x / 3.0};
   }
-  Lookup<Place> lookup{thresholds, place};
-  const double rim = place(thresholds[0]);
-  for (std::size_t k = 0; k < kMdrLayers; ++k) {
-    const double wanted = place(thresholds[k]) * ratio;
-    if (wanted >= rim) {
-      // Between the rim, where nothing is held, and the outermost spring.
-      const double share = rim < 1.0 ? std::clamp((1.0 - wanted) / (1.0 - rim), 0.0, 1.0) : 0.0;
-      value(layers[k]) = share * old[0];
-      continue;
+}
+
+/// value + slope x
+template <class Value>
+struct Line {
+  Value value{};
+  Value slope{};
+};
+
+/// The deflection on one piece, from its two springs.
+template <class Value>
+Line<Value> line_of(double outer_place, double inner_place, const Value& outer,
+                    const Value& inner) {
+  const Value slope = (outer - inner) / (outer_place - inner_place);
+  return {inner - slope * inner_place, slope};
+}
+
+/// One foundation's deflections on the pieces of the last step, projected on those of this one.
+/// Both lists of edges fall; what is left between two of them in turn is a stretch on which both
+/// are linear.
+/// @param before, now      foundations
+/// @param scale_before     a of the last step over that of this one: places are over the new a
+/// @param deflections      (kMdrLayers) in: of the last step; out: of this step
+template <bool Turn, class Value>
+void project(const MdrFoundation& before, const MdrFoundation& now, double scale_before,
+             std::array<Value, kMdrLayers>& deflections) {
+  std::array<Value, kMdrLayers> found{};
+  std::size_t old_piece = 0;
+  for (std::size_t piece = 0; piece < kMdrPieces; ++piece) {
+    const double outer = now.place[2 * piece];
+    const double inner = now.place[2 * piece + 1];
+    const double per_length = 1.0 / (outer - inner);
+    const double end = now.edges[piece + 1];
+    double from = std::min(now.edges[piece], scale_before);  // beyond it nothing was held
+    Moments to_from = moments_to<Turn>(from);
+    Value of_outer{};
+    Value of_inner{};
+    while (from > end) {
+      while (old_piece + 1 < kMdrPieces && scale_before * before.edges[old_piece + 1] >= from) {
+        ++old_piece;
+      }
+      const double old_end =
+          old_piece + 1 < kMdrPieces ? scale_before * before.edges[old_piece + 1] : 0.0;
+      const double to = std::max(end, old_end);
+      const Moments to_to = moments_to<Turn>(to);
+      const Moments m = to_from - to_to;
+      const Line<Value> line = line_of(scale_before * before.place[2 * old_piece],
+                                       scale_before * before.place[2 * old_piece + 1],
+                                       deflections[2 * old_piece], deflections[2 * old_piece + 1]);
+      const Value zeroth = line.value * m.zeroth + line.slope * m.first;
+      const Value first = line.value * m.first + line.slope * m.second;
+      of_outer += (first - zeroth * inner) * per_length;
+      of_inner += (zeroth * outer - first) * per_length;
+      from = to;
+      to_from = to_to;
     }
-    const auto [layer, part] = lookup.at(wanted);
-    const std::size_t after = std::min<std::size_t>(layer + 1, kMdrLayers - 1);
-    const std::size_t last = std::min<std::size_t>(layer + 2, kMdrLayers - 1);
-    value(layers[k]) =
-        cubic(layer > 0 ? old[layer - 1] : 0.0, old[layer], old[after], old[last], part);
+    // A spring's weight: its share of the integral of the measure over all x.
+    const double whole = Turn ? 1.0 / 3.0 : 1.0;
+    found[2 * piece] = of_outer / (whole * now.stiffness[2 * piece]);
+    found[2 * piece + 1] = of_inner / (whole * now.stiffness[2 * piece + 1]);
   }
+  deflections = found;
 }
 
 }  // namespace
 
-MdrTables make_mdr_tables() {
-  MdrTables tables;
-  for (std::size_t shape = 0; shape < MdrTables::kShapes; ++shape) {
-    tables.thresholds[shape] =
-        make_thresholds(static_cast<double>(shape) / (MdrTables::kShapes - 1));
-  }
-  tables.limit_curve = make_limit_curve();
-  return tables;
-}
-
-MdrThresholds thresholds_of(const MdrTables& tables, double flat_share) {
-  const double place = std::clamp(flat_share, 0.0, 1.0) * (MdrTables::kShapes - 1);
-  const auto shape = std::min(static_cast<std::size_t>(place), MdrTables::kShapes - 2);
-  const double part = place - static_cast<double>(shape);
-  if (part == 0.0) {
-    return tables.thresholds[shape];
-  }
-  MdrThresholds result;
-  for (std::size_t k = 0; k < kMdrLayers; ++k) {
-    const MdrThreshold& a = tables.thresholds[shape][k];
-    const MdrThreshold& b = tables.thresholds[shape + 1][k];
-    result[k] = {mix(a.shift_place, b.shift_place, part), mix(a.shift_limit, b.shift_limit, part),
-                 mix(a.turn_place, b.turn_place, part), mix(a.turn_limit, b.turn_limit, part)};
-  }
-  return result;
-}
-
-void resize_layers(const MdrThresholds& thresholds, double before, double radius,
-                   std::span<MdrLayer> layers) {
-  if (before <= 0.0 || before == radius) {
+void resize_layers(const MdrSize& before, const MdrSize& now, std::span<MdrLayer> layers) {
+  if (before.radius <= 0.0 || now.radius <= 0.0) {
     return;
   }
-  const double ratio = radius / before;
-  const auto shift_place = [](const MdrThreshold& t) {
-    return t.shift_place;
-  };
-  resize(thresholds, ratio, layers, shift_place,
-         [](MdrLayer& layer) -> double& { return layer.shift.x; });
-  resize(thresholds, ratio, layers, shift_place,
-         [](MdrLayer& layer) -> double& { return layer.shift.y; });
-  resize(
-      thresholds, ratio, layers, [](const MdrThreshold& t) { return t.turn_place; },
-      [](MdrLayer& layer) -> double& { return layer.turn; });
+  const double scale_before = before.radius / now.radius;
+  std::array<glm::dvec2, kMdrLayers> shifts{};
+  std::array<double, kMdrLayers> turns{};
+  for (std::size_t k = 0; k < kMdrLayers; ++k) {
+    shifts[k] = layers[k].shift;
+    turns[k] = layers[k].turn;
+  }
+  project<false>(before.places.shift, now.places.shift, scale_before, shifts);
+  project<true>(before.places.turn, now.places.turn, scale_before, turns);
+  for (std::size_t k = 0; k < kMdrLayers; ++k) {
+    layers[k] = {shifts[k], turns[k]};
+  }
 }
 
-MdrForces move_layers(const MdrTables& tables, const MdrContact& contact,
+MdrForces move_layers(const MdrPlaces& places, const LimitCurve& curve, const MdrContact& contact,
                       std::span<MdrLayer> layers) {
   MdrForces forces;
   const double friction = contact.friction * contact.force;
@@ -198,37 +123,43 @@ MdrForces move_layers(const MdrTables& tables, const MdrContact& contact,
     std::ranges::fill(layers, MdrLayer{});
     return forces;
   }
-  const MdrThresholds thresholds = thresholds_of(tables, contact.flat_share);
-  const double tangential_modulus = 4.0 * contact.shear_modulus / (2.0 - contact.poisson_ratio);
-  const double shift_unit = friction / (tangential_modulus * contact.radius);
-  const double turn_unit =
-      contact.torque_share * friction / (contact.shear_modulus * contact.radius * contact.radius);
+  const double a = contact.radius;
+  const double slide_stiffness =
+      contact.slide_stiffness * 8.0 * contact.shear_modulus * a / (2.0 - contact.poisson_ratio);
+  const double turn_stiffness =
+      contact.turn_stiffness * 16.0 / 3.0 * contact.shear_modulus * a * a * a;
   // Largest couple (3 pi / 16) or (pi / 4) mu F a: docs/models.md.
-  const double couple_arm =
-      kPi * mix(3.0 / 16.0, 0.25, contact.flat_share) * contact.radius * contact.torque_share;
+  const double largest_couple =
+      kPi * std::lerp(3.0 / 16.0, 0.25, contact.flat_share) * a * contact.torque_share * friction;
+  // Loads over the largest ones: a layer's largest load over its stiffness is where it slips, so
+  // that all layers together have the exact stiffness before they slip and the exact load after.
+  const double shift_unit = slide_stiffness / friction;  // 1/m
+  const double turn_unit = turn_stiffness / largest_couple;
+  std::size_t segment = kLimitCurveSegments / 2;
   for (std::size_t k = 0; k < kMdrLayers; ++k) {
-    const double share = slipped_share(k + 1) - slipped_share(k);
+    const double share = places.share[k];
     MdrLayer& layer = layers[k];
-    const double shift_limit = thresholds[k].shift_limit * shift_unit;
-    const double turn_limit = thresholds[k].turn_limit * turn_unit;
     layer.shift += contact.slide;
     layer.turn += contact.spin;
-    const double shift = glm::length(layer.shift);
-    const glm::dvec2 load(shift / shift_limit, std::abs(layer.turn) / turn_limit);
-    const glm::dvec2 kept =
-        nearest_inside(tables.limit_curve, load, {shift_limit, couple_arm * turn_limit});
-    if (kept != load) {
-      const glm::dvec2 from = layer.shift;
-      layer.shift *= shift > 0.0 ? kept.x * shift_limit / shift : 0.0;
-      const double turn = std::copysign(kept.y * turn_limit, layer.turn);
-      forces.slipped +=
-          share * (glm::distance(from, layer.shift) + contact.radius * std::abs(turn - layer.turn));
-      layer.turn = turn;
-    } else {
-      forces.stick_share += share;
+    const double per_shift = shift_unit * places.shift_haste[k];
+    const double per_turn = turn_unit * places.turn_haste[k];
+    const glm::dvec2 load(per_shift * glm::length(layer.shift), per_turn * std::abs(layer.turn));
+    bool sticks = true;
+    if (glm::dot(load, load) > kSurelyInside) {
+      const glm::dvec2 kept =
+          nearest_inside(curve, load, {friction * per_turn, largest_couple * per_shift}, segment);
+      if (kept != load) {
+        const MdrLayer from = layer;
+        layer.shift *= load.x > 0.0 ? kept.x / load.x : 0.0;
+        layer.turn *= load.y > 0.0 ? kept.y / load.y : 0.0;
+        forces.slipped +=
+            share * (glm::distance(from.shift, layer.shift) + a * std::abs(from.turn - layer.turn));
+        sticks = false;
+      }
     }
-    forces.force -= layer.shift * (share * friction / shift_limit);
-    forces.couple -= layer.turn * (share * friction * couple_arm / turn_limit);
+    forces.stick_share += sticks ? share : 0.0;
+    forces.force -= slide_stiffness * places.shift.stiffness[k] * layer.shift;
+    forces.couple -= turn_stiffness * places.turn.stiffness[k] * layer.turn;
   }
   return forces;
 }

@@ -89,13 +89,13 @@ void add_disc(RegionField& field, double radius_share, double turn) {
 }
 
 /// The springs' deflections grow inwards; each growth is a disc.
-void discs_of_layers(const MdrThresholds& thresholds, std::span<const MdrLayer> layers,
+void discs_of_layers(const MdrFoundation& foundation, std::span<const MdrLayer> layers,
                      RegionField& field) {
   double place = 1.0;
   double turn = 0.0;
   for (std::size_t k = 0; k < layers.size(); ++k) {
-    add_disc(field, 0.5 * (place + thresholds[k].turn_place), layers[k].turn - turn);
-    place = thresholds[k].turn_place;
+    add_disc(field, 0.5 * (place + foundation.place[k]), layers[k].turn - turn);
+    place = foundation.place[k];
     turn = layers[k].turn;
   }
 }
@@ -118,9 +118,11 @@ void fill_field(StepContext& context, std::uint32_t region, ContactModel model) 
   field.center = press_blocks(source, world.regions.at<RegionNormal>(region).force, field);
   if (model == ContactModel::kMdr) {
     const std::uint32_t block = identity.cells.first / identity.cells.count;
-    const double flat_share = world.regions.at<MdrState>(region).flat_share;
-    discs_of_layers(thresholds_of(context.scratch.mdr_tables, flat_share),
-                    world.mdr_layers.rows<MdrLayer>({block * kMdrLayers, kMdrLayers}), field);
+    const MdrState& state = world.regions.at<MdrState>(region);
+    const MdrPlaces places =
+        places_of(context.scratch.mdr_tables, {state.flat_share, state.elongation});
+    discs_of_layers(places.turn, world.mdr_layers.rows<MdrLayer>({block * kMdrLayers, kMdrLayers}),
+                    field);
     return;
   }
   const double shear_modulus = world.bodies.at<Elasticity>(identity.body).shear_modulus();

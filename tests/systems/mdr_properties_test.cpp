@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -117,9 +118,79 @@ TEST(MdrPropertiesTest, ClosedPathsAtConstantDepthCostWork) {
 }
 
 TEST(MdrPropertiesTest, ClosedPathsCostWorkWhileTheDepthChanges) {
-  // Springs at rest come and deflected ones go: no more than that enters the balance, but that
-  // deflections are resampled, which must not add to what is stored faster than slip takes it.
+  // Springs at rest come and deflected ones go; carrying deflections over takes from what is
+  // stored.
   expect_work_on_closed_paths(3000, 100, 0.05);
+}
+
+/// What the springs hold, by their stiffnesses: 8 G a / (2 - nu) and 16 / 3 G a^3 in all, J.
+double stored_energy(const MdrSprings& springs) {
+  const MdrPlaces places = springs.places();
+  const double a = springs.contact.radius;
+  const double slide = 8.0 * test::kShearModulus * a / (2.0 - springs.contact.poisson_ratio);
+  const double turn = 16.0 / 3.0 * test::kShearModulus * a * a * a;
+  double energy = 0.0;
+  for (std::size_t k = 0; k < kMdrLayers; ++k) {
+    const MdrLayer& layer = springs.layers[k];
+    energy += 0.5 * slide * places.shift.stiffness[k] * glm::dot(layer.shift, layer.shift) +
+              0.5 * turn * places.turn.stiffness[k] * layer.turn * layer.turn;
+  }
+  return energy;
+}
+
+TEST(MdrPropertiesTest, NoChangeOfSizeOrPressureAddsToWhatIsStored) {
+  // A projection is not longer than what is projected. Sizes from a thousandth of a per cent up to
+  // a factor of two, contacts that go flat and back: only rounding may be gained.
+  MdrSprings springs(0.5);
+  RandomMotion motion{std::mt19937(17), {}};
+  double lost = 0.0;
+  for (int step = 0; step < 20000; ++step) {
+    springs.move(motion.slide(springs), motion.spin(springs));
+    const double before = stored_energy(springs);
+    const MdrPlaces places = springs.places();
+    const double radius = springs.contact.radius;
+    springs.contact.radius *= std::exp(std::pow(10.0, -2.5 + 2.5 * motion.uniform(motion.random)) *
+                                       0.7 * motion.uniform(motion.random));
+    springs.contact.radius = std::clamp(springs.contact.radius, 1e-3, 1e-2);
+    if (step % 3 == 0) {
+      springs.contact.flat_share = std::abs(motion.uniform(motion.random));
+    }
+    resize_layers({places, radius}, {springs.places(), springs.contact.radius}, springs.layers);
+    const double after = stored_energy(springs);
+    ASSERT_LE(after, before * (1.0 + 1e-12)) << step;
+    lost += before - after;
+  }
+  EXPECT_GT(lost, 0.0);
+}
+
+TEST(MdrPropertiesTest, GrowingKeepsTheForceThatIsHeld) {
+  // What is projected keeps its mean: a contact that grows holds neither more nor less.
+  MdrSprings springs(0.3);
+  springs.move({0.4 * springs.natural_slide(), 0.1 * springs.natural_slide()},
+               0.5 * springs.natural_turn());
+  const MdrForces held = springs.last;
+  double depth = test::kDepth;
+  for (int step = 0; step < 300; ++step) {
+    depth *= 1.003;
+    springs.press(depth);
+  }
+  EXPECT_LE(glm::distance(springs.last.force, held.force), 1e-12 * glm::length(held.force));
+  EXPECT_NEAR(springs.last.couple / held.couple, 1.0, 1e-12);
+}
+
+TEST(MdrPropertiesTest, NoStepTakesMoreThanItStores) {
+  // Work of the hand = change of what is stored + what is lost, and that is >= 0 in every step.
+  MdrSprings springs(0.3);
+  RandomMotion motion{std::mt19937(23), {}};
+  for (int step = 0; step < 100000; ++step) {
+    const glm::dvec2 slide = motion.slide(springs);
+    const double spin = motion.spin(springs);
+    const double before = stored_energy(springs);
+    const MdrForces from = springs.last;
+    springs.move(slide, spin);
+    const double done = work(from, springs.last, slide, spin);
+    ASSERT_GE(done - (stored_energy(springs) - before), -1e-12 * (before + std::abs(done))) << step;
+  }
 }
 
 /// Couple and forces after a path of slide, spin and depth in so many equal steps.

@@ -41,13 +41,16 @@ class MdrSprings {
     const double before = contact.radius;
     contact.radius = sphere.radius;
     contact.force = sphere.force;
-    resize_layers(thresholds_of(mdr_tables(), contact.flat_share), before, contact.radius, layers);
+    resize_layers({places(), before}, {places(), contact.radius}, layers);
     move(glm::dvec2(0.0), 0.0);
   }
   void move(const glm::dvec2& slide, double spin) {
     contact.slide = slide;
     contact.spin = spin;
-    last = move_layers(mdr_tables(), contact, layers);
+    last = move_layers(places(), mdr_tables().limit_curve, contact, layers);
+  }
+  [[nodiscard]] MdrPlaces places() const {
+    return places_of(mdr_tables(), {.flat_share = contact.flat_share});
   }
   [[nodiscard]] double limit_force() const { return contact.friction * contact.force; }
   [[nodiscard]] double limit_couple() const {

@@ -1,0 +1,17 @@
+#pragma once
+
+// Where a tool's and a body's smooth exact surfaces lie deepest in each other, from the shapes
+// themselves and not from samples or cells: the same whichever way the scene is turned or mirrored,
+// and a depth whose change is the motion along the common normal, so that a force of it alone does
+// no work around a closed path.
+
+#include "systems/step.hpp"
+
+namespace torsion {
+
+/// Finds SmoothContact of every region of a body with contact model `mdr`. Where it is known it
+/// also turns RegionFrame to the common normal and moves RegionGeometry's points to the deepest
+/// place.
+void mdr_contacts(StepContext& context);
+
+}  // namespace torsion

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+
+#include "systems/held_tool/virtual_coupling.hpp"
+
+namespace torsion {
+
+/// What a device is, as far as stability asks. Zero where it is not known.
+struct DeviceTraits {
+  double damping = 0.0;            // b, N s/m: of the handle without motors on
+  double turn_damping = 0.0;       // N m s/rad
+  double mass = 0.0;               // kg: of handle and mechanism
+  double inertia = 0.0;            // kg m^2
+  double encoder_step = 0.0;       // m: one count, at the handle
+  double encoder_turn_step = 0.0;  // rad
+  double period = 1e-3;            // T, s: between two forces
+  double delay = 0.0;           // t_d, s: from a position read to its force sent, beyond the hold
+  double largest_force = 0.0;   // N
+  double largest_torque = 0.0;  // N m; zero: the device has no torque
+  double largest_stiffness = 0.0;       // N/m, as its maker says
+  double largest_turn_stiffness = 0.0;  // N m/rad
+};
+
+/// What set a stiffness.
+enum class StiffnessLimit {
+  kPassivity,  // b > K (T / 2 + t_d)
+  kDevice,     // the maker's largest
+  kUnknown,    // neither is known: a cautious one
+};
+
+struct CouplingChoice {
+  VirtualCoupling coupling;
+  StiffnessLimit limit = StiffnessLimit::kUnknown;
+  StiffnessLimit turn_limit = StiffnessLimit::kUnknown;
+};
+
+/// The stiffest coupling that the device can display whatever it touches. A sampled spring is
+/// passive where b > K T / 2 + |B| (Colgate & Schenkel, 1997), with a delay b > K (T / 2 + t_d)
+/// (Hulin et al., 2014); nine tenths of that, and no damper, which would only cost stiffness.
+CouplingChoice choose_coupling(const DeviceTraits& device);
+
+/// One line for a person: what the coupling is and what set it.
+std::string explain_coupling(const DeviceTraits& device, const CouplingChoice& choice);
+
+/// The stiffness up to which a pure spring between a device of damping b and a passive simulation
+/// is passive, N/m: b >= K T / (2 pi). Source: Llewellyn's criterion for a two-port whose device
+/// holds its force, worst at half the sampling rate (Adams & Hannaford, 1999).
+double virtual_coupling_bound(double damping, double period);
+
+}  // namespace torsion

@@ -1,0 +1,110 @@
+#include "systems/held_tool/tool_equilibrium.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <glm/geometric.hpp>
+
+#include "systems/frames.hpp"
+
+namespace torsion {
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+// Of the way that the coupling is stretched: a step onto a contact that is not yet known must not
+// throw the tool through it.
+constexpr double kLongestStep = 1e-3;      // m
+constexpr double kWidestTurn = 0.02;       // rad
+constexpr double kLongestFreeStep = 5e-3;  // m: off every contact
+constexpr double kWidestFreeTurn = 0.2;    // rad
+
+Eigen::Vector3d eigen(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+/// Force and torque about a point for small motions of the point, of a spring with stiffness
+/// `along` n and `across` it at `arm` from the point, and `turning` about n and `tilting` across.
+Matrix6 spring_about(const glm::dvec3& n, const glm::dvec3& arm, double along, double across,
+                     double turning, double tilting) {
+  const Eigen::Vector3d axis = eigen(n);
+  const Eigen::Matrix3d projection = axis * axis.transpose();
+  const Eigen::Matrix3d rest = Eigen::Matrix3d::Identity() - projection;
+  Eigen::Matrix3d lever;
+  lever << 0.0, -arm.z, arm.y, arm.z, 0.0, -arm.x, -arm.y, arm.x, 0.0;
+  Eigen::Matrix<double, 3, 6> at_arm;
+  at_arm << Eigen::Matrix3d::Identity(), -lever;
+  const Eigen::Matrix3d spring = along * projection + across * rest;
+  Matrix6 stiffness = at_arm.transpose() * spring * at_arm;
+  stiffness.bottomRightCorner<3, 3>() += turning * projection + tilting * rest;
+  return stiffness;
+}
+
+/// Of one region that sticks: a disc bonded to a half-space. Source: Johnson, 1985, 3.2 and 3.7;
+/// Reissner & Sagoci, 1944.
+Matrix6 contact_stiffness(const World& world, std::uint32_t region, const glm::dvec3& center) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
+  const Pose& body = world.bodies.at<Pose>(identity.body);
+  const double g = elasticity.shear_modulus();
+  const double nu = elasticity.poisson_ratio;
+  const double a = geometry.radius;
+  const glm::dvec3 normal = body.rotation * world.regions.at<RegionFrame>(region).normal;
+  const glm::dvec3 arm = to_outer(body, geometry.equivalent_point) - center;
+  return spring_about(normal, arm, world.regions.at<RegionNormal>(region).stiffness,
+                      8.0 * g * a / (2.0 - nu), 16.0 / 3.0 * g * a * a * a,
+                      8.0 / 3.0 * g * a * a * a / (1.0 - nu));
+}
+
+}  // namespace
+
+Pose next_tool_pose(const World& world, std::uint32_t tool, const VirtualCoupling& coupling,
+                    const Pose& handle) {
+  const Pose& now = world.tools.at<ToolPose>(tool).now;
+  const glm::dvec3 center = world.tools.at<ToolMotion>(tool).mass_center;
+  const Wrench& contact = world.tools.at<ToolWrench>(tool).total;
+  const Wrench pull = coupling_wrench(coupling, {handle}, {now});
+  const glm::dvec3 arm = now.position - center;
+
+  Matrix6 stiffness = spring_about({1.0, 0.0, 0.0}, arm, coupling.stiffness, coupling.stiffness,
+                                   coupling.turn_stiffness, coupling.turn_stiffness);
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    if (world.regions.at<RegionIdentity>(region).tool == tool) {
+      stiffness += contact_stiffness(world, region, center);
+    }
+  }
+  Vector6 wrench;
+  wrench << eigen(pull.force + contact.force),
+      eigen(pull.torque + glm::cross(arm, pull.force) + contact.torque);
+  const Vector6 step = stiffness.ldlt().solve(wrench);
+  glm::dvec3 shift(step[0], step[1], step[2]);
+  glm::dvec3 turn(step[3], step[4], step[5]);
+  const double length = glm::length(shift);
+  const double angle = glm::length(turn);
+  if (!std::isfinite(length + angle)) {
+    return now;
+  }
+  const bool touches = contact.force != glm::dvec3(0.0) || contact.torque != glm::dvec3(0.0);
+  const double longest = touches ? kLongestStep : kLongestFreeStep;
+  const double widest = touches ? kWidestTurn : kWidestFreeTurn;
+  const double share =
+      std::min(longest / std::max(length, longest), widest / std::max(angle, widest));
+  if (!touches && share == 1.0) {
+    return handle;
+  }
+  shift *= share;
+  turn *= share;
+  Pose next = now;
+  const double used = glm::length(turn);
+  const glm::dquat rotation =
+      used > 0.0 ? glm::angleAxis(used, turn / used) : glm::dquat(1.0, 0.0, 0.0, 0.0);
+  next.rotation = glm::normalize(rotation * now.rotation);
+  next.position = center + shift + rotation * arm;
+  return next;
+}
+
+}  // namespace torsion

@@ -1,5 +1,6 @@
 #include "ecs/check_world.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <string_view>
 
@@ -46,6 +47,11 @@ void check_sizes(const World& world, Findings& findings) {
   const std::uint64_t layers = std::uint64_t{world.regions.capacity()} * kMdrLayers;
   findings.require(world.mdr_layers.empty() || world.mdr_layers.size() == layers, "mdr_layers", 0,
                    "there must be a row for each layer of each region, or none");
+  const std::uint64_t footings = world.footings.size();
+  findings.require(footings == 0 || footings == world.regions.capacity(), "footings", 0,
+                   "there must be one for each region, or none");
+  findings.require(world.couplings.size() == (footings == 0 ? 0 : footings * (footings - 1) / 2),
+                   "couplings", 0, "there must be one for each two regions, or none");
 }
 
 void check_fields(const World& world, Findings& findings) {
@@ -106,11 +112,30 @@ void check_owned_rows(const World& world, std::string_view table, const OwnedRow
   findings.require(owned.anchors.count <= kAnchorsPerBody, table, row, "it has too many anchors");
   findings.require(inside(owned.influences, world.influences.size()), table, row,
                    "its influence tables are not there");
-  findings.require(inside(owned.compliance, world.compliance.size()), table, row,
-                   "its compliance is not there");
-  const std::uint64_t side = 6ULL * owned.anchors.count;
-  findings.require(owned.compliance.count == 0 || owned.compliance.count == side * side, table, row,
-                   "its compliance is not that of its anchors");
+  findings.require(inside(owned.ports, world.ports.size()), table, row, "its ports are not there");
+  findings.require(owned.ports.count == 0 || owned.anchors.count <= owned.ports.count, table, row,
+                   "its anchors are the first of its ports");
+  const std::uint64_t side = 3ULL * owned.ports.count;
+  const std::uint64_t rows = side + 3ULL * owned.anchors.count;
+  findings.require(
+      inside(owned.compliance, world.compliance.size()) && owned.compliance.count == side * rows,
+      table, row, "its compliance is not that of its ports");
+}
+
+/// Of a region that is otherwise sound.
+void check_footing(const World& world, const RegionIdentity& region, std::uint32_t row,
+                   Findings& findings) {
+  const std::uint32_t block = region.cells.first / std::max(region.cells.count, 1U);
+  if (block >= world.footings.size()) {
+    findings.require(false, "regions", row, "its footing is not there");
+    return;
+  }
+  const Footing& footing = world.footings.at<Footing>(block);
+  const std::uint32_t ports = world.bodies.at<OwnedRows>(region.body).ports.count;
+  const bool few = footing.count <= kFootingPorts;
+  findings.require(few && std::all_of(footing.ports.begin(), footing.ports.begin() + footing.count,
+                                      [ports](std::uint32_t port) { return port < ports; }),
+                   "footings", block, "the ports that it stands on are not there");
 }
 
 void check_owners(const World& world, Findings& findings) {
@@ -131,6 +156,9 @@ void check_owners(const World& world, Findings& findings) {
     findings.require(region.tool < world.tools.size(), "regions", row, "its tool is not there");
     findings.require(inside(region.cells, world.cells.size()), "regions", row,
                      "its cells are not there");
+    if (findings.first.empty() && !world.footings.empty()) {
+      check_footing(world, region, row, findings);
+    }
   }
 }
 

@@ -9,6 +9,7 @@
 // "Written by" names the one system (file systems/NAME.cpp) that writes the column; "load" means it
 // is constant.
 
+#include <array>
 #include <cstdint>
 
 #include <glm/gtc/quaternion.hpp>
@@ -162,7 +163,9 @@ struct OwnedRows {
   Range balls;       // in `balls`; tools only
   Range anchors;     // in `anchors`; bodies only
   Range influences;  // in `influences`; bodies with contact model patch only
-  Range compliance;  // in `compliance`: (6 anchors)^2 values, row-major; body model compliance only
+  Range ports;       // in `ports`; body model compliance only, the first of them are its anchors
+  Range compliance;  // in `compliance`, row-major, 3 columns a port: 3 rows a port, displacements
+                     // by forces, m/N, then 3 rows an anchor, turns by them, rad/N
 };
 
 /// Axis-aligned box of the rest shape in the owner's frame. Written by: load.
@@ -249,6 +252,18 @@ struct RegionSupport {
   glm::dvec3 rotation{0.0};          // rad, body: rotation vector
   glm::dvec3 translation_step{0.0};  // m: by the last step
   glm::dvec3 rotation_step{0.0};     // rad
+};
+
+inline constexpr std::uint32_t kSupportTerms = 15;
+
+/// How the whole body's deformation moves the material under the region beyond RegionSupport: a
+/// polynomial of the fourth degree in two coordinates along the surface. Written by: compliance;
+/// zero with other body models.
+struct SupportField {
+  glm::dvec3 origin{0.0};   // m, body
+  glm::dvec3 along_x{0.0};  // 1/m, body: coordinate x is dot(along_x, point - origin)
+  glm::dvec3 along_y{0.0};
+  std::array<glm::dvec3, kSupportTerms> terms{};  // m, body: of 1; x, y; x^2, x y, y^2; x^3, ...
 };
 
 /// Where the tractions are: the grid as it was when they were last carried over to it, moved since
@@ -427,13 +442,50 @@ struct MdrLayer {
 /// A point of the body's rest surface at which the body model gives displacement. Written by: load.
 struct AnchorRest {
   glm::dvec3 position{0.0};  // m, body
-  glm::dvec3 normal{0.0};    // body, unit, outward; body model compliance only
 };
 
-/// One value of the matrix of a body with body model `compliance`: how wrenches at its anchors move
-/// the material at them beyond what half-spaces do. Written by: load.
+/// A point of the rest surface of a body with body model `compliance` between which and the others
+/// it is known what forces do. Written by: load.
+struct CompliancePort {
+  glm::dvec3 position{0.0};  // m, body
+  glm::dvec3 normal{0.0};    // body, unit, outward
+};
+
+/// One value of the matrix of a body with body model `compliance`: how forces at its ports move the
+/// material beyond what half-spaces do. Written by: load.
 struct ComplianceValue {
-  double value = 0.0;  // m/N, rad/N, m/(N m), rad/(N m)
+  double value = 0.0;  // m/N, rad/N
+};
+
+inline constexpr std::uint32_t kFootingPorts = 32;
+
+/// How a region stands on the ports around it: what its tractions are as forces at them, and how
+/// their displacements make a SupportField. Laid anew when the contact has moved or grown. Written
+/// by: compliance.
+struct Footing {
+  glm::dvec3 origin{0.0};     // m, body
+  glm::dvec3 tangent_x{0.0};  // body, unit
+  glm::dvec3 tangent_y{0.0};
+  glm::dvec3 normal{0.0};
+  double reach = 0.0;        // m: of the ports, and unit of the coordinates; 0: never laid
+  glm::dvec3 center{0.0};    // m, body: of the contact for which it was laid
+  double radius = 0.0;       // m: of that contact
+  double share = 1.0;        // of the displacements that is let through (below)
+  std::uint64_t serial = 0;  // no two that were laid have the same
+  std::uint32_t count = 0;   // of the ports
+  std::array<std::uint32_t, kFootingPorts> ports{};
+  std::array<std::array<double, kFootingPorts>, kSupportTerms> fit{};  // term by displacement
+  // Forces at the ports that are a unit wrench about `center`, spread as a rigid disc would.
+  std::array<std::array<glm::dvec3, kFootingPorts>, 6> unit_forces{};
+  std::array<double, 36> own{};  // 6 x 6: motion at `center` by that unit wrench, what yields of it
+};
+
+/// 6 x 6, body axes: how a wrench on one region moves the material under another one. Written by:
+/// compliance.
+struct RegionCoupling {
+  std::uint64_t serial_to = 0;  // of the footings between which it was found
+  std::uint64_t serial_from = 0;
+  std::array<double, 36> motion{};
 };
 
 /// Sum over the body's regions. Written by: the body model (systems/body_models/).

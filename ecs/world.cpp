@@ -25,7 +25,11 @@ void World::reserve(const Capacities& capacities, const Settings& chosen) {
 void World::reserve_models(const Capacities& capacities, const Settings& chosen) {
   settings.reserve(1);
   influences.reserve(capacities.influences);
+  ports.reserve(capacities.ports);
   compliance.reserve(capacities.compliance_values);
+  const std::uint32_t footed = capacities.ports > 0 ? capacities.regions : 0;
+  footings.reserve(footed);
+  couplings.reserve(footed * (footed - (footed > 0 ? 1 : 0)) / 2);
   regions.reserve(capacities.regions);
   cells.reserve(capacities.regions * chosen.grid_side * chosen.grid_side);
   patch_cells.reserve(capacities.influences > 0 ? cells.capacity() : 0);

@@ -23,7 +23,8 @@ struct Capacities {
   std::uint32_t anchors = 0;
   std::uint32_t regions = 0;
   std::uint32_t mdr_bodies = 0;         // with contact model mdr
-  std::uint32_t compliance_values = 0;  // 0 when no body has body model compliance
+  std::uint32_t ports = 0;              // 0 when no body has body model compliance
+  std::uint32_t compliance_values = 0;  // likewise
   std::uint32_t influences = 0;         // 0 when no body has contact model patch
 };
 
@@ -63,9 +64,10 @@ using BodyTable =
     Table<Entity, Pose, Elasticity, Friction, FixedRegion, BodyModels, OwnedRows, Bounds>;
 using ToolTable =
     Table<Entity, ToolPose, ToolMotion, MassProperties, ToolWrench, OwnedRows, Bounds>;
-using RegionTable = Table<RegionIdentity, RegionFrame, RegionCarrier, RegionSupport, TractionFrame,
-                          RegionGeometry, RegionMotion, RegionNormal, RegionFriction, PatchState,
-                          SmoothContact, MdrState, RegionField, AnchorTurns, RegionWrench>;
+using RegionTable = Table<RegionIdentity, RegionFrame, RegionCarrier, RegionSupport, SupportField,
+                          TractionFrame, RegionGeometry, RegionMotion, RegionNormal, RegionFriction,
+                          PatchState, SmoothContact, MdrState, RegionField, AnchorTurns,
+                          RegionWrench>;
 using CellTable = Table<CellGeometry, CellTraction>;
 using PatchCellTable = Table<PatchCell, PatchChange>;
 using MdrLayerTable = Table<MdrLayer>;
@@ -84,6 +86,7 @@ struct World {
   Table<SurfaceSample> samples;
   Table<SurfaceBall> balls;
   Table<Influence> influences;
+  Table<CompliancePort> ports;
   Table<ComplianceValue> compliance;
   Table<BeamSection> sections;  // kBeamStations rows an anchor, in the order of `anchors`
   // written by the step
@@ -94,6 +97,9 @@ struct World {
   CellTable cells;  // blocks of grid_side^2 rows, one for each row that `regions` can hold
   PatchCellTable patch_cells;  // the same rows as `cells`; none without contact model patch
   MdrLayerTable mdr_layers;    // kMdrLayers rows a block of cells; none without contact model mdr
+  Table<Footing> footings;     // one a block of cells; none without body model compliance
+  Table<RegionCoupling>
+      couplings;  // likewise, one for each two blocks: i, j < i at i (i - 1)/2 + j
   AnchorTable anchors;
   // handles
   EntityPool body_handles;
@@ -110,13 +116,13 @@ struct World {
 
   [[nodiscard]] auto tables() {
     return std::tie(settings, parts, fields, field_nodes, field_bricks, fixed_volumes, samples,
-                    balls, influences, compliance, sections, clock, bodies, tools, regions, cells,
-                    patch_cells, mdr_layers, anchors);
+                    balls, influences, ports, compliance, sections, clock, bodies, tools, regions,
+                    cells, patch_cells, mdr_layers, footings, couplings, anchors);
   }
   [[nodiscard]] auto tables() const {
     return std::tie(settings, parts, fields, field_nodes, field_bricks, fixed_volumes, samples,
-                    balls, influences, compliance, sections, clock, bodies, tools, regions, cells,
-                    patch_cells, mdr_layers, anchors);
+                    balls, influences, ports, compliance, sections, clock, bodies, tools, regions,
+                    cells, patch_cells, mdr_layers, footings, couplings, anchors);
   }
   [[nodiscard]] auto pools() { return std::tie(body_handles, tool_handles, region_handles); }
   [[nodiscard]] auto pools() const { return std::tie(body_handles, tool_handles, region_handles); }

@@ -95,6 +95,9 @@ void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t c
     const Range layers{cells.first / cells.count * kMdrLayers, kMdrLayers};
     std::ranges::fill(world.mdr_layers.rows<MdrLayer>(layers), MdrLayer{});
   }
+  if (!world.footings.empty()) {
+    world.footings.at<Footing>(cells.first / cells.count) = Footing{};
+  }
   if (!world.patch_cells.empty()) {
     std::ranges::fill(world.patch_cells.rows<PatchCell>(cells), PatchCell{});
     std::ranges::fill(world.patch_cells.rows<PatchChange>(cells), PatchChange{});

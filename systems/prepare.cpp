@@ -246,6 +246,7 @@ void append_models(World& world, std::uint32_t row, const BodyDescription& body,
   OwnedRows& owned = world.bodies.at<OwnedRows>(row);
   if (!compliant.anchors.empty()) {
     owned.anchors = append_rows<AnchorRest>(world.anchors, compliant.anchors);
+    owned.ports = append_rows<CompliancePort>(world.ports, compliant.ports);
     owned.compliance = append_rows<ComplianceValue>(world.compliance, compliant.values);
     const auto sections = static_cast<std::uint32_t>(compliant.anchors.size()) * kBeamStations;
     TORSION_ASSERT(world.sections.append(sections).has_value());
@@ -293,6 +294,7 @@ Result<Done> append_choices(Simulation& simulation, const SceneDescription& scen
     return compliances.error();
   }
   for (const PreparedCompliance& compliant : compliances.value()) {
+    capacities.ports += static_cast<std::uint32_t>(compliant.ports.size());
     capacities.compliance_values += static_cast<std::uint32_t>(compliant.values.size());
   }
   world.reserve_models(capacities, settings);
@@ -300,6 +302,8 @@ Result<Done> append_choices(Simulation& simulation, const SceneDescription& scen
     append_models(world, row, scene.bodies[row], compliances.value()[row], simulation.choices[row]);
   }
   TORSION_ASSERT(world.cells.append(world.cells.capacity()).has_value());
+  TORSION_ASSERT(world.footings.append(world.footings.capacity()).has_value());
+  TORSION_ASSERT(world.couplings.append(world.couplings.capacity()).has_value());
   TORSION_ASSERT(world.mdr_layers.append(world.mdr_layers.capacity()).has_value());
   TORSION_ASSERT(world.patch_cells.append(world.patch_cells.capacity()).has_value());
   return Done{};

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <thread>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "systems/body_models/smooth_compliance.hpp"
@@ -13,6 +15,9 @@
 namespace torsion {
 namespace {
 
+/// So many that they are a tenth of a cube's side apart where contacts are expected.
+constexpr std::uint32_t kPortsPerBody = 128;
+constexpr std::size_t kFewestPorts = 4;
 constexpr double kClampOfPoint = 0.25;    // of the shortest side
 constexpr double kClampTolerance = 1e-6;  // of the longest side
 
@@ -87,6 +92,33 @@ std::vector<std::byte> identity_of(const BodyDescription& description) {
   return bytes;
 }
 
+/// The first `rows` of a matrix, row by row.
+void append_values(const Eigen::MatrixXd& matrix, std::size_t rows,
+                   std::vector<ComplianceValue>& values) {
+  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(rows); ++i) {
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+      values.push_back({matrix(i, j)});
+    }
+  }
+}
+
+/// Elements along the longest side: as many as a cube of 16 has in all, and at least 16.
+std::uint32_t elements_for(const Bounds& bounds) {
+  constexpr double kInAll = 4500.0;
+  constexpr double kFewest = 8.0;  // along any side (build_solid_grid)
+  const glm::dvec3 extent = bounds.highest - bounds.lowest;
+  const double longest = std::max({extent.x, extent.y, extent.z});
+  std::uint32_t elements = 16;
+  const auto in_all = [&](std::uint32_t along) {
+    const glm::dvec3 cells = glm::max(extent * (along / longest), glm::dvec3(kFewest));
+    return cells.x * cells.y * cells.z;
+  };
+  while (elements < 40 && in_all(elements + 1) <= kInAll) {
+    ++elements;
+  }
+  return elements;
+}
+
 }  // namespace
 
 Result<PreparedCompliance> prepare_compliance(const BodyDescription& description,
@@ -102,13 +134,16 @@ Result<PreparedCompliance> prepare_compliance(const BodyDescription& description
     return is_clamped(world, row, point);
   };
   solid.elasticity = world.bodies.at<Elasticity>(row);
-  const std::vector<Port> ports = choose_ports(solid, kAnchorsPerBody);
+  const std::vector<Port> ports = choose_ports(solid, kPortsPerBody);
   PreparedCompliance prepared;
-  if (ports.size() <= 4) {
+  if (ports.size() <= kFewestPorts) {
     return prepared;
   }
   SmoothComplianceOptions options;
   options.progress = progress;
+  options.couples = false;
+  options.elements = elements_for(solid.bounds);
+  options.threads = std::max(1U, std::thread::hardware_concurrency());
   const Result<SmoothCompliance> built =
       use_cache ? load_or_build_smooth_compliance(solid, identity_of(description), ports, options)
                 : build_smooth_compliance(solid, ports, options);
@@ -116,14 +151,13 @@ Result<PreparedCompliance> prepare_compliance(const BodyDescription& description
     return Error{"node '" + description.node + "', body model compliance: " + built.error().text};
   }
   for (const Port& port : ports) {
-    prepared.anchors.push_back({port.position, port.normal});
-  }
-  const Eigen::MatrixXd& matrix = built.value().matrix;
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
-      prepared.values.push_back({matrix(i, j)});
+    prepared.ports.push_back({port.position, port.normal});
+    if (prepared.anchors.size() < kAnchorsPerBody) {
+      prepared.anchors.push_back({port.position});
     }
   }
+  append_values(built.value().matrix, 3 * prepared.ports.size(), prepared.values);
+  append_values(built.value().turns, 3 * prepared.anchors.size(), prepared.values);
   return prepared;
 }
 

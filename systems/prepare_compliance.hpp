@@ -11,8 +11,9 @@ namespace torsion {
 
 /// Anchors of a body with body model compliance, and the matrix between them.
 struct PreparedCompliance {
-  std::vector<AnchorRest> anchors;
-  std::vector<ComplianceValue> values;  // (6 anchors)^2, row-major
+  std::vector<AnchorRest> anchors;  // where the first of the ports are
+  std::vector<CompliancePort> ports;
+  std::vector<ComplianceValue> values;  // as OwnedRows::compliance
 };
 
 /// Where the body is clamped: its fixed face or volumes; at a fixed point a ball of a quarter of

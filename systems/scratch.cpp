@@ -24,7 +24,7 @@ void Scratch::reserve(const World& world) {
   region_points.assign(world.regions.capacity(), RegionPoints{});
   const std::size_t cells = std::size_t{side} * side;
   const bool patches = !world.patch_cells.empty();
-  column_memory.assign((patches ? 23 : 12) * cells, 0.0);
+  column_memory.assign((patches ? 26 : 12) * cells, 0.0);
   std::size_t next = 0;
   const auto column = [&] {
     return std::span<double>(column_memory).subspan(cells * next++, cells);
@@ -36,7 +36,7 @@ void Scratch::reserve(const World& world) {
         &cell_columns.depth, &cell_columns.depth_change}) {
     *each = column();
   }
-  if (!world.compliance.empty()) {
+  if (!world.footings.empty()) {
     constexpr std::size_t kRows = std::size_t{6} * kMaxRegionsPerBody;
     compliance_matrix.resize(kRows * kRows);
     compliance_residuals.resize(kRows);
@@ -49,7 +49,7 @@ void Scratch::reserve(const World& world) {
     for (std::span<double>* each :
          {&patch.depth, &patch.friction, &patch.target_x, &patch.target_y, &patch.pressure,
           &patch.traction_x, &patch.traction_y, &patch.depression, &patch.moved_x, &patch.moved_y,
-          &patch.slips}) {
+          &patch.slips, &support_columns.x, &support_columns.y, &support_columns.z}) {
       *each = column();
     }
     patch_before.assign(cells, PatchCell{});

@@ -59,6 +59,12 @@ struct CellColumns {
   std::span<double> depth_change;            // m, across the cell
 };
 
+/// How far the body as a whole has moved the cells of one region, beside its RegionSupport, m, in
+/// the grid's frame.
+struct SupportColumns {
+  std::span<double> x, y, z;
+};
+
 /// What a place on the body carries from one grid to the next.
 struct CarriedCell {
   glm::dvec2 per_cell{0.0};    // Pa: traction times coverage
@@ -102,6 +108,7 @@ struct Scratch {
   MdrTables mdr_tables;  // constant; empty without contact model mdr
   // patch_forces
   PatchColumns patch_columns;           // (cells of one region)
+  SupportColumns support_columns;       // (cells of one region)
   std::vector<PatchCell> patch_before;  // (cells of one region) while its grid moves
   std::vector<CellTraction> tractions_before;
 

@@ -5,15 +5,17 @@
 namespace torsion {
 
 /// The body's own compliance in series with its contacts: how far the material under each region
-/// has gone as a rigid body under the wrenches of all regions of the body. Reads RegionNormal,
-/// RegionFriction, RegionGeometry; writes RegionSupport.
+/// has gone under the tractions of all regions of the body, as a rigid body and beyond. Reads what
+/// the contact models write; writes RegionSupport, SupportField, Footing and RegionCoupling.
 ///
-/// One step of a quasi-Newton method for u = C f(u), all regions at once, so their order does not
-/// matter: du = (I + C K)^-1 (C f - u), with K the contacts' stiffness without slip. Where a
-/// contact slips K is too large and du too small, so it converges all the same.
+/// The rigid part is one step of a quasi-Newton method for u = C f(u), all regions at once, so
+/// their order does not matter: du = (I + C K)^-1 (C f - u), with K the contacts' stiffness without
+/// slip. Where a contact slips K is too large and du too small, so it converges all the same. What
+/// is left, how the material bends and stretches under the contact, is small against the contact's
+/// own compliance and follows by plain iteration.
 void compliance(StepContext& context);
 
-/// Where the anchors of bodies with body model compliance are under the same wrenches, for those
+/// Where the anchors of bodies with body model compliance are under the same tractions, for those
 /// who draw them. Writes AnchorMotion and AnchorTurns.
 void anchor_motions(StepContext& context);
 

@@ -44,6 +44,7 @@ struct Problem {
   double bulk_modulus;
   double longest_side;   // m
   double shortest_side;  // m
+  int width;             // rows and columns of a port: 3 without torques and rotations, else 6
 };
 
 /// Moves what clamped nodes do over to the loads on the free ones.
@@ -56,11 +57,11 @@ void add_held(const Problem& problem, const PortLoads& loads, Eigen::Ref<Eigen::
     if (clamped == 0 || clamped == 8) {
       continue;
     }
-    Eigen::Matrix<double, 24, 6> held;
+    Eigen::MatrixXd held(24, loads.held.cols());
     for (std::size_t c = 0; c < 8; ++c) {
       held.middleRows<3>(rows_of(c)) = loads.held.middleRows<3>(rows_of(element[c]));
     }
-    const Eigen::Matrix<double, 24, 6> reaction =
+    const Eigen::MatrixXd reaction =
         element_stiffness(element_corners(grid, e), problem.bulk_modulus) * held;
     for (std::size_t c = 0; c < 8; ++c) {
       forces.middleRows<3>(rows_of(element[c])) -= reaction.middleRows<3>(rows_of(c));
@@ -91,7 +92,7 @@ void add_motion(const MotionFit& fit, const glm::dvec3& normal, const NodeColumn
 /// as a rotation.
 void add_shear(const Problem& problem, const Port& load, const Port& port,
                Eigen::Ref<Eigen::MatrixXd> rows) {
-  for (int column = 0; column < 6; ++column) {
+  for (int column = 0; column < problem.width; ++column) {
     const glm::dvec3 traction =
         half_space_stress(load, problem.elasticity, unit_wrench(column), port.position) *
         port.normal;
@@ -104,20 +105,21 @@ void add_shear(const Problem& problem, const Port& load, const Port& port,
 void solve_ports(const Problem& problem, std::size_t first, std::size_t count,
                  Eigen::MatrixXd& matrix) {
   const std::size_t nodes = problem.grid.nodes.size();
-  const Eigen::Index width = 6 * static_cast<Eigen::Index>(count);
+  const Eigen::Index each = problem.width;
+  const Eigen::Index width = each * static_cast<Eigen::Index>(count);
   NodeColumns columns(rows_of(problem.factor.free_nodes), width);
   NodeColumns motion(rows_of(nodes), width);
   for (std::size_t p = 0; p < count; ++p) {
     PortLoads loads = loads_of_port(problem.grid, problem.elasticity, problem.ports[first + p],
-                                    problem.shortest_side);
+                                    problem.shortest_side, problem.width);
     add_held(problem, loads, loads.forces);
-    const Eigen::Index column = 6 * static_cast<Eigen::Index>(p);
+    const Eigen::Index column = each * static_cast<Eigen::Index>(p);
     for (std::size_t node = 0; node < nodes; ++node) {
       const std::uint32_t at = problem.factor.order[node];
       if (at == kNoRow) {
-        motion.block<3, 6>(rows_of(node), column) = loads.held.middleRows<3>(rows_of(node));
+        motion.block(rows_of(node), column, 3, each) = loads.held.middleRows<3>(rows_of(node));
       } else {
-        columns.block<3, 6>(rows_of(at), column) = loads.forces.middleRows<3>(rows_of(node));
+        columns.block(rows_of(at), column, 3, each) = loads.forces.middleRows<3>(rows_of(node));
       }
     }
   }
@@ -128,23 +130,23 @@ void solve_ports(const Problem& problem, std::size_t first, std::size_t count,
       motion.middleRows<3>(rows_of(node)) = columns.middleRows<3>(rows_of(at));
     }
   }
-  const Eigen::Index left = 6 * static_cast<Eigen::Index>(first);
+  const Eigen::Index left = each * static_cast<Eigen::Index>(first);
   for (std::size_t i = 0; i < problem.fits.size(); ++i) {
     const Eigen::Index top = 6 * static_cast<Eigen::Index>(i);
     add_motion(problem.fits[i], problem.ports[i].normal, motion, matrix.block(top, left, 6, width));
     for (std::size_t p = 0; p < count; ++p) {
       if (first + p != i) {
         add_shear(problem, problem.ports[first + p], problem.ports[i],
-                  matrix.block(top, left + 6 * static_cast<Eigen::Index>(p), 6, 6));
+                  matrix.block(top, left + each * static_cast<Eigen::Index>(p), 6, each));
       }
     }
   }
 }
 
-/// All columns, port by port, from as many threads as asked for.
+/// All columns, port by port, from as many threads as asked for; six rows a port.
 Eigen::MatrixXd solve_all(const Problem& problem, const SmoothComplianceOptions& options) {
-  const Eigen::Index size = 6 * static_cast<Eigen::Index>(problem.ports.size());
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
+  const auto ports = static_cast<Eigen::Index>(problem.ports.size());
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(6 * ports, problem.width * ports);
   std::atomic<std::size_t> next{0};
   const auto work = [&](bool reports) {
     for (std::size_t first = next.fetch_add(kPortsAtOnce); first < problem.ports.size();
@@ -167,6 +169,15 @@ Eigen::MatrixXd solve_all(const Problem& problem, const SmoothComplianceOptions&
   return matrix;
 }
 
+/// Of each port's six rows the three from `first` on.
+Eigen::MatrixXd rows_of_ports(const Eigen::MatrixXd& rows, Eigen::Index first) {
+  Eigen::MatrixXd chosen(rows.rows() / 2, rows.cols());
+  for (Eigen::Index port = 0; 6 * port < rows.rows(); ++port) {
+    chosen.middleRows<3>(3 * port) = rows.middleRows<3>(6 * port + first);
+  }
+  return chosen;
+}
+
 /// Motion at `to` under unit wrenches at `from`, through from's half-space.
 Matrix6 half_space_response(const Port& to, const Port& from, const Elasticity& elasticity) {
   Matrix6 response;
@@ -183,18 +194,21 @@ Matrix6 half_space_response(const Port& to, const Port& from, const Elasticity& 
 
 /// How far the whole compliance between the ports, half-spaces included, is from symmetric.
 double asymmetry_of(const Problem& problem, const Eigen::MatrixXd& smooth) {
+  const Eigen::Index each = problem.width;
   Eigen::MatrixXd whole = smooth;
   for (std::size_t i = 0; i < problem.ports.size(); ++i) {
     for (std::size_t j = 0; j < problem.ports.size(); ++j) {
       if (i != j) {
-        whole.block<6, 6>(6 * static_cast<Eigen::Index>(i), 6 * static_cast<Eigen::Index>(j)) +=
-            half_space_response(problem.ports[i], problem.ports[j], problem.elasticity);
+        whole.block(each * static_cast<Eigen::Index>(i), each * static_cast<Eigen::Index>(j), each,
+                    each) +=
+            half_space_response(problem.ports[i], problem.ports[j], problem.elasticity)
+                .topLeftCorner(each, each);
       }
     }
   }
   Eigen::VectorXd scale(whole.rows());
   for (Eigen::Index row = 0; row < whole.rows(); ++row) {
-    scale[row] = row % 6 < 3 ? 1.0 : 0.5 * problem.longest_side;
+    scale[row] = row % each < 3 ? 1.0 : 0.5 * problem.longest_side;
   }
   whole = (scale.asDiagonal() * whole * scale.asDiagonal()).eval();
   const double norm = whole.norm();
@@ -252,11 +266,17 @@ Result<SmoothCompliance> build_smooth_compliance(const ElasticSolid& solid,
                         {2.0 * (1.0 + poisson_ratio), poisson_ratio, solid.elasticity.density},
                         bulk,
                         std::max({extent.x, extent.y, extent.z}),
-                        std::min({extent.x, extent.y, extent.z})};
-  const Eigen::MatrixXd smooth = solve_all(problem, options);
+                        std::min({extent.x, extent.y, extent.z}),
+                        options.couples ? 6 : 3};
+  const double modulus = solid.elasticity.shear_modulus();
+  Eigen::MatrixXd smooth = solve_all(problem, options);
   SmoothCompliance compliance;
+  if (!options.couples) {
+    compliance.turns = rows_of_ports(smooth, 3) / modulus;
+    smooth = rows_of_ports(smooth, 0);
+  }
   compliance.relative_asymmetry = asymmetry_of(problem, smooth);
-  compliance.matrix = 0.5 / solid.elasticity.shear_modulus() * (smooth + smooth.transpose());
+  compliance.matrix = 0.5 / modulus * (smooth + smooth.transpose());
   return compliance;
 }
 

@@ -32,6 +32,7 @@ struct SmoothComplianceOptions {
                                 // 16, 270 MB at 24, growing with the fourth power
   std::uint32_t threads = 1;    // the result is the same bits for any number
   std::function<void(double)> progress;  // called with 0 to 1 as it goes on, if set
+  bool couples = true;                   // false: the ports take forces only
 };
 
 /// How wrenches at ports move the material at ports, beyond what half-spaces do: the part of a
@@ -41,7 +42,9 @@ struct SmoothComplianceOptions {
 struct SmoothCompliance {
   Eigen::MatrixXd matrix;           // 6M x 6M, body axes, SI, symmetric: rows translation (m) and
                                     // rotation (rad) of port i; columns force (N) and torque (N m)
-                                    // about port j
+                                    // about port j. Without couples 3M x 3M
+  Eigen::MatrixXd turns;            // 3M x 3M, without couples only: rotation (rad) of port i by
+                                    // force (N) at port j
   double relative_asymmetry = 0.0;  // of the compliance between ports, half-spaces included,
                                     // before it was made symmetric: |C - C'| / |C|, Frobenius
                                     // norms, rotations times half the longest side
@@ -80,9 +83,18 @@ Result<SmoothCompliance> load_or_build_smooth_compliance(const ElasticSolid& sol
                                                          std::span<const Port> ports,
                                                          const SmoothComplianceOptions& options);
 
-/// Up to `count` ports spread evenly over the free surface, each next one farthest from all before
-/// it and from the clamp; none at the clamp, none so near a sharp edge that the surface bends away
-/// within a third of the ports' spacing.
-std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count);
+/// Where contacts are expected.
+struct Focus {
+  glm::dvec3 center{0.0};  // m, body
+  double radius = 0.0;     // m
+};
+
+/// Up to `count` ports spread over the free surface, each next one farthest from all before it and
+/// from the clamp, in distances that count 2.5 times as much in the focuses as a shortest side away
+/// from them; none at the clamp, none so near a sharp edge that the surface bends away within a
+/// third of the ports' mean spacing.
+/// @param focuses  without any: the end of the body opposite of the clamp
+std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count,
+                               std::span<const Focus> focuses = {});
 
 }  // namespace torsion

@@ -74,8 +74,8 @@ FacePoint face_point(const std::array<glm::dvec3, 4>& corners, double s, double 
 
 /// What a port's surroundings lack once its loads are on the rest of the surface.
 struct LeftOut {
-  Matrix6 wrench;        // about the port, for each unit wrench
-  Eigen::VectorXd area;  // m^2, of each node
+  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> wrench;  // about the port, for each unit wrench
+  Eigen::VectorXd area;                                      // m^2, of each node
 };
 
 /// Adds minus the tractions on one face to loads and to `left_out`, less what is near the port.
@@ -121,7 +121,7 @@ void add_face(const SolidGrid& grid, const std::array<std::uint32_t, 4>& face,
       continue;
     }
     const Eigen::Matrix<double, 6, 3> lever = wrench_of_force(at.position, port.position);
-    for (int column = 0; column < 6; ++column) {
+    for (int column = 0; column < loads.forces.cols(); ++column) {
       const Eigen::Vector3d force =
           -kept * share *
           eigen(half_space_stress(port, elasticity, unit_wrench(column), at.position) * at.normal);
@@ -176,7 +176,7 @@ void add_overhang(const SolidGrid& grid, const std::array<std::uint32_t, 8>& ele
     const glm::dmat3 jacobian = element_jacobian(corners, local);
     const double volume = glm::determinant(jacobian);
     const std::array<glm::dvec3, 8> slopes = corner_slopes(jacobian, local);
-    for (int column = 0; column < 6; ++column) {
+    for (int column = 0; column < loads.forces.cols(); ++column) {
       const glm::dmat3 stress =
           stress_of_motion(port, elasticity, unit_wrench(column), point) * volume;
       for (std::size_t c = 0; c < 8; ++c) {
@@ -212,7 +212,7 @@ void add_left_out(const SolidGrid& grid, const Port& port, LeftOut left_out, Por
       spread += area * lever * lever.transpose();
     }
   }
-  const Matrix6 amounts = spread.completeOrthogonalDecomposition().solve(left_out.wrench);
+  const Eigen::MatrixXd amounts = spread.completeOrthogonalDecomposition().solve(left_out.wrench);
   for (std::size_t node = 0; node < grid.nodes.size(); ++node) {
     const double area = left_out.area[static_cast<Eigen::Index>(node)];
     if (area > 0.0) {
@@ -231,14 +231,14 @@ Wrench unit_wrench(int column) {
 }
 
 PortLoads loads_of_port(const SolidGrid& grid, const Elasticity& elasticity, const Port& port,
-                        double shortest_side) {
+                        double shortest_side, int columns) {
   const auto nodes = static_cast<Eigen::Index>(grid.nodes.size());
   const Near near{
       std::max(kNear * shortest_side,
                kNearInElements * std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z})),
       kNearAcrossEdge * shortest_side};
-  PortLoads loads{WrenchColumns::Zero(3 * nodes, 6), WrenchColumns::Zero(3 * nodes, 6)};
-  LeftOut left_out{Matrix6::Identity(), Eigen::VectorXd::Zero(nodes)};
+  PortLoads loads{WrenchColumns::Zero(3 * nodes, columns), WrenchColumns::Zero(3 * nodes, columns)};
+  LeftOut left_out{Eigen::MatrixXd::Identity(6, columns), Eigen::VectorXd::Zero(nodes)};
   for (const std::array<std::uint32_t, 4>& face : grid.faces) {
     add_face(grid, face, elasticity, port, near, loads, left_out);
   }
@@ -259,7 +259,7 @@ PortLoads loads_of_port(const SolidGrid& grid, const Elasticity& elasticity, con
     if (glm::distance(point, port.position) < near.across_edge) {
       point = port.position - port.normal * near.across_edge;
     }
-    for (int column = 0; column < 6; ++column) {
+    for (int column = 0; column < columns; ++column) {
       loads.held.block<3, 1>(row_of(node), column) =
           -eigen(half_space_motion(port, elasticity, unit_wrench(column), point).displacement);
     }

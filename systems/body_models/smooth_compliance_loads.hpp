@@ -10,8 +10,8 @@
 namespace torsion {
 
 /// Three rows for each node of a grid, one column for each unit wrench: force along, then torque
-/// about, the body's axes.
-using WrenchColumns = Eigen::Matrix<double, Eigen::Dynamic, 6>;
+/// about, the body's axes; the first three alone where forces are all.
+using WrenchColumns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, Eigen::Dynamic, 6>;
 
 /// A unit force along, or torque about, a body axis.
 /// @param column  of WrenchColumns
@@ -27,8 +27,9 @@ struct PortLoads {
 /// tractions on it grow without bound towards the port: what is near is replaced by the smooth load
 /// with the same force and torque, as any contact spreads it.
 /// @param elasticity  as for half_space_motion
+/// @param columns     3: forces, 6: torques too
 PortLoads loads_of_port(const SolidGrid& grid, const Elasticity& elasticity, const Port& port,
-                        double shortest_side);
+                        double shortest_side, int columns);
 
 /// How the material at a point follows from the nodes around it: a quadratic is fitted to their
 /// displacements.

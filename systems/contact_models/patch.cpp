@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "systems/body_models/support_field.hpp"
 #include "systems/contact_models/friction_decay.hpp"
 #include "systems/frames.hpp"
 #include "systems/patch_grid.hpp"
@@ -22,6 +23,7 @@ constexpr double kMostForesight = 1.5;  // of the last step's change
 struct Patch {
   World& world;
   const PatchColumns& columns;
+  const SupportColumns& support;
   std::uint32_t region = 0;
   std::uint32_t side = 0;
   RegionFrame frame;
@@ -52,6 +54,7 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
   problem.sweeps = settings.sweeps;
   return {world,
           context.scratch.patch_columns,
+          context.scratch.support_columns,
           region,
           settings.grid_side,
           frame,
@@ -90,6 +93,42 @@ double deepest(const Patch& patch) {
   return depth;
 }
 
+/// Where the body as a whole has moved the cells, beside their region.
+void find_support(const Patch& patch) {
+  const SupportField& field = patch.world.regions.at<SupportField>(patch.region);
+  const bool none = patch.world.footings.empty();
+  std::ranges::fill(patch.support.x, 0.0);
+  std::ranges::fill(patch.support.y, 0.0);
+  std::ranges::fill(patch.support.z, 0.0);
+  if (none) {
+    return;
+  }
+  const RegionFrame& frame = patch.frame;
+  const glm::dvec3 from = frame.origin - field.origin;
+  const glm::dvec2 origin(glm::dot(field.along_x, from), glm::dot(field.along_y, from));
+  const glm::dmat2 turn(
+      glm::dot(field.along_x, frame.tangent_x), glm::dot(field.along_y, frame.tangent_x),
+      glm::dot(field.along_x, frame.tangent_y), glm::dot(field.along_y, frame.tangent_y));
+  std::array<glm::dvec3, kSupportTerms> in_grid;
+  for (std::size_t k = 0; k < kSupportTerms; ++k) {
+    in_grid[k] = body_to_grid_direction(frame, field.terms[k]);
+  }
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < patch.side; ++j) {
+    for (std::uint32_t i = 0; i < patch.side; ++i, ++cell) {
+      const glm::dvec2 at = origin + turn * cell_center(frame, patch.side, i, j);
+      const auto terms = support_terms(support_coordinates(at));
+      glm::dvec3 moved(0.0);
+      for (std::size_t k = 0; k < kSupportTerms; ++k) {
+        moved += terms[k] * in_grid[k];
+      }
+      patch.support.x[cell] = moved.x;
+      patch.support.y[cell] = moved.y;
+      patch.support.z[cell] = moved.z;
+    }
+  }
+}
+
 /// Fills the columns: what the last step left, carried on by `share` of what it changed.
 void load(const Patch& patch, double share) {
   const PatchColumns& columns = patch.columns;
@@ -100,7 +139,8 @@ void load(const Patch& patch, double share) {
     const CellTraction& traction = patch.tractions[cell];
     const PatchCell& held = patch.cells[cell];
     const PatchChange& change = patch.changes[cell];
-    columns.depth[cell] = geometry.coverage >= 0.5 ? geometry.depth : kNoContact;
+    columns.depth[cell] =
+        geometry.coverage >= 0.5 ? geometry.depth + patch.support.z[cell] : kNoContact;
     columns.friction[cell] = friction_of(friction, traction.kinetic_share);
     columns.pressure[cell] = traction.pressure + share * change.pressure;
     columns.traction_x[cell] = share * change.traction.x - traction.traction.x;
@@ -118,7 +158,9 @@ void set_targets(const Patch& patch) {
   for (std::uint32_t j = 0; j < patch.side; ++j) {
     for (std::uint32_t i = 0; i < patch.side; ++i, ++cell) {
       const PatchCell& at = patch.cells[cell];
-      const glm::dvec2 held = at.known != 0 ? at.held : at.displacement;
+      // What holds is the displacement with the body's; the solver knows the half-space's alone.
+      const glm::dvec2 support(patch.support.x[cell], patch.support.y[cell]);
+      const glm::dvec2 held = at.known != 0 ? at.held - support : at.displacement;
       const glm::dvec2 arm = cell_center(patch.frame, patch.side, i, j) - patch.motion.pivot;
       columns.target_x[cell] = held.x + patch.motion.slide.x - patch.motion.spin * arm.y;
       columns.target_y[cell] = held.y + patch.motion.slide.y + patch.motion.spin * arm.x;
@@ -219,7 +261,8 @@ void store(const Patch& patch) {
                            moved - at.displacement, columns.depression[cell] - at.depression};
     at.displacement = moved;
     at.depression = columns.depression[cell];
-    at.held = sticks ? glm::dvec2(columns.target_x[cell], columns.target_y[cell]) : moved;
+    at.held = (sticks ? glm::dvec2(columns.target_x[cell], columns.target_y[cell]) : moved) +
+              glm::dvec2(patch.support.x[cell], patch.support.y[cell]);
     at.known = 1;
     traction.traction = -on_body;
     traction.pressure = columns.pressure[cell];
@@ -321,6 +364,7 @@ void solve_region(StepContext& context, std::uint32_t region) {
   Patch patch = patch_of(context, region);
   const double depth = deepest(patch);
   const double deepened = depth - patch.state.depth;
+  find_support(patch);
   const bool anew = patch.state.started == 0 || patch.state.moved != 0;
   load(patch, anew ? 0.0 : foresight(patch, deepened));
   if (anew) {

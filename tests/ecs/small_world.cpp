@@ -49,8 +49,15 @@ void mend_owners(World& world) {
     world.balls.at<SurfaceBall>(row).sample = row % 2 == 0 ? kNoRow : row % 20 / 2;
   }
   for (std::uint32_t row = 0; row < 2; ++row) {
-    world.tools.at<OwnedRows>(row) = {{row, 1}, {row * 10, 10}, {row * 20, 20}, {}, {}, {}};
-    world.bodies.at<OwnedRows>(row) = {{row + 1, 1}, {}, {}, {row * 3, 3}, {}, {}};
+    world.tools.at<OwnedRows>(row) = {{row, 1}, {row * 10, 10}, {row * 20, 20}, {}, {}, {}, {}};
+    world.bodies.at<OwnedRows>(row) = {{row + 1, 1}, {}, {}, {row * 3, 3}, {}, {}, {}};
+    if (row == 0) {
+      world.bodies.at<OwnedRows>(row).ports = {0, 3};
+      world.bodies.at<OwnedRows>(row).compliance = {0, 162};
+    }
+    for (Footing& footing : world.footings.column<Footing>()) {
+      footing.count = 0;
+    }
     world.bodies.at<FixedRegion>(row).volumes = {row, 1};
     auto& region = world.regions.at<RegionIdentity>(row);
     region.body = row;
@@ -77,7 +84,8 @@ World small_world(unsigned seed) {
   capacities.regions = 4;
   capacities.influences = 3;
   capacities.mdr_bodies = 1;
-  capacities.compliance_values = 2;
+  capacities.ports = 3;
+  capacities.compliance_values = 162;
   Settings settings;
   settings.grid_side = 4;
   world.reserve(capacities, settings);
@@ -95,7 +103,10 @@ World small_world(unsigned seed) {
   world.regions.append(2);
   world.cells.append(2 * settings.grid_side * settings.grid_side);
   world.influences.append(3);
-  world.compliance.append(2);
+  world.ports.append(3);
+  world.compliance.append(162);
+  world.footings.append(4);
+  world.couplings.append(6);
   world.patch_cells.append(world.cells.size());
   world.mdr_layers.append(world.mdr_layers.capacity());
   world.anchors.append(6);

@@ -55,7 +55,7 @@ double normal_force(const Hand& hand) {
 
 // A column three times as high as wide: the disc's twist (Reissner and Sagoci) and the bar's
 // (Saint-Venant, less the length that the disc's own field takes) add. Of the bar the finite
-// elements miss 3 %, interpolation between ports another 3 %; mdr's first springs that slip make
+// elements miss 2 %, interpolation between ports another 2 %; mdr's first springs that slip make
 // the contact 0.5 % softer or stiffer than the disc.
 TEST(ComplianceTest, TwistOfAColumnAndOfItsContactAdd) {
   const glm::dvec3 half(0.02, 0.06, 0.02);
@@ -63,6 +63,8 @@ TEST(ComplianceTest, TwistOfAColumnAndOfItsContactAdd) {
   Hand hand = hand_over(box_scene(half, {ball_at(0.0)}, ContactModel::kMdr, BodyModel::kCompliance),
                         2.0 * half.y);
   hand.move(glm::dvec3(0.0, -8e-4, 0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 200);
+  hand.move(glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 20);
+  const RegionSupport pressed = hand.world().regions.at<RegionSupport>(0);
   constexpr double kTurn = 1e-3;
   hand.move(glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), kTurn, 100);
   hand.move(glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 20);
@@ -72,9 +74,12 @@ TEST(ComplianceTest, TwistOfAColumnAndOfItsContactAdd) {
   const double bar = 0.140577 * kShear * std::pow(side, 4) / length;
   const double in_series = disc * bar / (disc + bar);
   ASSERT_GT(disc / bar, 0.05);
-  EXPECT_NEAR(-hand.wrench().torque.y / kTurn / in_series, 1.0, 0.005 + 0.06 * disc / bar);
+  EXPECT_NEAR(-hand.wrench().torque.y / kTurn / in_series, 1.0, 0.005 + 0.04 * disc / bar);
   const RegionSupport& support = hand.world().regions.at<RegionSupport>(0);
-  EXPECT_NEAR(support.rotation.y / (kTurn * in_series / bar), 1.0, 0.07);
+  const double turned = support.rotation.y - pressed.rotation.y;
+  EXPECT_NEAR(turned / (kTurn * in_series / bar), 1.0, 0.04);
+  // Pressing turns nothing, by symmetry; the ports are not placed symmetrically.
+  EXPECT_LT(std::abs(pressed.rotation.y) * a, 1e-3 * std::abs(pressed.translation.y));
 }
 
 TEST(ComplianceTest, ABodyThatGivesWayIsPressedLess) {
@@ -91,10 +96,24 @@ TEST(ComplianceTest, ABodyThatGivesWayIsPressedLess) {
   const double sunk = -soft.world().regions.at<RegionSupport>(0).translation.y;
   EXPECT_GT(sunk, 5e-5);
   EXPECT_NEAR(normal_force(soft) / normal_force(stiff), std::pow(1.0 - sunk / 1e-3, 1.5), 0.02);
-  // A bar's stretch, less what the half-space under the contact has of it.
-  const double stretch = normal_force(soft) * 0.12 / (3.0 * kShear * 0.04 * 0.04);
-  EXPECT_GT(sunk, stretch * (1.0 - 0.04 / 0.12));
-  EXPECT_LT(sunk, stretch);
+}
+
+// Whatever happens at a bar's ends, each length between them adds its stretch L / (E A)
+// (Saint-Venant). Elements of the same shape are exact in it; two heights have other ports, each
+// good for half a per cent of a bar.
+TEST(ComplianceTest, AHigherColumnSinksByTheStretchOfWhatIsAdded) {
+  const auto compliance_of = [](double height) {
+    const glm::dvec3 half(0.02, 0.5 * height, 0.02);
+    Hand hand = hand_over(
+        box_scene(half, {ball_at(0.0)}, ContactModel::kPatch, BodyModel::kCompliance), height);
+    hand.move(glm::dvec3(0.0, -1e-3, 0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 100);
+    hand.move(glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 50);
+    return -hand.world().regions.at<RegionSupport>(0).translation.y / normal_force(hand);
+  };
+  const double bar = 1.0 / (3.0 * kShear * 0.04 * 0.04);  // 1/N: E A, E = 3 G
+  const double low = compliance_of(0.08);
+  const double high = compliance_of(0.16);
+  EXPECT_NEAR((high - low) / (0.08 * bar), 1.0, 0.015);
 }
 
 TEST(ComplianceTest, ComesBackToRest) {

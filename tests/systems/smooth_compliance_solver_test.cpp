@@ -172,7 +172,7 @@ TEST(PortLoadsTest, LoadsAndTheClampsTractionsBalanceTheWrench) {
     const Port& port = ball ? on_ball : on_block;
     const auto grid = build_solid_grid(solid, 12);
     ASSERT_TRUE(grid.ok());
-    const PortLoads loads = loads_of_port(grid.value(), elasticity, port, 1.0);
+    const PortLoads loads = loads_of_port(grid.value(), elasticity, port, 1.0, 6);
     Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
     for (std::size_t node = 0; node < grid.value().nodes.size(); ++node) {
       const auto row = 3 * static_cast<Eigen::Index>(node);

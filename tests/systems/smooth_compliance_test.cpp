@@ -20,7 +20,7 @@ constexpr double kSquareTorsion = 0.14057701;  // J over b^4 of a square bar
 
 SmoothCompliance build(const ElasticSolid& solid, const std::vector<Port>& ports,
                        std::uint32_t elements) {
-  const auto built = build_smooth_compliance(solid, ports, {elements, 1, {}});
+  const auto built = build_smooth_compliance(solid, ports, {elements, 1, {}, true});
   EXPECT_TRUE(built.ok());
   return built ? built.value() : SmoothCompliance{};
 }

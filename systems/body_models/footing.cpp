@@ -1,0 +1,287 @@
+#include "systems/body_models/footing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <glm/geometric.hpp>
+
+#include "systems/body_models/support_field.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr std::size_t kNearest = 14;  // ports that a footing has at least, if the body has them
+constexpr double kBeyond = 1.3;       // reach over the contact's longer half axis
+constexpr double kLeastFacing = 0.4;  // cosine between a port's normal and the contact's
+constexpr double kMoved = 0.04;       // of its reach: a footing moved farther is laid anew
+constexpr double kGrown = 1.12;       // likewise the contact's radius
+constexpr double kTurned = 0.9997;    // likewise the cosine of the normal
+/// Against wiggles where ports are few, over the sum of the weights: by degree. Constants and
+/// slopes are left alone.
+constexpr std::array<double, 5> kStiffer{0.0, 0.0, 1e-6, 1e-5, 1e-4};
+
+double stiffer(int degree, double size) {
+  const double base = kStiffer[static_cast<std::size_t>(degree)];
+  return base * std::pow(size, -2.0 * degree);
+}
+
+using TermMatrix = Eigen::Matrix<double, kSupportTerms, kSupportTerms>;
+
+constexpr double kNever = 1e300;
+
+/// The more a port's surface is turned away the farther it is; across an edge there is none.
+double seen_distance(const CompliancePort& port, const ContactEllipse& contact) {
+  const double facing =
+      (glm::dot(port.normal, contact.normal) - kLeastFacing) / (1.0 - kLeastFacing);
+  return facing > 0.0 ? glm::distance(port.position, contact.center) / facing : kNever;
+}
+
+/// Distance that takes in kNearest ports; a little more than the farthest where there are fewer.
+double distance_to_enough(const PortCompliance& body, const ContactEllipse& contact) {
+  std::array<double, kNearest> nearest;
+  nearest.fill(kNever);
+  for (const CompliancePort& port : body.ports) {
+    const double distance = seen_distance(port, contact);
+    if (distance < nearest.back()) {
+      nearest.back() = distance;
+      for (std::size_t i = kNearest - 1; i > 0 && nearest[i] < nearest[i - 1]; --i) {
+        std::swap(nearest[i], nearest[i - 1]);
+      }
+    }
+  }
+  double farthest = 0.0;
+  for (const double distance : nearest) {
+    farthest = distance < kNever ? distance : farthest;
+  }
+  return nearest.back() < kNever ? farthest : 1.2 * farthest;
+}
+
+/// Ports within reach, those that are spread widest first (choose_ports), and their weights.
+void find_ports(const PortCompliance& body, const ContactEllipse& contact, double size,
+                Footing& footing, std::array<double, kFootingPorts>& weights) {
+  footing.count = 0;
+  for (std::uint32_t port = 0; port < body.ports.size() && footing.count < kFootingPorts; ++port) {
+    const double share = seen_distance(body.ports[port], contact) / footing.reach;
+    if (share < 1.0) {
+      const double inner = 1.0 - share * share;
+      weights[footing.count] = inner * inner / (share * share + 0.5 * size * size);
+      footing.ports[footing.count++] = port;
+    }
+  }
+}
+
+/// Weighted least squares: terms = (A' W A + stiffer)^-1 A' W displacements.
+void fit_terms(const PortCompliance& body, const std::array<double, kFootingPorts>& weights,
+               double size, Footing& footing) {
+  std::array<std::array<double, kSupportTerms>, kFootingPorts> terms;
+  TermMatrix normal = TermMatrix::Zero();
+  double sum = 0.0;
+  for (std::size_t p = 0; p < footing.count; ++p) {
+    terms[p] = support_terms(coordinates_in(footing, body.ports[footing.ports[p]].position));
+    sum += weights[p];
+    for (std::size_t k = 0; k < kSupportTerms; ++k) {
+      for (std::size_t l = 0; l <= k; ++l) {
+        normal(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) +=
+            weights[p] * terms[p][k] * terms[p][l];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < kSupportTerms; ++k) {
+    // The last part only keeps what no port speaks of at zero.
+    normal(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) +=
+        sum * (stiffer(kSupportDegrees[k], size) + 1e-12);
+  }
+  const Eigen::LLT<TermMatrix> solver(normal);
+  for (std::size_t p = 0; p < footing.count; ++p) {
+    Eigen::Matrix<double, kSupportTerms, 1> column;
+    for (std::size_t k = 0; k < kSupportTerms; ++k) {
+      column[static_cast<Eigen::Index>(k)] = weights[p] * terms[p][k];
+    }
+    solver.solveInPlace(column);
+    for (std::size_t k = 0; k < kSupportTerms; ++k) {
+      footing.fit[k][p] = column[static_cast<Eigen::Index>(k)];
+    }
+  }
+}
+
+/// Moments of a unit force along, or couple about, a body axis on the contact, spread as by a rigid
+/// disc: normal forces for tilting couples, tangential ones for the twisting couple.
+SupportMoments moments_of_wrench(const Footing& footing, const ContactEllipse& contact,
+                                 const glm::dvec3& force, const glm::dvec3& couple) {
+  SupportMoments moments{};
+  glm::dmat3 spread(0.0);  // second moment of the shares, as it turns forces into couples
+  const double twist = glm::dot(couple, contact.normal);
+  const glm::dvec3 tilt = couple - contact.normal * twist;
+  double polar = 0.0;
+  glm::dmat3 planar(0.0);
+  for (const DiscPoint& point : disc_points()) {
+    const glm::dvec3 arm = contact.axis_1 * point.place.x + contact.axis_2 * point.place.y;
+    polar += point.disc_share * glm::dot(arm, arm);
+    planar += point.disc_share * glm::outerProduct(arm, arm);
+  }
+  // Normal forces n (arm . g) have the couple sum of (arm . g) arm x n: g = planar^-1 (n x tilt).
+  const glm::dvec3 wanted = glm::cross(contact.normal, tilt);
+  const glm::dvec3 slope =
+      glm::inverse(planar + glm::outerProduct(contact.normal, contact.normal)) * wanted;
+  for (const DiscPoint& point : disc_points()) {
+    const glm::dvec3 arm = contact.axis_1 * point.place.x + contact.axis_2 * point.place.y;
+    const glm::dvec3 here = point.disc_share * (force + contact.normal * glm::dot(arm, slope) +
+                                                glm::cross(contact.normal, arm) * (twist / polar));
+    const auto terms = support_terms(coordinates_in(footing, contact.center + arm));
+    for (std::size_t k = 0; k < kSupportTerms; ++k) {
+      moments[k] += here * terms[k];
+    }
+  }
+  return moments;
+}
+
+}  // namespace
+
+const std::array<DiscPoint, kDiscPoints>& disc_points() {
+  static const std::array<DiscPoint, kDiscPoints> points = [] {
+    // With r^2 = 1 - t^2 the shares are dt and t^2 dt over 0 to 1: Gauss' three points.
+    constexpr std::array<double, 3> kPlaces{0.1127016653792583, 0.5, 0.8872983346207417};
+    constexpr std::array<double, 3> kWeights{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+    std::array<DiscPoint, kDiscPoints> made;
+    for (std::size_t i = 0; i < kDiscPoints; ++i) {
+      const std::size_t ring = i / 8;
+      const double t = kPlaces[ring];
+      const double angle = 0.25 * std::numbers::pi *
+                           (static_cast<double>(i % 8) + 0.5 * static_cast<double>(ring % 2));
+      const double radius = std::sqrt(1.0 - t * t);
+      made[i] = {{radius * std::cos(angle), radius * std::sin(angle)},
+                 kWeights[ring] / 8.0,
+                 3.0 * t * t * kWeights[ring] / 8.0};
+    }
+    return made;
+  }();
+  return points;
+}
+
+bool still_fits(const Footing& footing, const ContactEllipse& contact) {
+  return footing.reach > 0.0 &&
+         glm::distance(footing.center, contact.center) < kMoved * footing.reach &&
+         contact.radius < kGrown * footing.radius && footing.radius < kGrown * contact.radius &&
+         glm::dot(footing.normal, contact.normal) > kTurned;
+}
+
+glm::dvec2 coordinates_in(const Footing& footing, const glm::dvec3& point) {
+  const glm::dvec3 from = point - footing.origin;
+  return support_coordinates(
+      glm::dvec2(glm::dot(footing.tangent_x, from), glm::dot(footing.tangent_y, from)) /
+      footing.reach);
+}
+
+void lay_footing(const PortCompliance& body, const ContactEllipse& contact, Footing& footing) {
+  footing.origin = contact.center;
+  footing.center = contact.center;
+  footing.radius = contact.radius;
+  footing.normal = contact.normal;
+  const glm::dvec3 other =
+      std::abs(contact.normal.x) < 0.6 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+  footing.tangent_x = glm::normalize(glm::cross(contact.normal, other));
+  footing.tangent_y = glm::cross(contact.normal, footing.tangent_x);
+  const double longer = std::max(glm::length(contact.axis_1), glm::length(contact.axis_2));
+  footing.reach = std::max(distance_to_enough(body, contact), kBeyond * longer);
+  std::array<double, kFootingPorts> weights{};
+  const double size = std::max(kBeyond * longer / footing.reach, 0.05);
+  find_ports(body, contact, size, footing, weights);
+  fit_terms(body, weights, size, footing);
+  for (std::size_t c = 0; c < 6; ++c) {
+    glm::dvec3 force(0.0);
+    glm::dvec3 couple(0.0);
+    (c < 3 ? force : couple)[static_cast<int>(c % 3)] = 1.0;
+    forces_at_ports(footing, moments_of_wrench(footing, contact, force, couple),
+                    footing.unit_forces[c]);
+  }
+}
+
+void forces_at_ports(const Footing& footing, const SupportMoments& moments, PortVectors& forces) {
+  for (std::size_t p = 0; p < footing.count; ++p) {
+    forces[p] = glm::dvec3(0.0);
+  }
+  for (std::size_t k = 0; k < kSupportTerms; ++k) {
+    for (std::size_t p = 0; p < footing.count; ++p) {
+      forces[p] += footing.fit[k][p] * moments[k];
+    }
+  }
+}
+
+void displacements_at_ports(const PortCompliance& body, const Footing& footing,
+                            const PortVectors& forces, PortVectors& displacements) {
+  const std::size_t side = 3 * body.ports.size();
+  for (std::size_t to = 0; to < footing.count; ++to) {
+    const ComplianceValue* const rows = &body.values[3 * std::size_t{footing.ports[to]} * side];
+    glm::dvec3 sum(0.0);
+    for (std::size_t from = 0; from < footing.count; ++from) {
+      const ComplianceValue* const at = rows + 3 * std::size_t{footing.ports[from]};
+      const glm::dvec3& f = forces[from];
+      sum += glm::dvec3(
+          at[0].value * f.x + at[1].value * f.y + at[2].value * f.z,
+          at[side].value * f.x + at[side + 1].value * f.y + at[side + 2].value * f.z,
+          at[2 * side].value * f.x + at[2 * side + 1].value * f.y + at[2 * side + 2].value * f.z);
+    }
+    displacements[to] = sum;
+  }
+}
+
+Vector6 rigid_motion(const Footing& footing, const PortVectors& displacements) {
+  Vector6 motion;
+  for (std::size_t c = 0; c < 6; ++c) {
+    double sum = 0.0;
+    for (std::size_t p = 0; p < footing.count; ++p) {
+      sum += glm::dot(footing.unit_forces[c][p], displacements[p]);
+    }
+    motion[static_cast<Eigen::Index>(c)] = sum;
+  }
+  return motion;
+}
+
+SupportField bending(const Footing& footing, const PortVectors& displacements,
+                     const Vector6& rigid) {
+  SupportField field;
+  field.origin = footing.origin;
+  field.along_x = footing.tangent_x / footing.reach;
+  field.along_y = footing.tangent_y / footing.reach;
+  for (std::size_t k = 0; k < kSupportTerms; ++k) {
+    for (std::size_t p = 0; p < footing.count; ++p) {
+      field.terms[k] += footing.fit[k][p] * displacements[p];
+    }
+  }
+  const glm::dvec3 translation(rigid[0], rigid[1], rigid[2]);
+  const glm::dvec3 rotation(rigid[3], rigid[4], rigid[5]);
+  field.terms[0] -= translation + glm::cross(rotation, footing.origin - footing.center);
+  field.terms[1] -= glm::cross(rotation, footing.tangent_x) * footing.reach;
+  field.terms[2] -= glm::cross(rotation, footing.tangent_y) * footing.reach;
+  return field;
+}
+
+Matrix6 motion_between(const PortCompliance& body, const Footing& to, const Footing& from) {
+  const std::size_t side = 3 * body.ports.size();
+  Matrix6 motion;
+  for (std::size_t c = 0; c < 6; ++c) {
+    Vector6 column = Vector6::Zero();
+    for (std::size_t i = 0; i < to.count; ++i) {
+      glm::dvec3 moved(0.0);
+      const ComplianceValue* const rows = &body.values[3 * std::size_t{to.ports[i]} * side];
+      for (std::size_t j = 0; j < from.count; ++j) {
+        const ComplianceValue* const at = rows + 3 * std::size_t{from.ports[j]};
+        const glm::dvec3& f = from.unit_forces[c][j];
+        moved += glm::dvec3(
+            at[0].value * f.x + at[1].value * f.y + at[2].value * f.z,
+            at[side].value * f.x + at[side + 1].value * f.y + at[side + 2].value * f.z,
+            at[2 * side].value * f.x + at[2 * side + 1].value * f.y + at[2 * side + 2].value * f.z);
+      }
+      for (std::size_t row = 0; row < 6; ++row) {
+        column[static_cast<Eigen::Index>(row)] += glm::dot(to.unit_forces[row][i], moved);
+      }
+    }
+    motion.col(static_cast<Eigen::Index>(c)) = column;
+  }
+  return motion;
+}
+
+}  // namespace torsion

@@ -162,7 +162,8 @@ struct OwnedRows {
   Range samples;     // in `samples`; tools only
   Range balls;       // in `balls`; tools only
   Range anchors;     // in `anchors`; bodies only
-  Range influences;  // in `influences`; bodies with contact model patch only
+  Range influences;  // in `influences`; bodies with contact model patch only: its tables and, of a
+                     // layer with body model compliance, its kernel (layer_kernel.hpp)
   Range ports;       // in `ports`; body model compliance only, the first of them are its anchors
   Range compliance;  // in `compliance`, row-major, 3 columns a port: 3 rows a port, displacements
                      // by forces, m/N, then 3 rows an anchor, turns by them, rad/N
@@ -407,6 +408,13 @@ struct CellTraction {
 /// (systems/contact_models/influence.hpp) makes. Written by: load.
 struct Influence {
   double value = 0.0;
+};
+
+/// What a region's own tables in `layer_influences` were filled for; zero before. Written by:
+/// patch_forces.
+struct LayerGrid {
+  double thickness = 0.0;     // m
+  glm::dvec2 half_size{0.0};  // m
 };
 
 /// The body's surface under one cell of a region with contact model `patch`. Written by:

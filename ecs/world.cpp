@@ -33,6 +33,7 @@ void World::reserve_models(const Capacities& capacities, const Settings& chosen)
   regions.reserve(capacities.regions);
   cells.reserve(capacities.regions * chosen.grid_side * chosen.grid_side);
   patch_cells.reserve(capacities.influences > 0 ? cells.capacity() : 0);
+  layer_influences.reserve(capacities.regions * capacities.layer_influences);
   mdr_layers.reserve(capacities.mdr_bodies > 0 ? capacities.regions * kMdrLayers : 0);
   region_handles.reserve(capacities.regions);
   settings.append();

@@ -26,6 +26,7 @@ struct Capacities {
   std::uint32_t ports = 0;              // 0 when no body has body model compliance
   std::uint32_t compliance_values = 0;  // likewise
   std::uint32_t influences = 0;         // 0 when no body has contact model patch
+  std::uint32_t layer_influences = 0;   // of one region; 0 when no body has a layer's kernel
 };
 
 /// What can go wrong in a step. The step still ends; the tools' wrenches fade to zero while a fault
@@ -64,10 +65,10 @@ using BodyTable =
     Table<Entity, Pose, Elasticity, Friction, FixedRegion, BodyModels, OwnedRows, Bounds>;
 using ToolTable =
     Table<Entity, ToolPose, ToolMotion, MassProperties, ToolWrench, OwnedRows, Bounds>;
-using RegionTable = Table<RegionIdentity, RegionFrame, RegionCarrier, RegionSupport, SupportField,
-                          TractionFrame, RegionGeometry, RegionMotion, RegionNormal, RegionFriction,
-                          PatchState, SmoothContact, MdrState, RegionField, AnchorTurns,
-                          RegionWrench>;
+using RegionTable =
+    Table<RegionIdentity, RegionFrame, RegionCarrier, RegionSupport, SupportField, TractionFrame,
+          RegionGeometry, RegionMotion, RegionNormal, RegionFriction, PatchState, LayerGrid,
+          SmoothContact, MdrState, RegionField, AnchorTurns, RegionWrench>;
 using CellTable = Table<CellGeometry, CellTraction>;
 using PatchCellTable = Table<PatchCell, PatchChange>;
 using MdrLayerTable = Table<MdrLayer>;
@@ -97,7 +98,8 @@ struct World {
   CellTable cells;  // blocks of grid_side^2 rows, one for each row that `regions` can hold
   PatchCellTable patch_cells;  // the same rows as `cells`; none without contact model patch
   MdrLayerTable mdr_layers;    // kMdrLayers rows a block of cells; none without contact model mdr
-  Table<Footing> footings;     // one a block of cells; none without body model compliance
+  Table<Influence> layer_influences;  // tables of one grid a block of cells; none without layers
+  Table<Footing> footings;            // one a block of cells; none without body model compliance
   Table<RegionCoupling>
       couplings;  // likewise, one for each two blocks: i, j < i at i (i - 1)/2 + j
   AnchorTable anchors;
@@ -117,12 +119,12 @@ struct World {
   [[nodiscard]] auto tables() {
     return std::tie(settings, parts, fields, field_nodes, field_bricks, fixed_volumes, samples,
                     balls, influences, ports, compliance, sections, clock, bodies, tools, regions,
-                    cells, patch_cells, mdr_layers, footings, couplings, anchors);
+                    cells, patch_cells, mdr_layers, layer_influences, footings, couplings, anchors);
   }
   [[nodiscard]] auto tables() const {
     return std::tie(settings, parts, fields, field_nodes, field_bricks, fixed_volumes, samples,
                     balls, influences, ports, compliance, sections, clock, bodies, tools, regions,
-                    cells, patch_cells, mdr_layers, footings, couplings, anchors);
+                    cells, patch_cells, mdr_layers, layer_influences, footings, couplings, anchors);
   }
   [[nodiscard]] auto pools() { return std::tie(body_handles, tool_handles, region_handles); }
   [[nodiscard]] auto pools() const { return std::tie(body_handles, tool_handles, region_handles); }

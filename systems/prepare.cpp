@@ -3,6 +3,9 @@
 
 #include "systems/choose_models.hpp"
 #include "systems/contact_models/influence.hpp"
+#include "systems/contact_models/layer_influence.hpp"
+#include "systems/contact_models/layer_kernel.hpp"
+#include "systems/contact_models/layer_thickness.hpp"
 #include "systems/distance_field_build.hpp"
 #include "systems/frames.hpp"
 #include "systems/prepare_anchors.hpp"
@@ -240,6 +243,22 @@ Result<std::vector<PreparedCompliance>> build_compliances(const World& world,
   return all;
 }
 
+/// Whether the contacts of the body see it as a layer.
+bool has_kernel(const World& world, std::uint32_t row, const BodyModels& models) {
+  return models.contact == ContactModel::kPatch && models.body == BodyModel::kCompliance &&
+         is_layer(world, row);
+}
+
+/// Number of rows in `influences` that a body needs.
+std::uint32_t influence_values(const World& world, std::uint32_t row, const BodyModels& models,
+                               std::uint32_t side) {
+  if (models.contact != ContactModel::kPatch) {
+    return 0;
+  }
+  return static_cast<std::uint32_t>(influence_count(side) +
+                                    (has_kernel(world, row, models) ? kLayerKernelSize : 0));
+}
+
 /// What the chosen models of a body need.
 void append_models(World& world, std::uint32_t row, const BodyDescription& body,
                    const PreparedCompliance& compliant, ModelChoice& choice) {
@@ -266,9 +285,14 @@ void append_models(World& world, std::uint32_t row, const BodyDescription& body,
   }
   if (choice.models.contact == ContactModel::kPatch) {
     const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
-    owned.influences = *world.influences.append(static_cast<std::uint32_t>(influence_count(side)));
+    const double poisson_ratio = body.elasticity.poisson_ratio;
+    const std::size_t tables = influence_count(side);
+    owned.influences = *world.influences.append(influence_values(world, row, choice.models, side));
     std::vector<double> values(owned.influences.count);
-    fill_influences(body.elasticity.poisson_ratio, side, values);
+    fill_influences(poisson_ratio, side, std::span(values).first(tables));
+    if (values.size() > tables) {
+      fill_layer_kernel(poisson_ratio, std::span(values).subspan(tables));
+    }
     std::ranges::transform(values, world.influences.rows<Influence>(owned.influences).begin(),
                            [](double value) { return Influence{value}; });
   }
@@ -283,10 +307,14 @@ Result<Done> append_choices(Simulation& simulation, const SceneDescription& scen
   Settings settings = options.settings;
   settings.grid_side =
       settings.grid_side == 0 ? choose_grid_side(simulation.choices) : settings.grid_side;
-  const auto influences = static_cast<std::uint32_t>(influence_count(settings.grid_side));
-  for (const ModelChoice& choice : simulation.choices) {
-    capacities.influences += choice.models.contact == ContactModel::kPatch ? influences : 0U;
-    capacities.mdr_bodies += choice.models.contact == ContactModel::kMdr ? 1U : 0U;
+  for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
+    const BodyModels& models = simulation.choices[row].models;
+    capacities.influences += influence_values(world, row, models, settings.grid_side);
+    capacities.mdr_bodies += models.contact == ContactModel::kMdr ? 1U : 0U;
+    if (has_kernel(world, row, models)) {
+      capacities.layer_influences =
+          static_cast<std::uint32_t>(layer_influence_count(settings.grid_side));
+    }
   }
   const Result<std::vector<PreparedCompliance>> compliances =
       build_compliances(world, scene, simulation.choices, options);
@@ -302,6 +330,7 @@ Result<Done> append_choices(Simulation& simulation, const SceneDescription& scen
     append_models(world, row, scene.bodies[row], compliances.value()[row], simulation.choices[row]);
   }
   TORSION_ASSERT(world.cells.append(world.cells.capacity()).has_value());
+  TORSION_ASSERT(world.layer_influences.append(world.layer_influences.capacity()).has_value());
   TORSION_ASSERT(world.footings.append(world.footings.capacity()).has_value());
   TORSION_ASSERT(world.couplings.append(world.couplings.capacity()).has_value());
   TORSION_ASSERT(world.mdr_layers.append(world.mdr_layers.capacity()).has_value());

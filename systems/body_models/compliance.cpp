@@ -13,6 +13,8 @@
 #include "systems/body_models/footing.hpp"
 #include "systems/body_models/half_space_fields.hpp"
 #include "systems/body_models/smooth_compliance.hpp"
+#include "systems/contact_models/layer_coupling.hpp"
+#include "systems/contact_models/layer_thickness.hpp"
 #include "systems/frames.hpp"
 #include "systems/scratch.hpp"
 
@@ -93,6 +95,13 @@ void find_own_motion(const CompliantBody& body, Footing& footing) {
       axes.transpose() * (inverse * yielding * inverse) * axes;
 }
 
+/// On a layer the contact itself has what the half-space lacks (patch: layer_kernel.hpp; mdr: its
+/// series).
+void leave_to_contact(Footing& footing) {
+  footing.share = 0.0;
+  footing.own = {};
+}
+
 /// Takes the regions of the body, lays their footings where they have moved, and moves them by
 /// their own loads.
 void find_stands(CompliantBody& body) {
@@ -110,7 +119,11 @@ void find_stands(CompliantBody& body) {
     if (!still_fits(footing, contact)) {
       lay_footing(body.ports, contact, footing);
       footing.serial = world.clock.at<Clock>(0).step * world.footings.size() + stand.block + 1;
-      find_own_motion(body, footing);
+      if (layer_thickness(world, body.row, contact.normal, contact.center) > 0.0) {
+        leave_to_contact(footing);
+      } else {
+        find_own_motion(body, footing);
+      }
     }
     stand.load = contact_load(world, region, footing);
     PortVectors forces;
@@ -123,6 +136,23 @@ void find_stands(CompliantBody& body) {
     stand.motion = rigid_motion(footing, displacements);
     world.regions.at<SupportField>(region) = bending(footing, displacements, stand.motion);
   }
+}
+
+/// The same on a layer, forces and displacements alone: there a contact moves nothing farther away
+/// than some thicknesses.
+Matrix6 on_layer(const CompliantBody& body, const Matrix6& half_space, const Footing& to,
+                 const Footing& from, double thickness) {
+  Matrix6 motion = Matrix6::Zero();
+  if (has_layer_kernel(body.world, body.row)) {
+    const glm::dmat3 layer =
+        layer_coupling(body.world, body.row, from.normal, to.center - from.center, thickness);
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        motion(row, column) = half_space(row, column) + layer[column][row];
+      }
+    }
+  }
+  return motion;
 }
 
 /// What a wrench on one region does to another one, half-space included; the same the other way
@@ -138,10 +168,14 @@ const RegionCoupling& coupling_between(const CompliantBody& body, const Stand& t
     coupling.serial_to = there.serial;
     coupling.serial_from = here.serial;
     Eigen::Map<Matrix6> motion(coupling.motion.data());
-    motion = motion_between(body.ports, there, here);
+    motion = there.share * here.share * motion_between(body.ports, there, here);
     if (there.center != here.center) {
       motion += half_space_coupling({there.center, there.normal}, {here.center, here.normal},
                                     body.world.bodies.at<Elasticity>(body.row));
+    }
+    const double thickness = layer_thickness(body.world, body.row, here.normal, here.center);
+    if (thickness > 0.0) {
+      motion = on_layer(body, motion, there, here, thickness);
     }
   }
   return coupling;

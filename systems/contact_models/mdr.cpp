@@ -7,14 +7,13 @@
 #include "systems/contact_models/contact_shape.hpp"
 #include "systems/contact_models/elliptic_contact.hpp"
 #include "systems/contact_models/friction_decay.hpp"
+#include "systems/contact_models/layer_thickness.hpp"
 #include "systems/contact_models/mdr_layers.hpp"
 #include "systems/frames.hpp"
 #include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {
-
-constexpr double kWide = 4.0;  // a body at least so many times as wide as thick is a layer
 
 /// What a region's overlap says of its contact.
 struct RoundContact {
@@ -28,23 +27,6 @@ struct RoundContact {
   double turn_stiffness = 1.0;
   double torque_share = 1.0;
 };
-
-/// Thickness under the contact of a body that is a layer on a fixed face, m; 0 for others.
-double layer_thickness(const World& world, std::uint32_t body, const RegionFrame& frame,
-                       const glm::dvec3& rest_point) {
-  const FixedRegion& fixed = world.bodies.at<FixedRegion>(body);
-  if (fixed.kind != FixedKind::kFace || glm::dot(fixed.normal, frame.normal) < 0.9) {
-    return 0.0;
-  }
-  const double thickness = glm::dot(rest_point - fixed.point, fixed.normal);
-  const Bounds& bounds = world.bodies.at<Bounds>(body);
-  const glm::dvec3 size = bounds.highest - bounds.lowest;
-  const glm::dvec3 across = size - size * glm::abs(fixed.normal);
-  const double width = std::min({across.x > 0.1 * thickness ? across.x : 1e300,
-                                 across.y > 0.1 * thickness ? across.y : 1e300,
-                                 across.z > 0.1 * thickness ? across.z : 1e300});
-  return width > kWide * thickness ? thickness : 0.0;
-}
 
 /// What does not depend on how the contact was found: stiffnesses of an ellipse that presses with
 /// `round_share` of Hertz' pressure.
@@ -145,12 +127,10 @@ RoundContact contact_of(const World& world, std::uint32_t region) {
   if (smooth.share > 0.0) {
     contact = mix(contact, contact_of_shapes(smooth, elasticity), smooth.share);
   }
-  // A body model in series has the body's thickness itself.
-  const bool in_series = world.bodies.at<BodyModels>(identity.body).body == BodyModel::kCompliance;
+  // Whatever the body model: compliance leaves layers to their contacts.
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
   const glm::dvec3 rest_point = grid_to_body(frame, {contact.center, 0.0});
-  const double thickness =
-      in_series ? 0.0 : layer_thickness(world, identity.body, frame, rest_point);
+  const double thickness = layer_thickness(world, identity.body, frame.normal, rest_point);
   if (thickness > 0.0) {
     contact.force *= layer_force_share(contact.radius / thickness, elasticity.poisson_ratio);
   }

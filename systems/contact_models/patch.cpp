@@ -6,6 +6,7 @@
 
 #include "systems/body_models/support_field.hpp"
 #include "systems/contact_models/friction_decay.hpp"
+#include "systems/contact_models/region_influences.hpp"
 #include "systems/frames.hpp"
 #include "systems/patch_grid.hpp"
 #include "systems/scratch.hpp"
@@ -42,15 +43,15 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
   const Settings& settings = world.settings.at<Settings>(0);
   const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const auto influences =
-      world.influences.rows<Influence>(world.bodies.at<OwnedRows>(identity.body).influences);
-  static_assert(sizeof(Influence) == sizeof(double));
+  const RegionInfluences influences = region_influences(world, region);
+  if (influences.changed) {
+    world.regions.at<PatchState>(region).moved = 1;
+  }
   PatchProblem problem;
-  problem.influences = influence_tables({&influences.front().value, influences.size()},
-                                        settings.grid_side, patch_aspect(frame.half_size));
+  problem.influences = influences.tables;
   problem.compliance = 2.0 * frame.half_size.x /
                        (static_cast<double>(settings.grid_side) * elasticity.shear_modulus());
-  problem.coupled = elasticity.poisson_ratio < 0.5;
+  problem.coupled = influences.coupled;
   problem.sweeps = settings.sweeps;
   return {world,
           context.scratch.patch_columns,

@@ -84,6 +84,7 @@ World small_world(unsigned seed) {
   capacities.regions = 4;
   capacities.influences = 3;
   capacities.mdr_bodies = 1;
+  capacities.layer_influences = 336;
   capacities.ports = 3;
   capacities.compliance_values = 162;
   Settings settings;
@@ -105,6 +106,7 @@ World small_world(unsigned seed) {
   world.influences.append(3);
   world.ports.append(3);
   world.compliance.append(162);
+  world.layer_influences.append(world.layer_influences.capacity());
   world.footings.append(4);
   world.couplings.append(6);
   world.patch_cells.append(world.cells.size());

@@ -1,0 +1,56 @@
+#pragma once
+
+// How a point force on an elastic layer, bonded to a rigid base, displaces the layer's surface
+// beyond what it would do to a half-space: a smooth function of the distance.
+
+#include <cstddef>
+#include <span>
+
+#include <glm/vec2.hpp>
+
+namespace torsion {
+
+/// Compliance of the surface under waves of wave number k, times G k; u = k h, h the thickness.
+/// Tractions and displacements along the wave and across it go with sin and cos of one phase:
+/// pressure p cos(kx) sinks the surface by `sinking` p cos(kx) and moves it by -`mixed` p sin(kx)
+/// along x; traction q sin(kx) along x moves it by `along` q sin(kx) and sinks it by -`mixed` q
+/// cos(kx); traction across moves it by `across` times itself.
+struct WaveCompliance {
+  double sinking = 0.0;
+  double along = 0.0;
+  double across = 0.0;
+  double mixed = 0.0;
+};
+
+/// A layer's, less the half-space's (1 - nu, 1 - nu, 1, (1 - 2 nu) / 2).
+/// Source: Navier's equations with displacement zero at the base: U = (alpha - z P / 2) exp(-kz)
+/// and so on, P the dilatation over 1 - 2 nu, finite at nu = 0.5 (docs/models.md, "Layers"); across
+/// the wave tanh(u).
+/// @param u  > 0
+WaveCompliance layer_wave_compliance(double poisson_ratio, double u);
+
+inline constexpr std::size_t kLayerSteps = 768;
+inline constexpr double kLayerReach = 12.0;  // thicknesses: there the layer hardly moves any more
+/// Numbers that describe the kernel of one Poisson's ratio.
+inline constexpr std::size_t kLayerKernelSize = 4 * (kLayerSteps + 1);
+
+/// Fills the inverse Hankel transforms of that compliance by Gauss-Legendre quadrature.
+/// @param kernel  (kLayerKernelSize) out
+void fill_layer_kernel(double poisson_ratio, std::span<double> kernel);
+
+/// Displacement (first letter) by a unit traction (second letter), as InfluenceKind, less the
+/// half-space's, times G h, over the force.
+struct LayerResponse {
+  double zz = 0.0;
+  double xx = 0.0;
+  double xy = 0.0;
+  double yy = 0.0;
+  double zx = 0.0;
+  double zy = 0.0;
+};
+
+/// @param offset  from the force, over the thickness
+LayerResponse layer_response(std::span<const double> kernel, double poisson_ratio,
+                             const glm::dvec2& offset);
+
+}  // namespace torsion

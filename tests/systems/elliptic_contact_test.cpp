@@ -58,6 +58,56 @@ TEST(EllipticContactTest, AxesForceAndLargestCoupleAreHertzs) {
   }
 }
 
+/// Turns of the plane under the tractions q_x = -A y / w, q_y = B x / w on the ellipse x^2 + (y /
+/// b)^2 < 1, w^2 = 1 - x^2 - (y / b)^2, by Cerruti's solution: displacements of a place near the
+/// centre over its distance, by the trapezoidal rule over all directions, which converges
+/// exponentially. Along a direction the integral of (y + r sin) / w over the chord is pi R (y + r_m
+/// sin), r_m its middle.
+struct Turned {
+  double x_of_a, x_of_b;  // -u_x / y
+  double y_of_a, y_of_b;  // u_y / x
+};
+
+Turned turned_by(double b, double nu) {
+  constexpr int kDirections = 4000;
+  Turned turned{};
+  for (int k = 0; k < kDirections; ++k) {
+    const double angle = std::numbers::pi * (k + 0.5) / kDirections;
+    const double c = std::cos(angle);
+    const double s = std::sin(angle);
+    const double reach = b / std::hypot(b * c, s);
+    const double weight = std::numbers::pi / kDirections * 0.5 * reach;  // 1 / (2 pi G) times pi
+    // Middles of the chords through (0, 1) and (1, 0), per distance.
+    const double from_y = -reach * reach * s / (b * b);
+    const double from_x = -reach * reach * c;
+    const double xx = 1.0 - nu + nu * c * c;
+    const double yy = 1.0 - nu + nu * s * s;
+    const double xy = nu * c * s;
+    turned.x_of_a += weight * xx * (1.0 + from_y * s);
+    turned.x_of_b -= weight * xy * from_y * c;
+    turned.y_of_a -= weight * xy * from_x * s;
+    turned.y_of_b += weight * yy * (1.0 + from_x * c);
+  }
+  return turned;
+}
+
+TEST(EllipticContactTest, ABondedEllipseTurnsAsCerrutisSolutionSays) {
+  for (const double nu : {0.0, 0.3, 0.5}) {
+    for (const double b : {1.0, 0.9999, 0.9995, 0.999, 0.9, 0.5, 0.25, 0.05}) {
+      const Turned turned = turned_by(b, nu);
+      // -u_x / y = u_y / x = 1 rad, G = 1
+      const double determinant = turned.x_of_a * turned.y_of_b - turned.x_of_b * turned.y_of_a;
+      const double of_a = (turned.y_of_b - turned.x_of_b) / determinant;
+      const double of_b = (turned.x_of_a - turned.y_of_a) / determinant;
+      const double couple = 2.0 * std::numbers::pi / 3.0 * b * (of_a * b * b + of_b);
+      const double of_disc = 16.0 / 3.0 * std::pow(b, 1.5);
+      // What the series and the quotients of integrals leave where they meet, at b = 0.9995.
+      EXPECT_NEAR(bonded_turn_share(b, nu) * of_disc / couple, 1.0, 1e-8) << b << " " << nu;
+    }
+  }
+  EXPECT_NEAR(bonded_turn_share(1.0, 0.3), 1.0, 1e-14);  // Reissner and Sagoci
+}
+
 /// Cells of a grid over a paraboloid of these curvatures, turned by `angle` about its apex.
 struct Overlap {
   RegionFrame frame;

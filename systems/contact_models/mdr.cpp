@@ -129,8 +129,8 @@ RoundContact contact_of(const World& world, std::uint32_t region) {
   }
   // Whatever the body model: compliance leaves layers to their contacts.
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const glm::dvec3 rest_point = grid_to_body(frame, {contact.center, 0.0});
-  const double thickness = layer_thickness(world, identity.body, frame.normal, rest_point);
+  const double thickness = layer_thickness(world, identity.body, frame.normal,
+                                           world.regions.at<RegionGeometry>(region).rest_point);
   if (thickness > 0.0) {
     contact.force *= layer_force_share(contact.radius / thickness, elasticity.poisson_ratio);
   }
@@ -237,7 +237,8 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
   tangential.stick_radius = round.radius;
   tangential.stick_turn = layers.back().turn;
   RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-  geometry.rest_point = grid_to_body(frame, {round.center, 0.0});
+  const double height = body_to_grid(frame, geometry.rest_point).z;
+  geometry.rest_point = grid_to_body(frame, {round.center, height});
   geometry.equivalent_point = geometry.rest_point - frame.normal * round.depth;
   geometry.radius = round.radius;
   geometry.area = std::numbers::pi * round.radius * round.radius;

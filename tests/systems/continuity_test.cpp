@@ -101,6 +101,33 @@ TEST(ContinuityTest, RegionsMergeAndSplit) {
   expect_continuous(scene, press, 2.0, 3);
 }
 
+class HalfSpaceContinuityTest : public testing::TestWithParam<ContactModel> {
+ protected:
+  /// Two feet side by side, the second a little higher, over a body with the model in question.
+  [[nodiscard]] static SceneDescription scene(std::vector<glm::dvec3> places) {
+    SceneDescription scene = slab_with_feet(places, 0.02);
+    scene.bodies[0].models.contact = GetParam();
+    scene.bodies[0].models.body = BodyModel::kNone;
+    return scene;
+  }
+};
+
+TEST_P(HalfSpaceContinuityTest, RegionFormsAndDies) {
+  const Path down_and_up = [](double t) {
+    return at({1e-3 * t, 1e-4 - 6e-4 * std::sin(3.14159265 * t), 0.0}, 0.4 * t);
+  };
+  expect_continuous(scene({{0.0, 0.0, 0.0}}), down_and_up, 1.0, 1);
+}
+
+TEST_P(HalfSpaceContinuityTest, RegionsMeetAndPart) {
+  const Path press = [](double t) {
+    return at({0.0, 1e-4 - 2.6e-3 * std::sin(3.14159265 * t), 0.0}, 0.1 * t);
+  };
+  expect_continuous(scene({{-0.008, 0.0, 0.0}, {0.008, 2e-5, 0.0}}), press, 2.0, 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, HalfSpaceContinuityTest, testing::Values(ContactModel::kMdr));
+
 TEST(ContinuityTest, AxisEntersAndLeavesTheRegion) {
   // The tool's mass centre passes over the contact while it turns: the foot is not under the mass
   // centre, the tool moves so that the foot stays where it is.

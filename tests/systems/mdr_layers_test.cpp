@@ -43,7 +43,7 @@ void follow_hysteresis(const Loading& loading, const Move& move, double unit, do
 }
 
 TEST(MdrLayersTest, FirstTwistAndFirstPushFollowTheExactCurves) {
-  for (const double poisson : {0.0, 0.3, 0.45, 0.5}) {
+  for (const double poisson : {0.0, 0.3, 0.4999, 0.5}) {
     MdrSprings twisted(poisson);
     MdrSprings pushed(poisson);
     const reference::LubkinContact lubkin = twisted.lubkin();
@@ -86,7 +86,7 @@ TEST(MdrLayersTest, UnloadingFromFullSlipFollowsMasingsRule) {
 }
 
 TEST(MdrLayersTest, TwistAtConstantForceFollowsLubkinsHysteresis) {
-  for (const double poisson : {0.0, 0.3, 0.45, 0.5}) {
+  for (const double poisson : {0.0, 0.3, 0.4999, 0.5}) {
     MdrSprings springs(poisson);
     const reference::LubkinContact exact = springs.lubkin();
     follow_hysteresis([&](double twist) { return reference::torque(exact, twist); },

@@ -206,7 +206,7 @@ TEST_P(ShapeTest, ABallOfFineFacetsFeelsLikeTheExactBall) {
 TEST(MdrMeshTest, EdgesOfAQuarterOfTheRadiusFeelSmooth) {
   // The goal. Over a triangle a face lies the sum of its squared edges over 24 R inside the
   // sphere. Squares of a quarter of the radius, with diagonals of a third: 1 % of the depth, 2.1 %
-  // of the torque; where no edge is longer than a quarter half of that, and what the facets' lie
+  // of the torque; where no edge is longer than a quarter half of that, and where the facets lie
   // under the contact does.
   expect_facets_feel_smooth({.model = ContactModel::kMdr}, 44, 0.021);
   expect_facets_feel_smooth({.model = ContactModel::kMdr}, 64, 0.015);

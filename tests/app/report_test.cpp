@@ -66,7 +66,7 @@ struct Bounds {
 // the contact; on the cubes also the reference's own error (the report states it) and, at nu = 0.3,
 // the coupling of pressure and friction, which mdr leaves out (2.8 % of the force).
 constexpr Bounds kBounds[] = {
-    {"sphere_twist mdr none 256", 0.0013, 0.0035, 0.0105},
+    {"sphere_twist mdr none 256", 0.0002, 0.001, 0.0105},
     {"sphere_twist patch none 64", 0.009, 0.11, 0.07},
     {"sphere_twist patch none 144", 0.005, 0.015, 0.03},
     {"sphere_shear mdr none 256", 0.0016, -1.0, -1.0},
@@ -79,6 +79,7 @@ constexpr Bounds kBounds[] = {
     {"ball_on_cube_nu30 patch none 144", 0.02, 0.021, 0.032},
     {"ball_on_cube_nu49 mdr none 256", 0.0014, 0.0065, 0.0105},
     {"ball_on_cube_nu49 patch none 144", 0.01, 0.018, 0.025},
+    {"mallet_on_ellipsoid mdr none 256", 0.022, 0.045, -1.0},
 };
 
 void expect_within(const std::string& field, double bound, const std::string& what) {

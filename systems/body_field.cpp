@@ -6,17 +6,13 @@
 #include <glm/geometric.hpp>
 
 #include "systems/frames.hpp"
+#include "systems/smooth_step.hpp"
 
 namespace torsion {
 namespace {
 
 constexpr double kHeldBand =
     0.03;  // of the body's size: over this width beside what is fixed motion fades to zero
-
-double smooth_step(double x) {
-  const double t = std::clamp(x, 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
 
 double distance_share_from_volume(const FixedVolume& volume, const glm::dvec3& point) {
   constexpr double kBand = 0.1;  // of the volume's half size

@@ -9,16 +9,12 @@
 #include "systems/body_models/main_beam.hpp"
 #include "systems/frames.hpp"
 #include "systems/half_space_source.hpp"
+#include "systems/smooth_step.hpp"
 
 namespace torsion {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-
-double smooth_step(double x) {
-  const double t = std::clamp(x, 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
 
 /// Height over the fixed region, one at `contact`: over a fixed face measured from the face, else
 /// along `direction` from q_f. Where the contact is less than `least` high the heights fade to zero

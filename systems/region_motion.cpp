@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "systems/frames.hpp"
+#include "systems/smooth_step.hpp"
 
 namespace torsion {
 namespace {
@@ -11,11 +12,6 @@ namespace {
 constexpr double kBlendBand = 0.1;  // of the disc's radius: where "through" becomes "past"
 constexpr double kGrazing =
     1e-3;  // |cos| of axis and normal below which the axis lies in the tangent plane
-
-double smooth_step(double x) {
-  const double t = std::clamp(x, 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
 
 /// Distance from `point` to the fixed point, projected on the axis; to the fixed face along the
 /// axis where a face is fixed. At least `least`.

@@ -7,6 +7,7 @@
 
 #include "systems/body_models/main_beam.hpp"
 #include "systems/frames.hpp"
+#include "systems/smooth_step.hpp"
 
 namespace torsion {
 namespace {
@@ -36,11 +37,6 @@ double place_along(const MainBeam& beam, const FixedRegion& fixed, const glm::dv
   }
   const double steepness = std::max(glm::dot(beam.direction, fixed.normal), 1e-3);
   return glm::dot(from_root, fixed.normal) / steepness;
-}
-
-double smooth_step(double x) {
-  const double t = std::clamp(x, 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
 }
 
 /// u(a) = u(s) + rot(s) x r - nu e(s) r. The root keeps a free bar from contracting: the last term

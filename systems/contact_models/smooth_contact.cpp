@@ -12,6 +12,7 @@
 #include "systems/distance_shapes.hpp"
 #include "systems/frames.hpp"
 #include "systems/grid_cells.hpp"
+#include "systems/smooth_step.hpp"
 #include "systems/surface_piece.hpp"
 
 namespace torsion {
@@ -25,8 +26,7 @@ constexpr double kOtherPartFar = 1.0;  // distance of other parts, likewise
 constexpr double kOtherPartNear = 0.8;
 
 double rising(double x, double from, double to) {
-  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
+  return smooth_step((x - from) / (to - from));
 }
 
 /// One exact part seen from the region's grid: x_part = turn x + shift.

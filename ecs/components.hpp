@@ -372,6 +372,8 @@ inline constexpr std::uint32_t kAnchorsPerBody = 48;
 /// anchor_motions; all zero with other body models than compliance.
 struct AnchorTurns {
   double turn[kAnchorsPerBody] = {};  // rad
+  double support = 0.0;  // rad: RegionSupport's part about the normal, from which this step's
+                         // contact saw the tool
 };
 
 /// Written by: region_wrenches.

@@ -79,8 +79,9 @@ constexpr double kLeastTurn = 1e-4;  // rad; what is below half of it moves alon
 
 /// Angles of the anchors about a slot's axis as far as they are drawn as turns; empty where there
 /// are none worth it. Between half of the least turn and that they fade in.
+/// @param share  out: how far
 std::vector<double> anchor_turns(const Snapshot& snapshot, const Slot& slot, std::size_t anchors,
-                                 std::size_t centers) {
+                                 std::size_t centers, double& share) {
   std::vector<double> turns;
   if (slot.twist.discs.radius <= 0.0) {
     return turns;
@@ -91,7 +92,7 @@ std::vector<double> anchor_turns(const Snapshot& snapshot, const Slot& slot, std
   for (const double turn : turns) {
     largest = std::max(largest, std::abs(turn));
   }
-  const double share = smooth_step(2.0 * largest / kLeastTurn - 1.0);
+  share = smooth_step(2.0 * largest / kLeastTurn - 1.0);
   if (share == 0.0) {
     return {};
   }
@@ -110,12 +111,12 @@ void fill_turns(const Snapshot& snapshot, std::span<const InterpolationRow> inve
                 std::span<glm::dvec3> values) {
   double squares = 0.0;
   for (Slot& slot : field.slots) {
-    const std::vector<double> turns = anchor_turns(snapshot, slot, anchors, centers.size());
+    const std::vector<double> turns =
+        anchor_turns(snapshot, slot, anchors, centers.size(), slot.turn.share);
     if (turns.empty()) {
       continue;
     }
     BodyTurn& turn = slot.turn;
-    turn.on = true;
     turn.point = slot.twist.discs.center;
     turn.direction = slot.twist.discs.normal;
     solve_interpolation(inverse, turns, turn.angle);
@@ -132,6 +133,27 @@ void fill_turns(const Snapshot& snapshot, std::span<const InterpolationRow> inve
   }
 }
 
+/// The material under a contact has turned as the step says, which is what the tool was seen from;
+/// the interpolation is off by some percent of it.
+void meet_supports(const Snapshot& snapshot, std::span<const glm::dvec3> centers,
+                   BodyField& field) {
+  for (Slot& slot : field.slots) {
+    BodyTurn& turn = slot.turn;
+    double missing = snapshot.regions.at<AnchorTurns>(slot.region).support;
+    for (const Slot& other : field.slots) {
+      if (other.turn.share > 0.0) {
+        const double by_region = &other == &slot ? 0.0 : other.twist.angle(turn.point);
+        missing -= (by_region + interpolate(other.turn.angle, centers, turn.point)) *
+                   glm::dot(other.turn.direction, turn.direction);
+      }
+    }
+    turn.under_contact = turn.share > 0.0
+                             ? interpolate(turn.angle, centers, turn.point) + turn.share * missing
+                             : 0.0;
+    turn.radius = slot.twist.discs.radius;
+  }
+}
+
 /// Displacement along the axes, from end to end of the body.
 void fill_middles(BodyField& field) {
   const Bounds& bounds = field.world.bodies.at<Bounds>(field.body);
@@ -139,7 +161,7 @@ void fill_middles(BodyField& field) {
   const glm::dvec3 half = 0.5 * (bounds.highest - bounds.lowest);
   for (Slot& slot : field.slots) {
     BodyTurn& turn = slot.turn;
-    if (!turn.on) {
+    if (turn.share <= 0.0) {
       continue;
     }
     const double reach = glm::dot(half, glm::abs(turn.direction));
@@ -185,6 +207,7 @@ BodyField body_field(const World& world, const Snapshot& snapshot, const FrameWo
                                        ? center_values(snapshot, data, field.slots, centers)
                                        : center_values(snapshot, data, {}, centers);
   fill_turns(snapshot, inverse, data.anchors.count, centers, field, values);
+  meet_supports(snapshot, centers, field);
   solve_interpolation(inverse, centers, values, field.weights);
   fill_middles(field);
   return field;
@@ -207,11 +230,15 @@ double freedom(const BodyField& field, const glm::dvec3& point) {
   return share;
 }
 
+double share_under_contact(const BodyTurn& turn, const glm::dvec3& point) {
+  return 1.0 - smooth_step(glm::distance(point, turn.point) / turn.radius - 1.0);
+}
+
 glm::dvec3 middle_at(const BodyField& field, const glm::dvec3& point) {
   glm::dvec3 sum(0.0);
   for (const Slot& slot : field.slots) {
     const BodyTurn& turn = slot.turn;
-    if (turn.on && turn.weight > 0.0) {
+    if (turn.share > 0.0 && turn.weight > 0.0) {
       const double along = glm::dot(point - turn.point, turn.direction) - turn.lowest;
       const double place = std::clamp(along / turn.spacing, 0.0, BodyTurn::kMiddles - 1.0);
       const auto below = std::min(static_cast<std::size_t>(place), BodyTurn::kMiddles - 2);

@@ -21,13 +21,15 @@ namespace torsion {
 struct BodyTurn {
   static constexpr std::size_t kMiddles = 33;
 
-  bool on = false;
-  glm::dvec3 point{0.0};      // m, body: on the axis
-  glm::dvec3 direction{0.0};  // body, unit
-  ScalarWeights angle;        // rad
-  double lowest = 0.0;        // m: along the axis from `point` to the first of `middle`
-  double spacing = 1.0;       // m
-  double weight = 0.0;        // of this axis among the body's; they add to 1
+  double share = 0.0;          // of the angles that the body model says; 0: nothing is turned
+  glm::dvec3 point{0.0};       // m, body: on the axis
+  glm::dvec3 direction{0.0};   // body, unit
+  ScalarWeights angle;         // rad
+  double under_contact = 0.0;  // rad: within the contact, where the step has one rigid motion
+  double radius = 0.0;         // m: of the contact
+  double lowest = 0.0;         // m: along the axis from `point` to the first of `middle`
+  double spacing = 1.0;        // m
+  double weight = 0.0;         // of this axis among the body's; they add to 1
   std::array<glm::dvec3, kMiddles> middle{};  // m, body: displacement of points on the axis
 };
 
@@ -57,7 +59,7 @@ struct BodyField {
   double held_band = 0.0;  // m
   InterpolationWeights weights;
   bool has_weights = false;
-  bool turns = false;  // some slot's `turn` is on
+  bool turns = false;  // some slot's `turn` has a share
   std::vector<Slot> slots;
   std::vector<Toucher> touchers;
 };
@@ -67,6 +69,9 @@ BodyField body_field(const World& world, const Snapshot& snapshot, const FrameWo
 
 /// How freely a point moves: 0 on the fixed region, 1 a little away from it.
 double freedom(const BodyField& field, const glm::dvec3& point);
+
+/// Share of `under_contact` in a point's angle: 1 within the contact, 0 from two radii on.
+double share_under_contact(const BodyTurn& turn, const glm::dvec3& point);
 
 /// Displacement of the axes about which the body turns, at the height of a point [m, body].
 glm::dvec3 middle_at(const BodyField& field, const glm::dvec3& point);

@@ -139,7 +139,7 @@ struct VertexBlock {
   std::array<double, kPointBlock> free;              // 0: fixed, 1: not
   BlockVectors rest;                                 // m, body
   BlockVectors smooth;                               // m, body: the interpolation's, unturned
-  std::array<BlockColumn, kMaxRegionsPerBody> turn;  // rad: of slots whose turn is on
+  std::array<BlockColumn, kMaxRegionsPerBody> turn;  // rad: of slots with a share of the turn
   BlockVectors turned;                               // m, body: by all angles
   BlockVectors turned_by_regions;                    // m, body: without the whole body's
   BlockVectors dents;                                // m, body
@@ -158,14 +158,18 @@ void interpolate_block(const BodyField& field, VertexBlock& block) {
   std::array<ScalarColumn, kMaxRegionsPerBody> columns;
   std::size_t turning = 0;
   for (std::size_t slot = 0; slot < field.slots.size(); ++slot) {
-    if (field.slots[slot].turn.on) {
+    if (field.slots[slot].turn.share > 0.0) {
       columns[turning++] = {&field.slots[slot].turn.angle, &block.turn[slot]};
     }
   }
   interpolate_block(field.weights, block.rest, block.smooth, std::span(columns).first(turning));
-  for (const ScalarColumn& column : std::span(columns).first(turning)) {
-    for (std::size_t i = 0; i < block.count; ++i) {
-      (*column.values)[i] *= static_cast<float>(block.free[i]);
+  for (std::size_t slot = 0; slot < field.slots.size(); ++slot) {
+    const BodyTurn& turn = field.slots[slot].turn;
+    for (std::size_t i = 0; i < (turn.share > 0.0 ? block.count : 0); ++i) {
+      const auto under = static_cast<float>(share_under_contact(turn, block.rest.at(i)));
+      float& angle = block.turn[slot][i];
+      angle += under * (static_cast<float>(turn.under_contact) - angle);
+      angle *= static_cast<float>(block.free[i]);
     }
   }
 }
@@ -184,7 +188,7 @@ void turn_vertices(const BodyField& field, const VertexRows& rows, VertexBlock& 
     if (field.turns) {
       turn_block(rows.axes[slot], angles, block.turned_by_regions);
     }
-    if (field.slots[slot].turn.on) {
+    if (field.slots[slot].turn.share > 0.0) {
       for (std::size_t i = 0; i < block.count; ++i) {
         angles[i] += block.turn[slot][i];
       }
@@ -210,7 +214,7 @@ void turn_displacements(const BodyField& field, VertexBlock& block) {
   }
   for (std::size_t slot = 0; slot < field.slots.size(); ++slot) {
     const BodyTurn& turn = field.slots[slot].turn;
-    if (turn.on) {
+    if (turn.share > 0.0) {
       const TwistAxis direction{glm::vec4(0.0F), glm::vec4(glm::vec3(turn.direction), 0.0F)};
       turn_block(direction, block.turn[slot], block.smooth);
       turn_block(direction, block.turn[slot], block.dents);

@@ -307,6 +307,9 @@ void move_anchors_of(World& world, std::uint32_t body) {
     forces_at_ports(footing, contact_load(world, region, footing).moments, forces);
     AnchorTurns& turns = world.regions.at<AnchorTurns>(region);
     turns = AnchorTurns{};
+    const RegionSupport& support = world.regions.at<RegionSupport>(region);
+    turns.support = glm::dot(support.rotation - support.rotation_step,
+                             world.regions.at<RegionFrame>(region).normal);
     move_anchors(ports_of(world, body), footing, forces, anchors, turns);
   }
 }

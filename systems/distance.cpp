@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
 
 #include "systems/distance_field.hpp"
 #include "systems/distance_shapes.hpp"
@@ -136,24 +137,29 @@ ColumnPlacement column_placement(const Pose& part, const Pose& frame) {
 }
 
 // The loops below vectorise only where the compiler knows that what they write is nothing that they
-// read: hence the local copies and __restrict.
+// read: hence the local copies and __restrict, which it believes of parameters only.
 
+/// `to` = row . (x, y, z) + shift
 TORSION_WIDEST
-void load_columns(const ColumnPlacement& placement, const DistanceColumns& columns,
-                  std::size_t first, std::size_t count, Block& block) {
-  const glm::dmat3 r = placement.turn;
-  const glm::dvec3 shift = placement.shift;
+void place_coordinate(const glm::dvec3& row, double shift, const DistanceColumns& columns,
+                      std::size_t first, std::size_t count, double* __restrict to) {
   const double* __restrict x = columns.x.data() + first;
   const double* __restrict y = columns.y.data() + first;
   const double* __restrict z = columns.z.data() + first;
-  double* __restrict part_x = block.x.data();
-  double* __restrict part_y = block.y.data();
-  double* __restrict part_z = block.z.data();
+  const double row_x = row.x;
+  const double row_y = row.y;
+  const double row_z = row.z;
   for (std::size_t i = 0; i < count; ++i) {
-    part_x[i] = r[0].x * x[i] + r[1].x * y[i] + r[2].x * z[i] + shift.x;
-    part_y[i] = r[0].y * x[i] + r[1].y * y[i] + r[2].y * z[i] + shift.y;
-    part_z[i] = r[0].z * x[i] + r[1].z * y[i] + r[2].z * z[i] + shift.z;
+    to[i] = row_x * x[i] + row_y * y[i] + row_z * z[i] + shift;
   }
+}
+
+void load_columns(const ColumnPlacement& placement, const DistanceColumns& columns,
+                  std::size_t first, std::size_t count, Block& block) {
+  const glm::dmat3 rows = glm::transpose(placement.turn);
+  place_coordinate(rows[0], placement.shift.x, columns, first, count, block.x.data());
+  place_coordinate(rows[1], placement.shift.y, columns, first, count, block.y.data());
+  place_coordinate(rows[2], placement.shift.z, columns, first, count, block.z.data());
 }
 
 /// Turns gradients back into the columns' frame.

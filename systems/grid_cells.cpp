@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <functional>
 
 #include "systems/distance_shapes.hpp"
 #include "systems/frames.hpp"
@@ -52,27 +51,32 @@ void place_centers(const Grid& grid) {
   }
 }
 
-/// The largest of `values` and 0; NaN counts as 0. Several at a time, as one at a time would wait
-/// for the one before.
-template <class F>
-double largest(std::span<const double> values, F&& of) {
-  constexpr std::size_t kLanes = 8;
+/// The largest of sign * values and 0; NaN counts as 0. Several at a time, as one at a time would
+/// wait for the one before.
+TORSION_WIDEST
+double largest(const double* values, std::size_t count, double sign) {
+  constexpr std::size_t kLanes = 16;
   std::array<double, kLanes> lanes{};
   std::size_t first = 0;
-  for (; first + kLanes <= values.size(); first += kLanes) {
+  for (; first + kLanes <= count; first += kLanes) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      lanes[lane] = larger(of(values[first + lane]), lanes[lane]);
+      lanes[lane] = larger(sign * values[first + lane], lanes[lane]);
     }
   }
-  for (; first < values.size(); ++first) {
-    lanes[0] = larger(of(values[first]), lanes[0]);
+  for (; first < count; ++first) {
+    lanes[0] = larger(sign * values[first], lanes[0]);
   }
-  return *std::ranges::max_element(lanes);
+  double most = 0.0;
+  for (const double lane : lanes) {
+    most = larger(lane, most);
+  }
+  return most;
 }
 
 /// How far the cells' places are below the grid's plane, m.
 double deepest_place(const Grid& grid) {
-  return largest(grid.scratch.cell_columns.points.z, std::negate<>());
+  const auto z = grid.scratch.cell_columns.points.z;
+  return largest(z.data(), z.size(), -1.0);
 }
 
 /// Radius about the grid's origin that holds what of a surface can lie under the cells' centres and
@@ -106,7 +110,7 @@ double step_to_surface(const DistanceColumns& points, double size) {
     z[cell] = height < size ? height : size;
     value[cell] = height < 0.0 ? std::abs(change) : 0.0;
   }
-  return largest(points.value, std::identity());
+  return largest(value, count, 1.0);
 }
 
 /// Puts the cells' heights on the tool's underside. Leaves the tool's normals of the last step but
@@ -130,28 +134,32 @@ void find_tool_surface(const Grid& grid) {
   std::ranges::copy(columns.points.gradient_z, columns.tool_z.begin());
 }
 
-/// Depth under the body's rest surface, and how much it changes across the cell, from the surfaces'
-/// first-order shape there.
+/// Depth under the body's rest surface, from the surface's first-order shape there.
+TORSION_WIDEST
+void find_depths(const DistanceColumns& points, std::size_t count, double* __restrict depth) {
+  const double* value = points.value.data();
+  const double* body_z = points.gradient_z.data();
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    depth[cell] = -value[cell] / larger(body_z[cell], kSteepest);
+  }
+}
+
+/// How much the depth changes across a cell, from both surfaces' first-order shape there.
 /// @param half  m: half a cell
 TORSION_WIDEST
-void find_depths(const CellColumns& columns, const glm::dvec2& half) {
-  const DistanceColumns& points = columns.points;
-  const std::size_t count = points.z.size();
+void find_depth_changes(const CellColumns& columns, const glm::dvec2& half, std::size_t count,
+                        double* __restrict depth_change) {
   const double half_x = half.x;
   const double half_y = half.y;
-  const double* __restrict value = points.value.data();
-  const double* __restrict body_x = points.gradient_x.data();
-  const double* __restrict body_y = points.gradient_y.data();
-  const double* __restrict body_z = points.gradient_z.data();
-  const double* __restrict tool_x = columns.tool_x.data();
-  const double* __restrict tool_y = columns.tool_y.data();
-  const double* __restrict tool_z = columns.tool_z.data();
-  double* __restrict depth = columns.depth.data();
-  double* __restrict depth_change = columns.depth_change.data();
+  const double* body_x = columns.points.gradient_x.data();
+  const double* body_y = columns.points.gradient_y.data();
+  const double* body_z = columns.points.gradient_z.data();
+  const double* tool_x = columns.tool_x.data();
+  const double* tool_y = columns.tool_y.data();
+  const double* tool_z = columns.tool_z.data();
   for (std::size_t cell = 0; cell < count; ++cell) {
     const double over_body_slope = 1.0 / larger(body_z[cell], kSteepest);
     const double over_tool_slope = 1.0 / larger(-tool_z[cell], kSteepest);
-    depth[cell] = -value[cell] * over_body_slope;
     const double change_x = tool_x[cell] * over_tool_slope + body_x[cell] * over_body_slope;
     const double change_y = tool_y[cell] * over_tool_slope + body_y[cell] * over_body_slope;
     depth_change[cell] = 2.0 * (std::abs(change_x) * half_x + std::abs(change_y) * half_y) + 1e-30;
@@ -246,6 +254,7 @@ CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact) {
   CellBits own{};
   CellBits foreign{};
   bool any_own = false;
+  bool any_foreign = false;
   const glm::dvec2 reach = grid.frame.half_size;
   for (const ContactPoint& point : points_of(grid.scratch, contact)) {
     const glm::dvec3 place = body_to_grid(grid.frame, point.position);
@@ -255,6 +264,7 @@ CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact) {
       if (grid.cells[cell].coverage > 0.0) {
         set(is_own ? own : foreign, grid, cell);
         any_own = any_own || is_own;
+        any_foreign = any_foreign || !is_own;
       }
     }
   }
@@ -270,7 +280,7 @@ CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact) {
   }
   for (bool more = true; more;) {
     more = spread_one_step(grid, free, own);
-    more = spread_one_step(grid, free, foreign) || more;
+    more = (any_foreign && spread_one_step(grid, free, foreign)) || more;
   }
   for (std::uint32_t j = 0; j < grid.side; ++j) {
     for (std::uint64_t lost = covered[j] & ~own[j]; lost != 0; lost &= lost - 1) {
@@ -309,7 +319,10 @@ CellBits find_cells(const Grid& grid, const RegionPoints& contact) {
   return_from_above(grid);
   find_tool_surface(grid);
   find_rest_surface(grid);
-  find_depths(grid.scratch.cell_columns, cell_half_size(grid));
+  const CellColumns& columns = grid.scratch.cell_columns;
+  find_depths(columns.points, columns.depth.size(), columns.depth.data());
+  find_depth_changes(columns, cell_half_size(grid), columns.depth.size(),
+                     columns.depth_change.data());
   find_coverage(grid);
   return keep_own_cells(grid, contact);
 }

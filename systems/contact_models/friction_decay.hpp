@@ -14,7 +14,7 @@ inline constexpr double kSlipLength = 0.05;
 /// that is monotone, within 4e-6 of exp(-x) up to a tenth, and the same bits with every mathematics
 /// library.
 inline double growth(double x) {
-  return 1.0 + x * (0.5 + x / 6.0);
+  return 1.0 + x * (0.5 + x * (1.0 / 6.0));
 }
 
 /// 1 - exp(-path / scale): approaches 1 as `path` is travelled.

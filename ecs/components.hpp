@@ -477,12 +477,13 @@ struct Footing {
   glm::dvec3 tangent_x{0.0};  // body, unit
   glm::dvec3 tangent_y{0.0};
   glm::dvec3 normal{0.0};
-  double reach = 0.0;        // m: of the ports, and unit of the coordinates; 0: never laid
-  glm::dvec3 center{0.0};    // m, body: of the contact for which it was laid
-  double radius = 0.0;       // m: of that contact
-  double share = 1.0;        // of the displacements that is let through (below)
-  std::uint64_t serial = 0;  // no two that were laid have the same
-  std::uint32_t count = 0;   // of the ports
+  double reach = 0.0;          // m: of the ports, and unit of the coordinates; 0: never laid
+  glm::dvec3 center{0.0};      // m, body: of the contact for which it was laid
+  double radius = 0.0;         // m: of that contact
+  double share = 1.0;          // of the displacements that is let through (below)
+  std::uint64_t serial = 0;    // no two that were laid have the same
+  std::uint32_t on_layer = 0;  // 1: not the ports but `own` moves it, all of it
+  std::uint32_t count = 0;     // of the ports
   std::array<std::uint32_t, kFootingPorts> ports{};
   std::array<std::array<double, kFootingPorts>, kSupportTerms> fit{};  // term by displacement
   // Forces at the ports that are a unit wrench about `center`, spread as a rigid disc would.

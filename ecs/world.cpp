@@ -32,7 +32,7 @@ void World::reserve_models(const Capacities& capacities, const Settings& chosen)
   couplings.reserve(footed * (footed - (footed > 0 ? 1 : 0)) / 2);
   regions.reserve(capacities.regions);
   cells.reserve(capacities.regions * chosen.grid_side * chosen.grid_side);
-  patch_cells.reserve(capacities.influences > 0 ? cells.capacity() : 0);
+  patch_cells.reserve(capacities.patch_bodies > 0 ? cells.capacity() : 0);
   layer_influences.reserve(capacities.regions * capacities.layer_influences);
   mdr_layers.reserve(capacities.mdr_bodies > 0 ? capacities.regions * kMdrLayers : 0);
   region_handles.reserve(capacities.regions);

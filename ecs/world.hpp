@@ -23,9 +23,10 @@ struct Capacities {
   std::uint32_t anchors = 0;
   std::uint32_t regions = 0;
   std::uint32_t mdr_bodies = 0;         // with contact model mdr
+  std::uint32_t patch_bodies = 0;       // with contact model patch
   std::uint32_t ports = 0;              // 0 when no body has body model compliance
   std::uint32_t compliance_values = 0;  // likewise
-  std::uint32_t influences = 0;         // 0 when no body has contact model patch
+  std::uint32_t influences = 0;         // of contact models patch, and layers' kernels
   std::uint32_t layer_influences = 0;   // of one region; 0 when no body has a layer's kernel
 };
 

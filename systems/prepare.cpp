@@ -245,18 +245,32 @@ Result<std::vector<PreparedCompliance>> build_compliances(const World& world,
 
 /// Whether the contacts of the body see it as a layer.
 bool has_kernel(const World& world, std::uint32_t row, const BodyModels& models) {
-  return models.contact == ContactModel::kPatch && models.body == BodyModel::kCompliance &&
-         is_layer(world, row);
+  return models.body == BodyModel::kCompliance && is_layer(world, row);
 }
 
-/// Number of rows in `influences` that a body needs.
+/// Number of rows in `influences` that a body needs: patch's tables, then a layer's kernel.
 std::uint32_t influence_values(const World& world, std::uint32_t row, const BodyModels& models,
                                std::uint32_t side) {
-  if (models.contact != ContactModel::kPatch) {
-    return 0;
+  const std::size_t tables = models.contact == ContactModel::kPatch ? influence_count(side) : 0;
+  const std::size_t kernel = has_kernel(world, row, models) ? kLayerKernelSize : 0;
+  return static_cast<std::uint32_t>(tables + kernel);
+}
+
+void append_influences(World& world, std::uint32_t row, const BodyModels& models) {
+  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  const double poisson_ratio = world.bodies.at<Elasticity>(row).poisson_ratio;
+  const std::size_t tables = models.contact == ContactModel::kPatch ? influence_count(side) : 0;
+  std::vector<double> values(influence_values(world, row, models, side));
+  if (tables > 0) {
+    fill_influences(poisson_ratio, side, std::span(values).first(tables));
   }
-  return static_cast<std::uint32_t>(influence_count(side) +
-                                    (has_kernel(world, row, models) ? kLayerKernelSize : 0));
+  if (values.size() > tables) {
+    fill_layer_kernel(poisson_ratio, std::span(values).subspan(tables));
+  }
+  const Range rows = *world.influences.append(static_cast<std::uint32_t>(values.size()));
+  world.bodies.at<OwnedRows>(row).influences = rows;
+  std::ranges::transform(values, world.influences.rows<Influence>(rows).begin(),
+                         [](double value) { return Influence{value}; });
 }
 
 /// What the chosen models of a body need.
@@ -283,19 +297,7 @@ void append_models(World& world, std::uint32_t row, const BodyDescription& body,
     owned.anchors = append_rows<AnchorRest>(world.anchors, prepared.anchors);
     append_rows<BeamSection>(world.sections, prepared.sections);
   }
-  if (choice.models.contact == ContactModel::kPatch) {
-    const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
-    const double poisson_ratio = body.elasticity.poisson_ratio;
-    const std::size_t tables = influence_count(side);
-    owned.influences = *world.influences.append(influence_values(world, row, choice.models, side));
-    std::vector<double> values(owned.influences.count);
-    fill_influences(poisson_ratio, side, std::span(values).first(tables));
-    if (values.size() > tables) {
-      fill_layer_kernel(poisson_ratio, std::span(values).subspan(tables));
-    }
-    std::ranges::transform(values, world.influences.rows<Influence>(owned.influences).begin(),
-                           [](double value) { return Influence{value}; });
-  }
+  append_influences(world, row, choice.models);
   world.bodies.at<BodyModels>(row) = choice.models;
 }
 
@@ -310,8 +312,9 @@ Result<Done> append_choices(Simulation& simulation, const SceneDescription& scen
   for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
     const BodyModels& models = simulation.choices[row].models;
     capacities.influences += influence_values(world, row, models, settings.grid_side);
+    capacities.patch_bodies += models.contact == ContactModel::kPatch ? 1U : 0U;
     capacities.mdr_bodies += models.contact == ContactModel::kMdr ? 1U : 0U;
-    if (has_kernel(world, row, models)) {
+    if (models.contact == ContactModel::kPatch && has_kernel(world, row, models)) {
       capacities.layer_influences =
           static_cast<std::uint32_t>(layer_influence_count(settings.grid_side));
     }

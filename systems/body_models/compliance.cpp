@@ -12,10 +12,12 @@
 #include "systems/body_models/contact_load.hpp"
 #include "systems/body_models/footing.hpp"
 #include "systems/body_models/half_space_fields.hpp"
+#include "systems/body_models/layer_motion.hpp"
 #include "systems/body_models/smooth_compliance.hpp"
 #include "systems/contact_models/layer_coupling.hpp"
 #include "systems/contact_models/layer_thickness.hpp"
 #include "systems/frames.hpp"
+#include "systems/patch_grid.hpp"
 #include "systems/scratch.hpp"
 
 namespace torsion {
@@ -76,30 +78,49 @@ Matrix6 to_contact(const Footing& footing) {
   return both;
 }
 
+/// A symmetric compliance over the contact's own: eigenvalues and what makes them a compliance
+/// again.
+struct RelativeCompliance {
+  Eigen::SelfAdjointEigenSolver<Matrix6> solver;
+  Matrix6 back;
+
+  RelativeCompliance(const CompliantBody& body, const Footing& footing, const Matrix6& motion) {
+    const Vector6 root =
+        contact_stiffness(footing.radius, body.world.bodies.at<Elasticity>(body.row)).cwiseSqrt();
+    const Matrix6 axes = to_contact(footing);
+    const Matrix6 scaled =
+        root.asDiagonal() * (axes * motion * axes.transpose()) * root.asDiagonal();
+    solver.compute(0.5 * (scaled + scaled.transpose()));
+    back = axes.transpose() * root.cwiseInverse().asDiagonal() * solver.eigenvectors();
+  }
+  [[nodiscard]] Matrix6 at_least(double least) const {
+    return back * solver.eigenvalues().cwiseMax(least).asDiagonal() * back.transpose();
+  }
+};
+
 /// What a region's own wrench does to it: the part that yields goes to Newton's matrix. Where the
 /// rest of the body stiffens the half-space (a layer) Newton's method would overshoot as soon as
 /// the contact slips, and plain iteration converges.
 void find_own_motion(const CompliantBody& body, Footing& footing) {
-  const Matrix6 motion = motion_between(body.ports, footing, footing);
-  const Vector6 root =
-      contact_stiffness(footing.radius, body.world.bodies.at<Elasticity>(body.row)).cwiseSqrt();
-  const Matrix6 axes = to_contact(footing);
-  const Matrix6 scaled = root.asDiagonal() * (axes * motion * axes.transpose()) * root.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(0.5 * (scaled + scaled.transpose()));
-  const double least = solver.eigenvalues()[0];
+  const RelativeCompliance relative(body, footing, motion_between(body.ports, footing, footing));
+  const double least = relative.solver.eigenvalues()[0];
   footing.share = std::min(1.0, kStiffest / std::min(least, -1e-300));
-  const auto inverse = root.cwiseInverse().asDiagonal();
-  const Matrix6 yielding = solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() *
-                           solver.eigenvectors().transpose();
-  Eigen::Map<Matrix6>(footing.own.data()) =
-      axes.transpose() * (inverse * yielding * inverse) * axes;
+  footing.on_layer = 0;
+  Eigen::Map<Matrix6>(footing.own.data()) = relative.at_least(0.0);
 }
 
-/// On a layer the contact itself has what the half-space lacks (patch: layer_kernel.hpp; mdr: its
-/// series).
-void leave_to_contact(Footing& footing) {
+/// On a layer the ports do not count: patch has what the half-space lacks in its own tables
+/// (layer_kernel.hpp), mdr is moved as one.
+void find_motion_on_layer(const CompliantBody& body, const ContactEllipse& contact,
+                          double thickness, bool has_tables, Footing& footing) {
   footing.share = 0.0;
+  footing.on_layer = 1;
   footing.own = {};
+  if (!has_tables && has_layer_kernel(body.world, body.row)) {
+    const Matrix6 motion = layer_motion(body.world, body.row, contact, thickness);
+    Eigen::Map<Matrix6>(footing.own.data()) =
+        RelativeCompliance(body, footing, motion).at_least(kStiffest);
+  }
 }
 
 /// Takes the regions of the body, lays their footings where they have moved, and moves them by
@@ -119,8 +140,9 @@ void find_stands(CompliantBody& body) {
     if (!still_fits(footing, contact)) {
       lay_footing(body.ports, contact, footing);
       footing.serial = world.clock.at<Clock>(0).step * world.footings.size() + stand.block + 1;
-      if (layer_thickness(world, body.row, contact.normal, contact.center) > 0.0) {
-        leave_to_contact(footing);
+      const double thickness = layer_thickness(world, body.row, contact.normal, contact.center);
+      if (thickness > 0.0) {
+        find_motion_on_layer(body, contact, thickness, has_patch(world, identity), footing);
       } else {
         find_own_motion(body, footing);
       }
@@ -134,7 +156,11 @@ void find_stands(CompliantBody& body) {
       displacements[p] *= footing.share;
     }
     stand.motion = rigid_motion(footing, displacements);
-    world.regions.at<SupportField>(region) = bending(footing, displacements, stand.motion);
+    if (footing.on_layer != 0) {
+      stand.motion = Eigen::Map<const Matrix6>(footing.own.data()) * stand.load.wrench;
+    }
+    world.regions.at<SupportField>(region) =
+        bending(footing, displacements, rigid_motion(footing, displacements));
   }
 }
 
@@ -238,8 +264,10 @@ void fill_equations(const CompliantBody& body, Eigen::Map<RowMatrix>& matrix,
     const Matrix6 stiffness =
         axes.transpose() * contact_stiffness(footing.radius, elasticity).asDiagonal() * axes;
     const auto at = static_cast<Eigen::Index>(6 * j);
-    matrix.block<6, 6>(at, at) =
-        Matrix6::Identity() + Eigen::Map<const Matrix6>(footing.own.data()) * stiffness;
+    matrix.block<6, 6>(at, at).setIdentity();
+    if (footing.on_layer == 0) {
+      matrix.block<6, 6>(at, at) += Eigen::Map<const Matrix6>(footing.own.data()) * stiffness;
+    }
     change.segment<6>(at) +=
         from.motion - support_at(body.world.regions.at<RegionSupport>(from.region), footing.center);
     for (std::size_t i = 0; i < body.count; ++i) {

@@ -107,32 +107,17 @@ void fit_terms(const PortCompliance& body, const std::array<double, kFootingPort
   }
 }
 
-/// Moments of a unit force along, or couple about, a body axis on the contact, spread as by a rigid
-/// disc: normal forces for tilting couples, tangential ones for the twisting couple.
+/// Moments of a wrench on the contact, spread as by a rigid disc.
 SupportMoments moments_of_wrench(const Footing& footing, const ContactEllipse& contact,
                                  const glm::dvec3& force, const glm::dvec3& couple) {
   SupportMoments moments{};
-  glm::dmat3 spread(0.0);  // second moment of the shares, as it turns forces into couples
-  const double twist = glm::dot(couple, contact.normal);
-  const glm::dvec3 tilt = couple - contact.normal * twist;
-  double polar = 0.0;
-  glm::dmat3 planar(0.0);
-  for (const DiscPoint& point : disc_points()) {
-    const glm::dvec3 arm = contact.axis_1 * point.place.x + contact.axis_2 * point.place.y;
-    polar += point.disc_share * glm::dot(arm, arm);
-    planar += point.disc_share * glm::outerProduct(arm, arm);
-  }
-  // Normal forces n (arm . g) have the couple sum of (arm . g) arm x n: g = planar^-1 (n x tilt).
-  const glm::dvec3 wanted = glm::cross(contact.normal, tilt);
-  const glm::dvec3 slope =
-      glm::inverse(planar + glm::outerProduct(contact.normal, contact.normal)) * wanted;
-  for (const DiscPoint& point : disc_points()) {
-    const glm::dvec3 arm = contact.axis_1 * point.place.x + contact.axis_2 * point.place.y;
-    const glm::dvec3 here = point.disc_share * (force + contact.normal * glm::dot(arm, slope) +
-                                                glm::cross(contact.normal, arm) * (twist / polar));
+  const DiscForces spread = spread_wrench(contact, &DiscPoint::disc_share, force, couple);
+  for (std::size_t q = 0; q < kDiscPoints; ++q) {
+    const glm::dvec2 place = disc_points()[q].place;
+    const glm::dvec3 arm = contact.axis_1 * place.x + contact.axis_2 * place.y;
     const auto terms = support_terms(coordinates_in(footing, contact.center + arm));
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
-      moments[k] += here * terms[k];
+      moments[k] += spread[q] * terms[k];
     }
   }
   return moments;
@@ -159,6 +144,31 @@ const std::array<DiscPoint, kDiscPoints>& disc_points() {
     return made;
   }();
   return points;
+}
+
+DiscForces spread_wrench(const ContactEllipse& contact, double DiscPoint::*shares,
+                         const glm::dvec3& force, const glm::dvec3& couple) {
+  const double twist = glm::dot(couple, contact.normal);
+  const glm::dvec3 tilt = couple - contact.normal * twist;
+  double polar = 0.0;
+  glm::dmat3 planar(0.0);
+  for (const DiscPoint& point : disc_points()) {
+    const glm::dvec3 arm = contact.axis_1 * point.place.x + contact.axis_2 * point.place.y;
+    polar += point.*shares * glm::dot(arm, arm);
+    planar += point.*shares * glm::outerProduct(arm, arm);
+  }
+  // Normal forces n (arm . g) have the couple sum of (arm . g) arm x n: g = planar^-1 (n x tilt).
+  const glm::dvec3 slope =
+      glm::inverse(planar + glm::outerProduct(contact.normal, contact.normal)) *
+      glm::cross(contact.normal, tilt);
+  DiscForces forces;
+  for (std::size_t q = 0; q < kDiscPoints; ++q) {
+    const DiscPoint& point = disc_points()[q];
+    const glm::dvec3 arm = contact.axis_1 * point.place.x + contact.axis_2 * point.place.y;
+    forces[q] = point.*shares * (force + contact.normal * glm::dot(arm, slope) +
+                                 glm::cross(contact.normal, arm) * (twist / polar));
+  }
+  return forces;
 }
 
 bool still_fits(const Footing& footing, const ContactEllipse& contact) {
@@ -260,26 +270,33 @@ SupportField bending(const Footing& footing, const PortVectors& displacements,
 }
 
 Matrix6 motion_between(const PortCompliance& body, const Footing& to, const Footing& from) {
-  const std::size_t side = 3 * body.ports.size();
-  Matrix6 motion;
-  for (std::size_t c = 0; c < 6; ++c) {
-    Vector6 column = Vector6::Zero();
-    for (std::size_t i = 0; i < to.count; ++i) {
-      glm::dvec3 moved(0.0);
-      const ComplianceValue* const rows = &body.values[3 * std::size_t{to.ports[i]} * side];
-      for (std::size_t j = 0; j < from.count; ++j) {
-        const ComplianceValue* const at = rows + 3 * std::size_t{from.ports[j]};
-        const glm::dvec3& f = from.unit_forces[c][j];
-        moved += glm::dvec3(
-            at[0].value * f.x + at[1].value * f.y + at[2].value * f.z,
-            at[side].value * f.x + at[side + 1].value * f.y + at[side + 2].value * f.z,
-            at[2 * side].value * f.x + at[2 * side + 1].value * f.y + at[2 * side + 2].value * f.z);
-      }
-      for (std::size_t row = 0; row < 6; ++row) {
-        column[static_cast<Eigen::Index>(row)] += glm::dot(to.unit_forces[row][i], moved);
-      }
+  using RowMatrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  using Columns = Eigen::Matrix<double, 3, 6>;
+  static_assert(sizeof(ComplianceValue) == sizeof(double));
+  const auto forces_of = [](const Footing& footing, std::size_t port) {
+    Columns forces;
+    for (std::size_t c = 0; c < 6; ++c) {
+      const glm::dvec3& force = footing.unit_forces[c][port];
+      forces.col(static_cast<Eigen::Index>(c)) << force.x, force.y, force.z;
     }
-    motion.col(static_cast<Eigen::Index>(c)) = column;
+    return forces;
+  };
+  std::array<Columns, kFootingPorts> forces;
+  for (std::size_t j = 0; j < from.count; ++j) {
+    forces[j] = forces_of(from, j);
+  }
+  const std::size_t side = 3 * body.ports.size();
+  const Eigen::OuterStride<> stride(static_cast<Eigen::Index>(side));
+  Matrix6 motion = Matrix6::Zero();
+  for (std::size_t i = 0; i < to.count; ++i) {
+    Columns moved = Columns::Zero();
+    const ComplianceValue* const rows = &body.values[3 * std::size_t{to.ports[i]} * side];
+    for (std::size_t j = 0; j < from.count; ++j) {
+      const Eigen::Map<const RowMatrix3, 0, Eigen::OuterStride<>> block(
+          &rows[3 * std::size_t{from.ports[j]}].value, stride);
+      moved.noalias() += block * forces[j];
+    }
+    motion.noalias() += forces_of(to, i).transpose() * moved;
   }
   return motion;
 }

@@ -39,6 +39,13 @@ struct DiscPoint {
 inline constexpr std::size_t kDiscPoints = 24;
 const std::array<DiscPoint, kDiscPoints>& disc_points();
 
+/// A wrench about the contact's centre as forces at the disc's points laid over its ellipse: normal
+/// ones for tilting couples, tangential ones for the twisting couple.
+/// @param shares  how it is spread
+using DiscForces = std::array<glm::dvec3, kDiscPoints>;
+DiscForces spread_wrench(const ContactEllipse& contact, double DiscPoint::*shares,
+                         const glm::dvec3& force, const glm::dvec3& couple);
+
 /// Forces on the material, as moments of a SupportField's terms, N.
 using SupportMoments = std::array<glm::dvec3, kSupportTerms>;
 /// Forces at a footing's ports, N, or displacements of them, m; the first `count` rows count.

@@ -10,6 +10,7 @@
 #include <glm/vec2.hpp>
 
 #include "ecs/components.hpp"
+#include "systems/scratch.hpp"
 
 namespace torsion {
 
@@ -33,5 +34,9 @@ inline std::array<double, kSupportTerms> support_terms(const glm::dvec2& at) {
   return {1.0,    x,      y,       xx,      xy,      yy,      xx * x, xx * y,
           yy * x, yy * y, xx * xx, xx * xy, xx * yy, xy * yy, yy * yy};
 }
+
+/// Where the field moves the centres of a grid's cells, in the grid's frame.
+void find_support(const SupportField& field, const RegionFrame& frame, std::uint32_t side,
+                  const SupportColumns& columns);
 
 }  // namespace torsion

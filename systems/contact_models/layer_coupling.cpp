@@ -11,7 +11,9 @@
 namespace torsion {
 
 bool has_layer_kernel(const World& world, std::uint32_t body) {
-  const std::size_t tables = influence_count(world.settings.at<Settings>(0).grid_side);
+  const std::size_t tables = world.bodies.at<BodyModels>(body).contact == ContactModel::kPatch
+                                 ? influence_count(world.settings.at<Settings>(0).grid_side)
+                                 : 0;
   return world.bodies.at<OwnedRows>(body).influences.count == tables + kLayerKernelSize;
 }
 

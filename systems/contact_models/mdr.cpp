@@ -127,10 +127,13 @@ RoundContact contact_of(const World& world, std::uint32_t region) {
   if (smooth.share > 0.0) {
     contact = mix(contact, contact_of_shapes(smooth, elasticity), smooth.share);
   }
-  // Whatever the body model: compliance leaves layers to their contacts.
+  // A body model in series has the body's thickness itself.
+  const bool in_series = world.bodies.at<BodyModels>(identity.body).body == BodyModel::kCompliance;
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const double thickness = layer_thickness(world, identity.body, frame.normal,
-                                           world.regions.at<RegionGeometry>(region).rest_point);
+  const double thickness =
+      in_series ? 0.0
+                : layer_thickness(world, identity.body, frame.normal,
+                                  world.regions.at<RegionGeometry>(region).rest_point);
   if (thickness > 0.0) {
     contact.force *= layer_force_share(contact.radius / thickness, elasticity.poisson_ratio);
   }

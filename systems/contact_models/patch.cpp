@@ -94,42 +94,6 @@ double deepest(const Patch& patch) {
   return depth;
 }
 
-/// Where the body as a whole has moved the cells, beside their region.
-void find_support(const Patch& patch) {
-  const SupportField& field = patch.world.regions.at<SupportField>(patch.region);
-  const bool none = patch.world.footings.empty();
-  std::ranges::fill(patch.support.x, 0.0);
-  std::ranges::fill(patch.support.y, 0.0);
-  std::ranges::fill(patch.support.z, 0.0);
-  if (none) {
-    return;
-  }
-  const RegionFrame& frame = patch.frame;
-  const glm::dvec3 from = frame.origin - field.origin;
-  const glm::dvec2 origin(glm::dot(field.along_x, from), glm::dot(field.along_y, from));
-  const glm::dmat2 turn(
-      glm::dot(field.along_x, frame.tangent_x), glm::dot(field.along_y, frame.tangent_x),
-      glm::dot(field.along_x, frame.tangent_y), glm::dot(field.along_y, frame.tangent_y));
-  std::array<glm::dvec3, kSupportTerms> in_grid;
-  for (std::size_t k = 0; k < kSupportTerms; ++k) {
-    in_grid[k] = body_to_grid_direction(frame, field.terms[k]);
-  }
-  std::uint32_t cell = 0;
-  for (std::uint32_t j = 0; j < patch.side; ++j) {
-    for (std::uint32_t i = 0; i < patch.side; ++i, ++cell) {
-      const glm::dvec2 at = origin + turn * cell_center(frame, patch.side, i, j);
-      const auto terms = support_terms(support_coordinates(at));
-      glm::dvec3 moved(0.0);
-      for (std::size_t k = 0; k < kSupportTerms; ++k) {
-        moved += terms[k] * in_grid[k];
-      }
-      patch.support.x[cell] = moved.x;
-      patch.support.y[cell] = moved.y;
-      patch.support.z[cell] = moved.z;
-    }
-  }
-}
-
 /// Fills the columns: what the last step left, carried on by `share` of what it changed.
 void load(const Patch& patch, double share) {
   const PatchColumns& columns = patch.columns;
@@ -365,7 +329,8 @@ void solve_region(StepContext& context, std::uint32_t region) {
   Patch patch = patch_of(context, region);
   const double depth = deepest(patch);
   const double deepened = depth - patch.state.depth;
-  find_support(patch);
+  find_support(patch.world.regions.at<SupportField>(region), patch.frame, patch.side,
+               patch.support);
   const bool anew = patch.state.started == 0 || patch.state.moved != 0;
   load(patch, anew ? 0.0 : foresight(patch, deepened));
   if (anew) {

@@ -83,6 +83,7 @@ World small_world(unsigned seed) {
   capacities.anchors = 6;
   capacities.regions = 4;
   capacities.influences = 3;
+  capacities.patch_bodies = 1;
   capacities.mdr_bodies = 1;
   capacities.layer_influences = 336;
   capacities.ports = 3;

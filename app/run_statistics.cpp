@@ -40,14 +40,22 @@ double TimeHistogram::quantile(double share) const {
   return largest_;
 }
 
-std::string TimeHistogram::text() const {
-  std::string text;
+std::vector<TimeHistogram::Bin> TimeHistogram::bins() const {
+  std::vector<Bin> all;
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     if (bins_[bin] != 0) {
-      text += fmt::format("  {:10.1f} to {:10.1f} us  {:8d}  {:7.3f} %\n", lower_edge(bin),
-                          lower_edge(bin + 1), bins_[bin],
-                          100.0 * static_cast<double>(bins_[bin]) / static_cast<double>(count_));
+      all.push_back({lower_edge(bin), lower_edge(bin + 1), bins_[bin]});
     }
+  }
+  return all;
+}
+
+std::string TimeHistogram::text() const {
+  std::string text;
+  for (const Bin& bin : bins()) {
+    text +=
+        fmt::format("  {:10.1f} to {:10.1f} us  {:8d}  {:7.3f} %\n", bin.from, bin.to, bin.count,
+                    100.0 * static_cast<double>(bin.count) / static_cast<double>(count_));
   }
   return text;
 }

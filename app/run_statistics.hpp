@@ -21,6 +21,14 @@ class TimeHistogram {
   /// Lines "from - to: count" of the bins that are not empty.
   [[nodiscard]] std::string text() const;
 
+  struct Bin {
+    double from = 0.0;  // us
+    double to = 0.0;    // us
+    std::uint64_t count = 0;
+  };
+  /// The bins that are not empty, in order.
+  [[nodiscard]] std::vector<Bin> bins() const;
+
  private:
   static constexpr std::size_t kBins = 48;
   std::array<std::uint64_t, kBins> bins_{};
@@ -34,8 +42,10 @@ struct RunStatistics {
   std::uint64_t contact_steps = 0;
   TimeHistogram step_times;
   TimeHistogram lateness;  // of the start of a step on the clock; empty when not in real time
-  std::uint64_t missed_deadlines = 0;  // steps that began more than a period late
+  std::uint64_t missed_deadlines = 0;  // periods that began more than 1 ms late
+  std::uint64_t overruns = 0;          // steps that took longer than a period
   std::uint64_t lost_rows = 0;         // of the trace, when the disk could not follow
+  std::uint64_t lost_inputs = 0;       // of the recording, likewise
   double wall_time = 0.0;              // s, all steps together
   std::uint32_t most_regions = 0;
   double peak_force = 0.0;   // N, largest over tools

@@ -10,20 +10,30 @@
 
 namespace torsion {
 
-Result<Session> open_session(const std::filesystem::path& path, const PrepareOptions& options,
-                             bool quiet) {
+Result<Session> open_scene(const std::filesystem::path& path) {
   LoadedScene loaded = load_gltf(path);
   if (!loaded.scene) {
     return Error{to_text(loaded.problems)};
   }
+  Session session;
+  session.scene = std::move(*loaded.scene);
+  session.tool_poses.resize(session.scene.tools.size());
+  return session;
+}
+
+Result<Session> open_session(const std::filesystem::path& path, const PrepareOptions& options,
+                             bool quiet) {
+  Result<Session> session = open_scene(path);
+  if (!session) {
+    return session.error();
+  }
   PrepareOptions informed = options;
-  informed.expected_poses = expected_poses(*loaded.scene);
-  Result<Simulation> simulation = prepare_with_bar(*loaded.scene, informed, quiet);
+  informed.expected_poses = expected_poses(session.value().scene);
+  Result<Simulation> simulation = prepare_with_bar(session.value().scene, informed, quiet);
   if (!simulation) {
     return Error{path.string() + ": " + simulation.error().text};
   }
-  Session session{std::move(*loaded.scene), std::move(simulation).value(), {}};
-  session.tool_poses.resize(session.scene.tools.size());
+  session.value().simulation = std::move(simulation).value();
   return session;
 }
 
@@ -55,12 +65,20 @@ std::vector<std::vector<Pose>> expected_poses(const SceneDescription& scene) {
   return poses;
 }
 
-void step_scripted(Session& session) {
-  const Clock& clock = session.simulation.world.clock.at<Clock>(0);
-  const double time = static_cast<double>(clock.step) * clock.dt;
+double next_time(const World& world) {
+  const Clock& clock = world.clock.at<Clock>(0);
+  return static_cast<double>(clock.step) * clock.dt;
+}
+
+void set_scripted_poses(Session& session) {
+  const double time = next_time(session.simulation.world);
   for (std::size_t tool = 0; tool < session.tool_poses.size(); ++tool) {
     session.tool_poses[tool] = scripted_pose(session.scene.tools[tool].script, time);
   }
+}
+
+void step_scripted(Session& session) {
+  set_scripted_poses(session);
   step(session.simulation, session.tool_poses);
 }
 

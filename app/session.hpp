@@ -15,6 +15,10 @@ struct Session {
   std::vector<Pose> tool_poses;  // (tools)
 };
 
+/// Loads a scene; its simulation is still empty. The error has all problems of the file, one a
+/// line.
+Result<Session> open_scene(const std::filesystem::path& path);
+
 /// Loads and prepares a scene, with a bar where that takes long. The error has all problems of the
 /// file, one a line.
 /// @param quiet  no bar
@@ -28,6 +32,12 @@ Result<Simulation> prepare_with_bar(const SceneDescription& scene, const Prepare
 /// Where the tools will be at equal intervals of the scene's animations, (times) of (tools); empty
 /// where something else than an animation moves one of them.
 std::vector<std::vector<Pose>> expected_poses(const SceneDescription& scene);
+
+/// The time of the step to come, s.
+double next_time(const World& world);
+
+/// The tools' poses of the step to come, where their animations hold them.
+void set_scripted_poses(Session& session);
 
 /// One step with the tools where their animations hold them at its time.
 void step_scripted(Session& session);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -12,6 +13,8 @@ namespace {
 struct SimulateOptions {
   SceneOptions scene;
   std::string trace;
+  std::string record;
+  std::string replay;
   double seconds = -1.0;  // s; negative: to the end of the longest animation
   bool realtime = false;
   bool json = false;
@@ -26,17 +29,85 @@ std::vector<std::string> tool_names(const SceneDescription& scene) {
   return names;
 }
 
+/// What the command line can get wrong in ways that only the file behind it shows.
+Result<Session> open_for_run(const SimulateOptions& options, const Recording* replayed) {
+  const bool quiet = options.quiet || options.json;
+  Result<Session> opened =
+      replayed != nullptr
+          ? open_recorded(options.scene.scene, *replayed, quiet)
+          : open_session(options.scene.scene, options.scene.prepare_options(), quiet);
+  if (opened && replayed == nullptr && options.seconds < 0.0 &&
+      opened.value().scene.duration <= 0.0) {
+    return Error{opened.value().scene.path +
+                 ": no animation moves a tool, so there is no end to run to; say --seconds"};
+  }
+  return opened;
+}
+
+std::uint64_t steps_of_run(const SimulateOptions& options, const Session& session,
+                           const Recording* replayed) {
+  const double seconds = options.seconds < 0.0 ? session.scene.duration : options.seconds;
+  if (replayed == nullptr) {
+    return steps_in(session, seconds);
+  }
+  const std::uint64_t recorded = steps_in(*replayed);
+  return options.seconds < 0.0 ? recorded : std::min(recorded, steps_in(session, seconds));
+}
+
+/// Runs, and finishes what is written.
+Result<RunStatistics> run(const SimulateOptions& options, Session& session, std::uint64_t steps,
+                          const RunFiles& files, RunFacts& facts) {
+  RunStatistics statistics;
+  {
+    Progress progress("simulating", options.quiet);
+    if (options.realtime) {
+      RealtimeMode mode;
+      statistics = run_realtime(session, steps, files, progress, mode);
+      facts.mode = describe(mode);
+    } else {
+      const Result<RunStatistics> ran = run_fast(session, steps, files, progress);
+      if (!ran) {
+        return ran.error();
+      }
+      statistics = ran.value();
+    }
+  }
+  if (statistics.lost_rows + statistics.lost_inputs > 0) {
+    return Error{fmt::format("{}: {} rows are lost: the disk is too slow for a run in real time",
+                             statistics.lost_rows > 0 ? options.trace : options.record,
+                             statistics.lost_rows + statistics.lost_inputs)};
+  }
+  if (files.trace != nullptr) {
+    const Result<Done> done = files.trace->finish();
+    if (!done) {
+      return done.error();
+    }
+    facts.trace = options.trace;
+  }
+  if (files.record != nullptr) {
+    const Result<Done> done = save_recording(*files.record, options.record);
+    if (!done) {
+      return done.error();
+    }
+    facts.recording = options.record;
+  }
+  return statistics;
+}
+
 int simulate(const SimulateOptions& options) {
-  Result<Session> opened = open_session(options.scene.scene, options.scene.prepare_options(),
-                                        options.quiet || options.json);
+  std::optional<Recording> replayed;
+  if (!options.replay.empty()) {
+    Result<Recording> loaded = load_recording(options.replay);
+    if (!loaded) {
+      return fail(loaded.error().text);
+    }
+    replayed = std::move(loaded).value();
+  }
+  Result<Session> opened = open_for_run(options, replayed ? &*replayed : nullptr);
   if (!opened) {
     return fail(opened.error().text);
   }
   Session& session = opened.value();
-  if (options.seconds < 0.0 && session.scene.duration <= 0.0) {
-    return fail(session.scene.path +
-                ": no animation moves a tool, so there is no end to run to; say --seconds");
-  }
   std::optional<TraceWriter> trace;
   if (!options.trace.empty()) {
     Result<TraceWriter> created = TraceWriter::create(options.trace, tool_names(session.scene));
@@ -45,29 +116,23 @@ int simulate(const SimulateOptions& options) {
     }
     trace = std::move(created).value();
   }
-  const double seconds = options.seconds < 0.0 ? session.scene.duration : options.seconds;
-  const std::uint64_t steps = steps_in(session, seconds);
-  RunStatistics statistics;
-  {
-    Progress progress("simulating", options.quiet);
-    TraceWriter* writer = trace ? &*trace : nullptr;
-    statistics = options.realtime ? run_realtime(session, steps, writer, progress)
-                                  : run_fast(session, steps, writer, progress);
+  std::optional<Recording> record;
+  if (!options.record.empty()) {
+    record = begin_recording(session, options.scene.prepare_options());
   }
-  if (statistics.lost_rows > 0) {
-    return fail(fmt::format("{}: {} rows are lost: the disk is too slow for a run in real time",
-                            options.trace, statistics.lost_rows));
-  }
-  if (trace) {
-    const Result<Done> done = trace->finish();
-    if (!done) {
-      return fail(done.error().text);
-    }
+  Replay replay{replayed ? &*replayed : nullptr, 0};
+  const RunFiles files{trace ? &*trace : nullptr, record ? &*record : nullptr,
+                       replayed ? &replay : nullptr, options.quiet || options.json};
+  RunFacts facts;
+  const Result<RunStatistics> ran =
+      run(options, session, steps_of_run(options, session, replay.recording), files, facts);
+  if (!ran) {
+    return fail(ran.error().text);
   }
   if (options.json) {
-    fmt::print("{}", summary_json(session, statistics, options.trace));
+    fmt::print("{}", summary_json(session, ran.value(), facts));
   } else if (!options.quiet) {
-    fmt::print("{}", summary_text(session, statistics, options.trace));
+    fmt::print("{}", summary_text(session, ran.value(), facts));
   }
   return kDone;
 }
@@ -82,7 +147,17 @@ void add_simulate(CLI::App& app, Command& command) {
   subcommand->add_option("--trace", options->trace, "CSV file to write, one row a step");
   subcommand->add_option("--seconds", options->seconds, "How long; else the animation's length")
       ->check(CLI::Range(0.0, 1e6));
-  subcommand->add_flag("--realtime", options->realtime, "Run on the clock, not as fast as it goes");
+  CLI::Option* realtime = subcommand->add_flag("--realtime", options->realtime,
+                                               "Run on the clock, not as fast as it goes");
+  CLI::Option* record = subcommand->add_option(
+      "--record", options->record, "File to write with everything that goes into the run");
+  CLI::Option* replay =
+      subcommand->add_option("--replay", options->replay,
+                             "Recording to run again: the same bits, its models and its rate");
+  replay->excludes(record)->excludes(realtime);
+  for (const char* chosen : {"--contact-model", "--body-model", "--rate", "--cells", "--sweeps"}) {
+    replay->excludes(chosen);
+  }
   subcommand->add_flag("--json", options->json, "Print the summary as JSON");
   subcommand->add_flag("--quiet", options->quiet, "Print no progress and no summary text");
   subcommand->callback([options, &command] {

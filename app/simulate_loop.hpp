@@ -1,5 +1,7 @@
 #pragma once
 
+#include "app/live/realtime_mode.hpp"
+#include "app/live/recording.hpp"
 #include "app/progress.hpp"
 #include "app/run_statistics.hpp"
 #include "app/session.hpp"
@@ -7,13 +9,22 @@
 
 namespace torsion {
 
-/// Steps as fast as they go. `trace` may be null.
-RunStatistics run_fast(Session& session, std::uint64_t steps, TraceWriter* trace,
-                       Progress& progress);
+/// What a run without a window reads and writes; each may be null.
+struct RunFiles {
+  TraceWriter* trace = nullptr;
+  Recording* record = nullptr;  // begun; gets the entries
+  Replay* replay = nullptr;     // where poses come from instead of the scene's animations
+  bool quiet = false;
+};
 
-/// Steps on the clock, one period apart, each at an absolute time. Nothing but the step happens in
-/// this thread: rows go through a ring to a thread that writes them.
-RunStatistics run_realtime(Session& session, std::uint64_t steps, TraceWriter* trace,
-                           Progress& progress);
+/// Steps as fast as they go. Fails only where a replay switches to models that cannot be prepared.
+Result<RunStatistics> run_fast(Session& session, std::uint64_t steps, const RunFiles& files,
+                               Progress& progress);
+
+/// Steps on the clock, in a thread of its own in which nothing but that happens: rows and inputs go
+/// through rings to this thread, which writes them. No replay.
+/// @param mode  out: what the system granted that thread
+RunStatistics run_realtime(Session& session, std::uint64_t steps, const RunFiles& files,
+                           Progress& progress, RealtimeMode& mode);
 
 }  // namespace torsion

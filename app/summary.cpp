@@ -14,10 +14,19 @@ double simulated_time(const Session& session, const RunStatistics& statistics) {
   return static_cast<double>(statistics.steps) * session.simulation.world.clock.at<Clock>(0).dt;
 }
 
+/// Rows [from us, to us, count].
+nlohmann::ordered_json histogram_json(const TimeHistogram& histogram) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const TimeHistogram::Bin& bin : histogram.bins()) {
+    rows.push_back({bin.from, bin.to, bin.count});
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::string summary_text(const Session& session, const RunStatistics& statistics,
-                         const std::string& trace) {
+                         const RunFacts& facts) {
   const World& world = session.simulation.world;
   const double simulated = simulated_time(session, statistics);
   std::string text = fmt::format(
@@ -37,14 +46,20 @@ std::string summary_text(const Session& session, const RunStatistics& statistics
   }
   if (statistics.lateness.count() > 0) {
     text += fmt::format(
-        "clock    {:.2f} steps a second; {} of {} steps began more than a period late; "
-        "lateness:\n{}",
-        static_cast<double>(statistics.steps) / statistics.wall_time, statistics.missed_deadlines,
-        statistics.steps, statistics.lateness.text());
+        "thread   {}\n"
+        "clock    {:.2f} steps a second; {} of {} steps began more than 1 ms late, {} took longer "
+        "than a period\n"
+        "lateness:\n{}step times:\n{}",
+        facts.mode, static_cast<double>(statistics.steps) / statistics.wall_time,
+        statistics.missed_deadlines, statistics.steps, statistics.overruns,
+        statistics.lateness.text(), statistics.step_times.text());
   }
   text += fmt::format("world    hash {:016x}\n", hash(world));
-  if (!trace.empty()) {
-    text += fmt::format("trace    {}\n", trace);
+  if (!facts.trace.empty()) {
+    text += fmt::format("trace    {}\n", facts.trace);
+  }
+  if (!facts.recording.empty()) {
+    text += fmt::format("recorded {}\n", facts.recording);
   }
   const std::uint32_t faults = world.clock.at<Clock>(0).faults_ever;
   return faults == 0
@@ -53,7 +68,7 @@ std::string summary_text(const Session& session, const RunStatistics& statistics
 }
 
 std::string summary_json(const Session& session, const RunStatistics& statistics,
-                         const std::string& trace) {
+                         const RunFacts& facts) {
   const World& world = session.simulation.world;
   const double simulated = simulated_time(session, statistics);
   nlohmann::ordered_json json = {{"scene", session.scene.path},
@@ -86,13 +101,20 @@ std::string summary_json(const Session& session, const RunStatistics& statistics
   }
   if (statistics.lateness.count() > 0) {
     json["rate_Hz"] = static_cast<double>(statistics.steps) / statistics.wall_time;
+    json["thread"] = facts.mode;
     json["missed_deadlines"] = statistics.missed_deadlines;
+    json["overruns"] = statistics.overruns;
     json["lateness_us"] = {{"median", statistics.lateness.quantile(0.5)},
                            {"p99", statistics.lateness.quantile(0.99)},
-                           {"largest", statistics.lateness.largest()}};
+                           {"largest", statistics.lateness.largest()},
+                           {"histogram", histogram_json(statistics.lateness)}};
+    json["step_us"]["histogram"] = histogram_json(statistics.step_times);
   }
-  if (!trace.empty()) {
-    json["trace"] = trace;
+  if (!facts.trace.empty()) {
+    json["trace"] = facts.trace;
+  }
+  if (!facts.recording.empty()) {
+    json["recording"] = facts.recording;
   }
   return json.dump(2) + "\n";
 }

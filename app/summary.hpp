@@ -7,13 +7,19 @@
 
 namespace torsion {
 
+/// What a run wrote, and how it ran.
+struct RunFacts {
+  std::string trace;      // where the trace is; empty: there is none
+  std::string recording;  // likewise
+  std::string mode;       // what the system granted a run on the clock; empty: it was not on it
+};
+
 /// What a run came to, for a person.
-/// @param trace  where the trace is; empty: there is none
 std::string summary_text(const Session& session, const RunStatistics& statistics,
-                         const std::string& trace);
+                         const RunFacts& facts);
 
 /// The same as one JSON object.
 std::string summary_json(const Session& session, const RunStatistics& statistics,
-                         const std::string& trace);
+                         const RunFacts& facts);
 
 }  // namespace torsion

@@ -118,6 +118,49 @@ TEST(SimulateTest, RealtimeRunsOnTheClock) {
   EXPECT_EQ(json::parse(fast.out)["world_hash"], summary["world_hash"]);
 }
 
+std::string without_last_column(const std::string& csv) {
+  std::string text;
+  for (const std::string& line : lines_of(csv)) {
+    text += line.substr(0, line.rfind(',')) + "\n";
+  }
+  return text;
+}
+
+TEST(SimulateTest, AReplayGivesTheBitsOfTheRunOnTheClock) {
+  const Folder folder;
+  const std::string file = folder / "a.rec";
+  const Ran ran = run_torsion({"simulate", scene("ball_on_cube"), "--realtime", "--rate", "2000",
+                               "--contact-model", "paper", "--seconds", "0.8", "--record", file,
+                               "--trace", folder / "a.csv"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const Ran again = run_torsion(
+      {"simulate", scene("ball_on_cube"), "--replay", file, "--trace", folder / "b.csv"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const std::string trace = without_last_column(read_text(folder / "a.csv"));
+  EXPECT_EQ(lines_of(trace).size(), 1601U);
+  EXPECT_EQ(trace, without_last_column(read_text(folder / "b.csv")));
+}
+
+TEST(SimulateTest, RecordingsOfOtherScenesAndDamagedOnesAreRefused) {
+  const Folder folder;
+  const std::string file = folder / "a.rec";
+  ASSERT_EQ(run_torsion({"simulate", scene("ball_on_cube"), "--seconds", "0.1", "--record", file})
+                .exit_code,
+            0);
+  for (const std::string other : {"two_bodies", "ball_on_cube_soft", "compass_on_ellipsoid"}) {
+    const Ran ran = run_torsion({"simulate", scene(other), "--replay", file});
+    EXPECT_EQ(ran.exit_code, 1);
+    EXPECT_NE(ran.err.find("not the scene of the recording"), std::string::npos) << ran.err;
+  }
+  test::write_text(file, read_text(file).substr(0, 900));
+  const Ran cut = run_torsion({"simulate", scene("ball_on_cube"), "--replay", file});
+  EXPECT_EQ(cut.exit_code, 1);
+  EXPECT_NE(cut.err.find("damaged"), std::string::npos) << cut.err;
+  EXPECT_EQ(
+      run_torsion({"simulate", scene("ball_on_cube"), "--replay", file, "--rate", "500"}).exit_code,
+      2);
+}
+
 TEST(SimulateTest, SeveralToolsWouldHaveColumnsOfTheirOwnAndBodiesShareOneTool) {
   const Folder folder;
   ASSERT_EQ(run_torsion(

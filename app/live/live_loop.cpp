@@ -1,0 +1,237 @@
+#include "app/live/live_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "app/live/rebuild.hpp"
+#include "device/scripted_motion.hpp"
+#include "systems/held_tool/tool_equilibrium.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kRingSeconds = 30.0;
+constexpr std::size_t kCommands = 256;
+// s: after a change of models contacts form anew, and their forces rise within 10 ms; a tool
+// without mass would fall through until then.
+constexpr double kSettle = 0.05;
+constexpr double kDeadline = 1000.0;  // us: later than that and a hand may feel it
+
+void take_sample(LiveTool& tool) {
+  if (tool.slot == nullptr || !tool.slot->sample.refresh()) {
+    return;
+  }
+  const HandleSample& sample = tool.slot->sample.front();
+  if (tool.sample == 0) {
+    tool.last_handle = sample.pose;
+  }
+  tool.handle = sample.pose;
+  tool.sample = sample.number;
+}
+
+/// The pose that a tool takes in the next step; fills `handle` with what asked for it.
+Pose next_pose(LiveLoop& loop, std::uint32_t row, Pose& handle) {
+  LiveTool& tool = loop.tools[row];
+  const World& world = loop.simulation->world;
+  take_sample(tool);
+  if (tool.from == PoseFrom::kScript) {
+    handle = scripted_pose(loop.session->scene.tools[row].script, next_time(world));
+    return handle;
+  }
+  if (tool.sample == 0) {  // nobody has taken it yet: it stays
+    handle = world.tools.at<ToolPose>(row).now;
+    return handle;
+  }
+  handle = tool.handle;
+  if (tool.still_steps > 0) {
+    tool.still_steps -= 1;
+    return world.tools.at<ToolPose>(row).now;
+  }
+  return next_tool_pose(world, row, tool.coupling, handle);
+}
+
+/// What the handle is to feel of the step just done.
+void answer(LiveLoop& loop, std::uint32_t row) {
+  LiveTool& tool = loop.tools[row];
+  if (tool.slot == nullptr) {
+    return;
+  }
+  const World& world = loop.simulation->world;
+  HandleAnswer& out = tool.slot->answer.back();
+  out.tool = world.tools.at<ToolPose>(row).now;
+  out.faults = world.clock.at<Clock>(0).faults;
+  out.sample = tool.sample;
+  out.wrench = Wrench{};
+  out.distance = 0.0;
+  if (tool.from == PoseFrom::kHandle && tool.sample != 0) {
+    const Wrench pull = coupling_wrench(tool.coupling, {tool.handle}, {out.tool});
+    out.wrench = keep_passive(tool.books, tool.limits, {-pull.force, -pull.torque},
+                              tool.handle.position - tool.last_handle.position,
+                              turn_between(tool.last_handle.rotation, tool.handle.rotation),
+                              world.clock.at<Clock>(0).dt);
+    tool.last_handle = tool.handle;
+    out.distance = glm::length(tool.handle.position - out.tool.position);
+  }
+  out.time_ns = monotonic_now();
+  tool.slot->answer.publish();
+}
+
+void push_input(LiveLoop& loop, const InputEntry& entry) {
+  if (loop.wants_inputs && !loop.inputs.push(entry)) {
+    loop.statistics.lost_inputs += 1;
+  }
+}
+
+void go_over(LiveLoop& loop, Generation& to, bool carry) {
+  const World& from = loop.simulation->world;
+  const std::uint64_t step = from.clock.at<Clock>(0).step;
+  if (carry) {
+    carry_over(from, to.simulation.world);
+    for (std::uint32_t body = 0; body < to.picks.size(); ++body) {
+      push_input(loop, body_entry(step, body, to.picks[body]));
+    }
+    push_input(loop, {InputKind::kRebuild, 0, step, {}});
+    const double dt = to.simulation.world.clock.at<Clock>(0).dt;
+    for (LiveTool& tool : loop.tools) {
+      tool.still_steps = static_cast<std::uint32_t>(std::ceil(kSettle / dt));
+    }
+  } else {
+    loop.statistics = RunStatistics{};
+    for (LiveTool& tool : loop.tools) {
+      tool.sample = 0;
+      tool.books = PassivityState{};
+    }
+  }
+  loop.simulation = &to.simulation;
+  loop.generation = to.number;
+}
+
+void do_command(LiveLoop& loop, const LiveCommand& command) {
+  switch (command.kind) {
+    case LiveCommandKind::kPause:
+      loop.paused = command.number != 0;
+      loop.single_steps = 0;
+      break;
+    case LiveCommandKind::kStepOnce:
+      loop.single_steps += 1;
+      break;
+    case LiveCommandKind::kSlowness:
+      loop.slowness = static_cast<std::uint32_t>(std::max<std::uint64_t>(command.number, 1));
+      break;
+    case LiveCommandKind::kPoseFrom:
+      loop.tools[command.index].from = static_cast<PoseFrom>(command.number);
+      break;
+    case LiveCommandKind::kSwap:
+      go_over(loop, *command.generation, true);
+      break;
+    case LiveCommandKind::kRestart:
+      go_over(loop, *command.generation, false);
+      break;
+  }
+}
+
+/// Whether this tick takes a step.
+bool due_now(LiveLoop& loop) {
+  if (loop.paused) {
+    if (loop.single_steps == 0) {
+      return false;
+    }
+    loop.single_steps -= 1;
+    return true;
+  }
+  return loop.ticks % loop.slowness == 0;
+}
+
+void step_and_tell(LiveLoop& loop, double late_us) {
+  World& world = loop.simulation->world;
+  const std::uint64_t number = world.clock.at<Clock>(0).step;
+  const Nanoseconds start = monotonic_now();
+  std::vector<Pose>& poses = loop.session->tool_poses;
+  for (std::uint32_t row = 0; row < poses.size(); ++row) {
+    Pose handle;
+    poses[row] = next_pose(loop, row, handle);
+    push_input(loop, pose_entry(number, row, poses[row], handle));
+  }
+  step(*loop.simulation, poses);
+  for (std::uint32_t row = 0; row < poses.size(); ++row) {
+    answer(loop, row);
+  }
+  const double step_us = 1e-3 * static_cast<double>(monotonic_now() - start);
+  loop.statistics.add_step(world, step_us);
+  loop.statistics.overruns += 1e3 * step_us > static_cast<double>(loop.schedule.period) ? 1U : 0U;
+  for (std::uint32_t row = 0; loop.wants_rows && row < poses.size(); ++row) {
+    const LiveRow out{trace_row(world, row, step_us), late_us, loop.generation, row,
+                      world.clock.at<Clock>(0).faults};
+    loop.statistics.lost_rows += loop.rows.push(out) ? 0U : 1U;
+  }
+  loop.steps_left -= 1;
+}
+
+void publish_frame(LiveLoop& loop) {
+  LiveFrame& frame = loop.frames.back();
+  capture(loop.simulation->world, frame.snapshot);
+  frame.statistics = loop.statistics;
+  frame.generation = loop.generation;
+  frame.skipped = loop.schedule.skipped;
+  frame.slowness = loop.slowness;
+  frame.paused = loop.paused;
+  loop.frames.publish();
+}
+
+}  // namespace
+
+void reserve(LiveLoop& loop, Session& session) {
+  const World& world = session.simulation.world;
+  const double dt = world.clock.at<Clock>(0).dt;
+  loop.session = &session;
+  loop.simulation = &session.simulation;
+  loop.schedule.period = static_cast<Nanoseconds>(std::llround(1e9 * dt));
+  loop.tools.assign(session.scene.tools.size(), LiveTool{});
+  const std::size_t rows =
+      static_cast<std::size_t>(kRingSeconds / dt) * std::max<std::size_t>(loop.tools.size(), 1);
+  loop.rows.reserve(loop.wants_rows ? rows : 1);
+  loop.inputs.reserve(loop.wants_inputs ? rows : 1);
+  loop.commands.reserve(kCommands);
+  loop.frames.prepare([&world](LiveFrame& frame) {
+    frame.snapshot.reserve(world);
+    capture(world, frame.snapshot);
+  });
+}
+
+void take_commands(LiveLoop& loop) {
+  while (const auto command = loop.commands.pop()) {
+    do_command(loop, *command);
+  }
+}
+
+void live_tick(LiveLoop& loop, double late_us) {
+  take_commands(loop);
+  loop.statistics.lateness.add(late_us);
+  loop.statistics.missed_deadlines += late_us > kDeadline ? 1U : 0U;
+  if (due_now(loop)) {
+    step_and_tell(loop, late_us);
+  }
+  loop.ticks += 1;
+  publish_frame(loop);
+}
+
+void run_live(LiveLoop& loop) {
+  if (loop.wants_privileges) {
+    loop.mode = become_realtime();
+  }
+  loop.ready.store(true, std::memory_order_release);
+  const Nanoseconds start = monotonic_now();
+  loop.schedule.due = start + loop.schedule.period;
+  while (loop.steps_left > 0 && !loop.stop.load(std::memory_order_acquire)) {
+    wait_until(loop.schedule.due, loop.mode.fifo);
+    const Nanoseconds late = begin_step(loop.schedule, monotonic_now());
+    live_tick(loop, 1e-3 * static_cast<double>(std::max<Nanoseconds>(late, 0)));
+    loop.statistics.wall_time = 1e-9 * static_cast<double>(monotonic_now() - start);
+  }
+  publish_frame(loop);
+  loop.over.store(true, std::memory_order_release);
+}
+
+}  // namespace torsion

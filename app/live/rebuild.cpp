@@ -1,0 +1,44 @@
+#include "app/live/rebuild.hpp"
+
+#include <algorithm>
+
+namespace torsion {
+
+std::vector<BodyPick> picks_of(const SceneDescription& scene, const PrepareOptions& options) {
+  std::vector<BodyPick> picks;
+  for (const BodyDescription& body : scene.bodies) {
+    const bool scene_contact = options.contact_model == ContactModel::kAuto;
+    const bool scene_body = options.body_model == BodyModel::kAuto;
+    picks.push_back({scene_contact ? body.models.contact : options.contact_model,
+                     scene_body ? body.models.body : options.body_model, body.elasticity,
+                     body.friction});
+  }
+  return picks;
+}
+
+void apply_picks(const std::vector<BodyPick>& picks, SceneDescription& scene) {
+  TORSION_ASSERT(picks.size() == scene.bodies.size());
+  for (std::size_t i = 0; i < picks.size(); ++i) {
+    BodyDescription& body = scene.bodies[i];
+    body.models.contact = picks[i].contact;
+    body.models.body = picks[i].body;
+    body.elasticity = picks[i].elasticity;
+    body.friction = picks[i].friction;
+  }
+}
+
+void carry_over(const World& from, World& to) {
+  TORSION_ASSERT(from.tools.size() == to.tools.size());
+  const Clock& old_clock = from.clock.at<Clock>(0);
+  Clock& clock = to.clock.at<Clock>(0);
+  clock.time = old_clock.time;
+  clock.step = old_clock.step;
+  clock.faults_ever = old_clock.faults_ever;
+  std::ranges::copy(from.tools.column<ToolPose>(), to.tools.column<ToolPose>().begin());
+  std::ranges::copy(from.tools.column<ToolMotion>(), to.tools.column<ToolMotion>().begin());
+  for (std::uint32_t tool = 0; tool < to.tools.size(); ++tool) {
+    to.tools.at<ToolWrench>(tool).work = from.tools.at<ToolWrench>(tool).work;
+  }
+}
+
+}  // namespace torsion

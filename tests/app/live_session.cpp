@@ -1,0 +1,26 @@
+#include "tests/app/live_session.hpp"
+
+#include "tests/support/contact_scenes.hpp"
+
+namespace torsion::test {
+
+PrepareOptions ball_options() {
+  PrepareOptions options;
+  options.contact_model = ContactModel::kMdr;
+  options.body_model = BodyModel::kNone;
+  options.use_cache = false;
+  return options;
+}
+
+Session ball_session() {
+  Session session;
+  session.scene = ball_on_cube();
+  session.scene.path = "ball";
+  session.scene.bodies[0].models = {};
+  session.simulation = prepare(session.scene, ball_options()).value();
+  session.tool_poses.resize(1);
+  session.simulation.world.tools.at<ToolPose>(0).now.position.y = kTouching + 1e-3;
+  return session;
+}
+
+}  // namespace torsion::test

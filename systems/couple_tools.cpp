@@ -4,6 +4,7 @@
 
 #include "systems/fault.hpp"
 #include "systems/frames.hpp"
+#include "systems/rotation_vector.hpp"
 
 namespace torsion {
 namespace {
@@ -20,19 +21,6 @@ bool finite(const Pose& pose) {
   const double norm = glm::dot(q, q);
   return std::isfinite(pose.position.x + pose.position.y + pose.position.z) &&
          std::isfinite(norm) && norm > 0.25 && norm < 4.0;
-}
-
-/// Rotation vector of a unit quaternion, the short way round, |vector| <= pi.
-glm::dvec3 rotation_vector(glm::dquat q) {
-  if (q.w < 0.0) {
-    q = -q;
-  }
-  const glm::dvec3 imaginary(q.x, q.y, q.z);
-  const double sine = glm::length(imaginary);
-  if (sine < 1e-12) {
-    return 2.0 * imaginary;
-  }
-  return imaginary * (2.0 * std::atan2(sine, q.w) / sine);
 }
 
 /// Turning adds to the axis vector and fades what was there, by the angle turned, not by time: the
@@ -73,8 +61,7 @@ void couple_tools(StepContext& context) {
     }
     motion.mass_center = to_outer(pose.now, masses[tool].center);
     const glm::dvec3 shift = motion.mass_center - center_before;
-    const glm::dvec3 turn =
-        rotation_vector(pose.now.rotation * glm::conjugate(pose.before.rotation));
+    const glm::dvec3 turn = turn_between(pose.before.rotation, pose.now.rotation);
     motion.velocity = shift / clock.dt;
     motion.angular_velocity = turn / clock.dt;
     if (clock.step == 0) {

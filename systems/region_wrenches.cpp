@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "systems/fault.hpp"
+#include "systems/finite.hpp"
 #include "systems/frames.hpp"
 
 namespace torsion {
@@ -23,11 +24,6 @@ Wrench operator-(const Wrench& a, const Wrench& b) {
 }
 Wrench operator*(const Wrench& a, double share) {
   return {a.force * share, a.torque * share};
-}
-
-bool finite(const Wrench& wrench) {
-  const glm::dvec3 sum = wrench.force + wrench.torque;
-  return std::isfinite(sum.x + sum.y + sum.z);
 }
 
 Wrench computed_wrench(const World& world, std::uint32_t region) {

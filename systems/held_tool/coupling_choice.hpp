@@ -2,25 +2,10 @@
 
 #include <string>
 
+#include "ecs/device_sample.hpp"
 #include "systems/held_tool/virtual_coupling.hpp"
 
 namespace torsion {
-
-/// What a device is, as far as stability asks. Zero where it is not known.
-struct DeviceTraits {
-  double damping = 0.0;            // b, N s/m: of the handle without motors on
-  double turn_damping = 0.0;       // N m s/rad
-  double mass = 0.0;               // kg: of handle and mechanism
-  double inertia = 0.0;            // kg m^2
-  double encoder_step = 0.0;       // m: one count, at the handle
-  double encoder_turn_step = 0.0;  // rad
-  double period = 1e-3;            // T, s: between two forces
-  double delay = 0.0;           // t_d, s: from a position read to its force sent, beyond the hold
-  double largest_force = 0.0;   // N
-  double largest_torque = 0.0;  // N m; zero: the device has no torque
-  double largest_stiffness = 0.0;       // N/m, as its maker says
-  double largest_turn_stiffness = 0.0;  // N m/rad
-};
 
 /// What set a stiffness.
 enum class StiffnessLimit {

@@ -5,15 +5,12 @@
 
 #include <glm/geometric.hpp>
 
+#include "systems/finite.hpp"
+
 namespace torsion {
 namespace {
 
 constexpr double kNothing = 1e-9;  // a share that is only the rounding of what fell
-
-bool finite(const Wrench& wrench) {
-  const glm::dvec3 sum = wrench.force + wrench.torque;
-  return std::isfinite(sum.x + sum.y + sum.z);
-}
 
 glm::dvec3 at_most(const glm::dvec3& vector, double most) {
   const double length = glm::length(vector);

@@ -14,14 +14,6 @@ glm::dvec3 soft_limit(const glm::dvec3& vector, double most) {
   return vector / std::sqrt(1.0 + share * share);
 }
 
-glm::dvec3 turn_between(const glm::dquat& from, const glm::dquat& to) {
-  glm::dquat turn = to * glm::conjugate(from);
-  turn = turn.w < 0.0 ? -turn : turn;
-  const glm::dvec3 imaginary(turn.x, turn.y, turn.z);
-  const double sine = glm::length(imaginary);
-  return sine < 1e-12 ? 2.0 * imaginary : imaginary * (2.0 * std::atan2(sine, turn.w) / sine);
-}
-
 Wrench coupling_wrench(const VirtualCoupling& coupling, const MovingFrame& handle,
                        const MovingFrame& tool) {
   const glm::dvec3 pull = coupling.stiffness * (handle.pose.position - tool.pose.position) +

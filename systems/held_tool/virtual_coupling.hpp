@@ -36,7 +36,4 @@ Wrench coupling_wrench(const VirtualCoupling& coupling, const MovingFrame& handl
 /// `most` is.
 glm::dvec3 soft_limit(const glm::dvec3& vector, double most);
 
-/// Rotation vector from `from` to `to`, the short way round, |vector| <= pi; world axes.
-glm::dvec3 turn_between(const glm::dquat& from, const glm::dquat& to);
-
 }  // namespace torsion

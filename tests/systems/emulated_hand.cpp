@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "systems/rotation_vector.hpp"
 namespace torsion::test {
 namespace {
 

@@ -10,6 +10,7 @@
 #include "systems/held_tool/output_guard.hpp"
 #include "systems/held_tool/passivity.hpp"
 #include "systems/held_tool/tool_equilibrium.hpp"
+#include "systems/rotation_vector.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/systems/emulated_hand.hpp"
 

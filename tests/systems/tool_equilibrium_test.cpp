@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "systems/rotation_vector.hpp"
 #include "tests/support/contact_scenes.hpp"
 
 namespace torsion {

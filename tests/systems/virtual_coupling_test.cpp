@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "systems/rotation_vector.hpp"
+
 namespace torsion {
 namespace {
 

@@ -8,6 +8,7 @@
 #include "app/live/rebuild.hpp"
 #include "device/scripted_motion.hpp"
 #include "systems/held_tool/tool_equilibrium.hpp"
+#include "systems/rotation_vector.hpp"
 
 namespace torsion {
 namespace {

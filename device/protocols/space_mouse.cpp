@@ -98,6 +98,8 @@ bool take_space_mouse_report(const SpaceMouseLayout& layout, Bytes report, Space
     if (const auto value = hid_value(axis, layout.numbered, report)) {
       raw[i] = share_of(axis, *value);
       any = true;
+    } else if (layout.numbered && !report.empty() && report[0] == axis.report_id) {
+      return false;  // cut off: what is there of it may be wrong, too
     }
   }
   std::uint32_t buttons = state.buttons;

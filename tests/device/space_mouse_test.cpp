@@ -74,6 +74,16 @@ TEST(SpaceMouseTest, HoldsButtonsUntilTheyAreLetGo) {
   EXPECT_EQ(state.buttons, 0U);
 }
 
+TEST(SpaceMouseTest, IgnoresReportsThatAreCutOff) {
+  for (const SpaceMouseLayout& layout : {described(), usual_space_mouse_layout()}) {
+    SpaceMouseState state;
+    for (std::size_t size = 1; size < 7; ++size) {
+      EXPECT_FALSE(take_space_mouse_report(layout, Bytes(axes(1, 9, 9, 9)).first(size), state));
+      EXPECT_EQ(state.translation, glm::dvec3(0.0));
+    }
+  }
+}
+
 TEST(SpaceMouseTest, IgnoresReportsItDoesNotKnow) {
   SpaceMouseState state;
   state.buttons = 1;

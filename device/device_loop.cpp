@@ -1,0 +1,320 @@
+#include "device/device_loop.hpp"
+
+#include <algorithm>
+
+#include <glm/geometric.hpp>
+
+#include "ecs/assert.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kOldWrench = 2e-3;  // s: a part does not display a wrench older than this
+
+/// What a driver's samples come to: the row they belong to.
+struct RowContext {
+  DeviceLoop& loop;
+  std::size_t row;
+};
+
+bool translates(DeviceRole role) {
+  return role == DeviceRole::kTranslation || role == DeviceRole::kTranslationAndRotation;
+}
+
+bool turns(DeviceRole role) {
+  return role == DeviceRole::kRotation || role == DeviceRole::kTranslationAndRotation;
+}
+
+/// One that works, or will without anybody's help.
+bool counts(const DeviceRow& row) {
+  switch (row.report.sample.trouble) {
+    case DeviceTrouble::kNoAccess:
+    case DeviceTrouble::kHeldElsewhere:
+    case DeviceTrouble::kNoFirmware:
+    case DeviceTrouble::kBadFirmware:
+    case DeviceTrouble::kNotUnderstood:
+      return false;
+    default:
+      return row.used;
+  }
+}
+
+DeviceRow* first_of(DeviceLoop& loop, DeviceKind kind) {
+  const auto found = std::ranges::find_if(
+      loop.rows, [kind](const DeviceRow& row) { return counts(row) && row.kind == kind; });
+  return found != loop.rows.end() ? &*found : nullptr;
+}
+
+/// Several Falcons carry the tool.
+std::size_t carry_with_falcons(DeviceLoop& loop) {
+  std::size_t count = 0;
+  for (DeviceRow& row : loop.rows) {
+    if (counts(row) && row.kind == DeviceKind::kFalcon && count < kMostPoints) {
+      row.role = DeviceRole::kPoint;
+      row.point = count++;
+    }
+  }
+  if (count >= 2) {
+    loop.carried = carried_at(count, loop.options.spacing);
+  }
+  return count;
+}
+
+/// Who does what: a device with force translates before one without, a knob twists, and what is
+/// left that can turn turns.
+void give_roles(DeviceLoop& loop) {
+  for (DeviceRow& row : loop.rows) {
+    row.role = DeviceRole::kNone;
+  }
+  loop.carried.count = 0;
+  if (carry_with_falcons(loop) < 2) {
+    DeviceRow* const falcon = first_of(loop, DeviceKind::kFalcon);
+    DeviceRow* const wooden = first_of(loop, DeviceKind::kWoodenHaptics);
+    DeviceRow* const mouse = first_of(loop, DeviceKind::kSpaceMouse);
+    DeviceRow* const knob = first_of(loop, DeviceKind::kOdrive);
+    DeviceRow* const turner = wooden != nullptr ? wooden : mouse;
+    if (falcon != nullptr) {
+      falcon->role = DeviceRole::kTranslation;
+      if (turner != nullptr) {
+        turner->role = DeviceRole::kRotation;
+      }
+    } else if (turner != nullptr) {
+      turner->role = DeviceRole::kTranslationAndRotation;
+    }
+    if (knob != nullptr) {
+      knob->role = DeviceRole::kTwist;
+    }
+  }
+}
+
+/// State and trouble of all parts: live when every one is.
+void compose_state(const DeviceLoop& loop, DeviceSample& whole) {
+  whole.state = DeviceState::kAbsent;
+  whole.trouble = DeviceTrouble::kNone;
+  bool any = false;
+  bool all_live = true;
+  for (const DeviceRow& row : loop.rows) {
+    if (!row.used) {
+      continue;
+    }
+    const DeviceSample& sample = row.report.sample;
+    if (row.role != DeviceRole::kNone) {
+      any = true;
+      all_live = all_live && sample.state == DeviceState::kLive;
+    }
+    if (whole.trouble == DeviceTrouble::kNone && sample.trouble != DeviceTrouble::kNone) {
+      whole.trouble = sample.trouble;
+    }
+    whole.state = DeviceState::kStarting;
+  }
+  if (any && all_live) {
+    whole.state = DeviceState::kLive;
+  }
+}
+
+void add_traits(DeviceTraits& whole, const DeviceRow& row) {
+  const DeviceTraits& part = row.report.sample.traits;
+  if (translates(row.role)) {
+    whole.damping = part.damping;
+    whole.mass = part.mass;
+    whole.encoder_step = part.encoder_step;
+    whole.largest_force = part.largest_force;
+    whole.largest_stiffness = part.largest_stiffness;
+  }
+  if (turns(row.role) || row.role == DeviceRole::kTwist) {
+    whole.encoder_turn_step = std::max(whole.encoder_turn_step, part.encoder_turn_step);
+    whole.largest_torque = std::max(whole.largest_torque, part.largest_torque);
+  }
+}
+
+void compose_points(const DeviceLoop& loop, DeviceSample& whole) {
+  std::array<glm::dvec3, kMostPoints> places{};
+  for (const DeviceRow& row : loop.rows) {
+    if (row.used && row.role == DeviceRole::kPoint) {
+      places[row.point] = row.report.sample.pose.position;
+      whole.traits.largest_force += row.report.sample.traits.largest_force;
+      whole.traits.encoder_step = row.report.sample.traits.encoder_step;
+    }
+  }
+  whole.pose = carried_pose(loop.carried, std::span(places).first(loop.carried.count));
+  whole.sensed = kTranslationAxes | kRotationAxes;
+  whole.actuated = whole.sensed;
+  // A couple of two of them, N m.
+  const double one = whole.traits.largest_force / static_cast<double>(loop.carried.count);
+  whole.traits.largest_torque = one * loop.options.spacing;
+  whole.traits.encoder_turn_step = whole.traits.encoder_step / loop.options.spacing;
+}
+
+/// All devices as one.
+void compose(DeviceLoop& loop) {
+  DeviceSample& whole = loop.whole;
+  whole.traits = {};
+  whole.sensed = kNoAxes;
+  whole.actuated = kNoAxes;
+  whole.steers_rate = false;
+  whole.buttons = 0;
+  Pose pose;
+  glm::dquat twist(1.0, 0.0, 0.0, 0.0);
+  for (const DeviceRow& row : loop.rows) {
+    const DeviceSample& sample = row.report.sample;
+    if (!row.used || row.role == DeviceRole::kNone) {
+      continue;
+    }
+    whole.buttons |= sample.buttons;
+    add_traits(whole.traits, row);
+    if (translates(row.role)) {
+      pose.position = sample.pose.position;
+      whole.steers_rate = sample.steers_rate;
+      whole.sensed |= kTranslationAxes;
+      whole.actuated |= sample.actuated & kTranslationAxes;
+    }
+    if (turns(row.role)) {
+      pose.rotation = sample.pose.rotation;
+      whole.sensed |= kRotationAxes;
+      whole.actuated |= sample.actuated & kRotationAxes;
+    }
+    if (row.role == DeviceRole::kTwist) {
+      const double angle = 2.0 * std::atan2(sample.pose.rotation.y, sample.pose.rotation.w);
+      twist = glm::angleAxis(angle, loop.options.twist_axis);
+      whole.sensed |= kTwistAxis;
+      whole.actuated |= kTwistAxis;
+    }
+  }
+  whole.pose = {pose.position, pose.rotation * twist};
+  if (loop.carried.count >= 2) {
+    compose_points(loop, whole);
+  }
+  compose_state(loop, whole);
+}
+
+/// Whose samples are the samples of the whole: one that translates, or the only one.
+bool leads(const DeviceLoop& loop, std::size_t row) {
+  const auto leader = std::ranges::find_if(loop.rows, [](const DeviceRow& other) {
+    return other.used &&
+           (translates(other.role) || (other.role == DeviceRole::kPoint && other.point == 0));
+  });
+  return leader == loop.rows.end() || static_cast<std::size_t>(leader - loop.rows.begin()) == row;
+}
+
+/// A device's part of the wrench. A knob's is its torque about y.
+Wrench share_of(const DeviceLoop& loop, const DeviceRow& row) {
+  const DeviceSample& whole = loop.whole;
+  switch (row.role) {
+    case DeviceRole::kTranslation:
+    case DeviceRole::kTranslationAndRotation:
+      return {loop.wrench.force, glm::dvec3(0.0)};
+    case DeviceRole::kTwist: {
+      const glm::dvec3 axis = whole.pose.rotation * loop.options.twist_axis;
+      return {glm::dvec3(0.0), {0.0, glm::dot(loop.wrench.torque, axis), 0.0}};
+    }
+    case DeviceRole::kPoint: {
+      std::array<glm::dvec3, kMostPoints> places{};
+      std::array<glm::dvec3, kMostPoints> forces{};
+      for (const DeviceRow& other : loop.rows) {
+        if (other.used && other.role == DeviceRole::kPoint) {
+          places[other.point] = other.report.sample.pose.position;
+        }
+      }
+      carried_forces(loop.carried, places, loop.wrench, forces);
+      return {forces[row.point], glm::dvec3(0.0)};
+    }
+    default:
+      return {};
+  }
+}
+
+/// Where all drivers' samples arrive.
+Wrench on_sample(void* context, const DeviceSample& sample) {
+  auto& [loop, row] = *static_cast<RowContext*>(context);
+  DeviceRow& device = loop.rows[row];
+  const bool was_live = loop.whole.state == DeviceState::kLive;
+  const std::uint32_t kept = loop.whole.epoch;
+  if (sample.state != DeviceState::kLive) {
+    give_roles(loop);  // a trouble may have taken it out, or brought it back
+  } else if (device.role == DeviceRole::kNone) {
+    give_roles(loop);
+  }
+  compose(loop);
+  const bool live = loop.whole.state == DeviceState::kLive;
+  if (live != was_live) {
+    loop.whole.epoch = kept + (live ? 1U : 0U);
+    loop.wrench = {};
+  }
+  if (leads(loop, row) || live != was_live || !live) {
+    loop.whole.number += 1;
+    loop.whole.time = sample.time;
+    loop.whole.rate = sample.rate;
+    loop.wrench = loop.sink.on_sample(loop.sink.context, loop.whole);
+    loop.asked = sample.time;
+  }
+  const bool fresh = sample.time - loop.asked <= kOldWrench;
+  return live && fresh ? share_of(loop, device) : Wrench{};
+}
+
+template <class F>
+void with_driver(DeviceLoop& loop, std::size_t row, double now, UsbRequests& requests, F&& f) {
+  DeviceRow& device = loop.rows[row];
+  TORSION_ASSERT(device.used);
+  RowContext context{loop, row};
+  DriverCall call{now,           device.identity, loop.options.drivers,
+                  device.report, requests,        {&context, on_sample}};
+  std::visit([&](auto& driver) { f(driver, call); }, device.driver);
+}
+
+}  // namespace
+
+std::size_t free_row(const DeviceLoop& loop) {
+  const auto found = std::ranges::find(loop.rows, false, &DeviceRow::used);
+  return static_cast<std::size_t>(found - loop.rows.begin());
+}
+
+void attach(DeviceLoop& loop, std::size_t row, const UsbIdentity& identity, DeviceKind kind,
+            double now, UsbRequests& requests) {
+  TORSION_ASSERT(!loop.rows[row].used);
+  loop.rows[row] = {};
+  loop.rows[row].used = true;
+  loop.rows[row].kind = kind;
+  loop.rows[row].identity = identity;
+  loop.rows[row].driver = driver_for(kind);
+  with_driver(loop, row, now, requests,
+              [](auto& driver, DriverCall& call) { begin(driver, call); });
+}
+
+void take(DeviceLoop& loop, std::size_t row, const UsbEvent& event, double now,
+          UsbRequests& requests) {
+  with_driver(loop, row, now, requests,
+              [&event](auto& driver, DriverCall& call) { take(driver, call, event); });
+}
+
+void wake(DeviceLoop& loop, std::size_t row, double now, UsbRequests& requests) {
+  with_driver(loop, row, now, requests, [](auto& driver, DriverCall& call) { wake(driver, call); });
+}
+
+void rest(DeviceLoop& loop, std::size_t row, double now, UsbRequests& requests) {
+  with_driver(loop, row, now, requests, [](auto& driver, DriverCall& call) { rest(driver, call); });
+}
+
+void detach(DeviceLoop& loop, std::size_t row, double now) {
+  DeviceRow& device = loop.rows[row];
+  const bool mattered = device.role != DeviceRole::kNone;
+  device = {};
+  give_roles(loop);
+  compose(loop);
+  loop.wrench = {};
+  loop.whole.time = now;
+  loop.whole.number += 1;
+  if (mattered && loop.whole.state == DeviceState::kLive) {
+    loop.whole.epoch += 1;  // what is left goes on by itself, from no force
+  }
+  loop.sink.on_sample(loop.sink.context, loop.whole);
+}
+
+double next_wake(const DeviceLoop& loop) {
+  double first = kNever;
+  for (const DeviceRow& row : loop.rows) {
+    first = row.used ? std::min(first, row.report.wake_at) : first;
+  }
+  return first;
+}
+
+}  // namespace torsion

@@ -1,0 +1,75 @@
+#pragma once
+
+// The devices that are open and what they are together: one sample, one wrench. Runs in the
+// device thread, over any bus: events in, requests out.
+
+#include <array>
+
+#include "device/composite.hpp"
+#include "device/drivers/drivers.hpp"
+
+namespace torsion {
+
+inline constexpr std::size_t kMostDevices = 6;
+
+/// What a device does for the tool.
+enum class DeviceRole : std::uint8_t {
+  kNone,
+  kTranslation,
+  kRotation,
+  kTranslationAndRotation,
+  kTwist,  // on top of the rotation, if there is another
+  kPoint,  // one of two or three that carry the tool
+};
+
+struct LoopOptions {
+  DriverOptions drivers;
+  std::uint32_t kinds = ~0U;             // bits 1 << DeviceKind: which may be used
+  glm::dvec3 twist_axis{0.0, 1.0, 0.0};  // world, at rest: what a knob turns about
+  double spacing = 0.2;                  // m: between devices that carry a tool together
+};
+
+struct DeviceRow {
+  bool used = false;
+  DeviceKind kind = DeviceKind::kSpaceMouse;
+  UsbIdentity identity;
+  Driver driver;
+  DriverReport report;
+  DeviceRole role = DeviceRole::kNone;
+  std::size_t point = 0;  // of kPoint
+};
+
+struct DeviceLoop {
+  LoopOptions options;
+  SampleSink sink;  // gets the samples of all devices as one
+  std::array<DeviceRow, kMostDevices> rows;
+  CarriedTool carried;
+  DeviceSample whole;
+  Wrench wrench;       // that the sink asked for last
+  double asked = 0.0;  // s: when
+};
+
+/// A free row, or kMostDevices.
+std::size_t free_row(const DeviceLoop& loop);
+
+/// A device of this kind is open at `row`. @pre the row is free
+void attach(DeviceLoop& loop, std::size_t row, const UsbIdentity& identity, DeviceKind kind,
+            double now, UsbRequests& requests);
+
+/// A request of the device has ended.
+void take(DeviceLoop& loop, std::size_t row, const UsbEvent& event, double now,
+          UsbRequests& requests);
+
+/// The time that the device asked for has come.
+void wake(DeviceLoop& loop, std::size_t row, double now, UsbRequests& requests);
+
+/// The device will be closed: what leaves its motors without force.
+void rest(DeviceLoop& loop, std::size_t row, double now, UsbRequests& requests);
+
+/// The device is gone. From here on no other displays a force that counted on it.
+void detach(DeviceLoop& loop, std::size_t row, double now);
+
+/// s: when the first device wants to be woken; kNever where none does.
+double next_wake(const DeviceLoop& loop);
+
+}  // namespace torsion

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <variant>
+
+#include "device/drivers/falcon_driver.hpp"
+#include "device/drivers/odrive_driver.hpp"
+#include "device/drivers/space_mouse_driver.hpp"
+#include "device/drivers/wooden_driver.hpp"
+
+namespace torsion {
+
+enum class DeviceKind : std::uint8_t { kSpaceMouse, kFalcon, kWoodenHaptics, kOdrive };
+
+/// For a person, and as a word in options.
+std::string_view name_of(DeviceKind kind);
+std::string_view word_of(DeviceKind kind);
+
+/// What a device is by its ids and its interfaces.
+/// @return nothing for what Torsion does not use
+std::optional<DeviceKind> kind_of(const UsbIdentity& identity);
+
+using Driver = std::variant<SpaceMouseDriver, FalconDriver, WoodenDriver, OdriveDriver>;
+
+Driver driver_for(DeviceKind kind);
+
+}  // namespace torsion

@@ -1,0 +1,196 @@
+#include "device/drivers/odrive_driver.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+namespace torsion {
+namespace {
+
+constexpr double kSilence = 5e-3;  // s: live, then it is told to let go and asked again
+constexpr double kLost = 0.25;     // s: then it is set up anew
+constexpr double kRetry = 0.5;     // s
+constexpr int kAxis = 0;
+constexpr std::uint8_t kCdcControl = 2;
+constexpr std::uint8_t kCdcData = 10;
+
+// Torque control with the axis's own watchdog, so that it lets go when it hears nothing.
+constexpr std::array<std::string_view, 5> kSetUp = {
+    "sc\n", "w axis0.config.watchdog_timeout 0.05\n", "w axis0.config.enable_watchdog 1\n",
+    "w axis0.controller.config.control_mode 1\n", "w axis0.requested_state 8\n"};
+constexpr std::string_view kIdle = "c 0 0\nw axis0.requested_state 1\n";
+
+Bytes bytes_of(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+std::string_view text_of(Bytes bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+void write(OdriveDriver& driver, DriverCall& call, std::string_view text) {
+  write_through(driver.writes, call, bytes_of(text));
+}
+
+void step(OdriveDriver& driver, DriverCall& call, double torque) {
+  const double most = call.options.largest_knob_torque;
+  const double limited = std::isfinite(torque) ? std::clamp(torque, -most, most) : 0.0;
+  write(driver, call, encode_odrive_step(kAxis, limited).view());
+}
+
+void let_go(OdriveDriver& driver, DriverCall& call) {
+  let_go_through(driver.writes, call, bytes_of(encode_odrive_step(kAxis, 0.0).view()));
+}
+
+void again_later(OdriveDriver& driver, DriverCall& call, DeviceTrouble trouble) {
+  write(driver, call, kIdle);
+  driver.phase = OdrivePhase::kClaimingControl;
+  set_state(call, DeviceState::kStarting, trouble);
+  call.report.wake_at = call.now + kRetry;
+}
+
+const UsbInterface* interface_of(const UsbIdentity& identity, std::uint8_t device_class) {
+  const auto found =
+      std::ranges::find(identity.interfaces, device_class, &UsbInterface::device_class);
+  return found != identity.interfaces.end() ? &*found : nullptr;
+}
+
+void take_feedback(OdriveDriver& driver, DriverCall& call, const OdriveFeedback& feedback) {
+  driver.heard_at = call.now;
+  call.report.wake_at = call.now + kSilence;
+  driver.phase = OdrivePhase::kLive;
+  set_state(call, DeviceState::kLive);
+  const double angle = 2.0 * std::numbers::pi * std::remainder(feedback.position, 1.0);
+  const Wrench wrench =
+      publish_pose(call, {glm::dvec3(0.0), glm::angleAxis(angle, glm::dvec3(0.0, 1.0, 0.0))}, 0);
+  step(driver, call, wrench.torque.y);
+}
+
+void take_claim(OdriveDriver& driver, DriverCall& call, const UsbEvent& event) {
+  if (event.status != UsbStatus::kDone) {
+    set_state(call, DeviceState::kStarting,
+              event.status == UsbStatus::kNoAccess ? DeviceTrouble::kNoAccess
+                                                   : DeviceTrouble::kHeldElsewhere);
+    driver.phase = OdrivePhase::kClaimingControl;
+    call.report.wake_at = call.now + kRetry;
+  } else if (driver.phase == OdrivePhase::kClaimingControl) {
+    driver.phase = OdrivePhase::kClaimingData;
+    claim_usb(call.requests, driver.data);
+  } else {
+    driver.phase = OdrivePhase::kSettingUp;
+    driver.heard_at = call.now;
+    keep_reading(driver.reads, call);
+    write(driver, call, kSetUp[driver.at++]);
+    call.report.wake_at = call.now + kLost;
+  }
+}
+
+/// A line of the set-up has gone out: the next, and after the last the first step.
+void go_on(OdriveDriver& driver, DriverCall& call) {
+  if (driver.at < kSetUp.size()) {
+    write(driver, call, kSetUp[driver.at++]);
+  } else if (driver.at == kSetUp.size()) {
+    driver.at += 1;
+    let_go(driver, call);
+    call.report.wake_at = call.now + kSilence;
+  }
+}
+
+}  // namespace
+
+void begin(OdriveDriver& driver, DriverCall& call) {
+  const ReadQueue reads = driver.reads;  // those under way stay so
+  const WriteGate writes = driver.writes;
+  driver = {};
+  driver.reads = reads;
+  driver.reads.failures = 0;
+  driver.writes = writes;
+  DeviceSample& sample = call.report.sample;
+  sample.sensed = kTwistAxis;
+  sample.actuated = kTwistAxis;
+  sample.traits = {};
+  sample.traits.largest_torque = call.options.largest_knob_torque;
+  sample.traits.encoder_turn_step = 2.0 * std::numbers::pi / 8192.0;  // rad: its usual encoder
+  const UsbInterface* control = interface_of(call.identity, kCdcControl);
+  const UsbInterface* data = interface_of(call.identity, kCdcData);
+  const UsbEndpoint* in =
+      data != nullptr ? find_endpoint(*data, UsbEndpointKind::kBulk, kUsbIn) : nullptr;
+  const UsbEndpoint* out =
+      data != nullptr ? find_endpoint(*data, UsbEndpointKind::kBulk, 0) : nullptr;
+  if (control == nullptr || in == nullptr || out == nullptr) {
+    driver.phase = OdrivePhase::kNone;
+    set_state(call, DeviceState::kStarting, DeviceTrouble::kNotUnderstood);
+    return;
+  }
+  driver.reads.endpoint = in->address;
+  driver.reads.length = 64;
+  driver.writes.endpoint = out->address;
+  driver.data = data->number;
+  set_state(call, DeviceState::kStarting, sample.trouble);
+  claim_usb(call.requests, control->number);  // the kernel's driver holds both
+}
+
+void take(OdriveDriver& driver, DriverCall& call, const UsbEvent& event) {
+  if (event.job == UsbJob::kWrite) {
+    if (take_write(driver.writes, call, event)) {
+      let_go(driver, call);
+    } else if (driver.phase == OdrivePhase::kSettingUp) {
+      go_on(driver, call);
+    }
+    return;
+  }
+  if (driver.phase == OdrivePhase::kNone) {
+    return;
+  }
+  if (event.job == UsbJob::kClaim) {
+    take_claim(driver, call, event);
+    return;
+  }
+  switch (take_read(driver.reads, call, event)) {
+    case ReadOutcome::kData: {
+      const auto feedback = take_odrive_bytes(driver.stream, text_of(event.bytes));
+      if (feedback && driver.at > kSetUp.size()) {
+        take_feedback(driver, call, *feedback);
+      } else if (!event.bytes.empty() && driver.stream.line.size == 0) {
+        call.report.counts.garbage += 1;
+      }
+      keep_reading(driver.reads, call);
+      break;
+    }
+    case ReadOutcome::kBroken:
+      again_later(driver, call, DeviceTrouble::kSilent);
+      break;
+    case ReadOutcome::kNothing:
+      if (event.status != UsbStatus::kDone && driver.phase == OdrivePhase::kLive) {
+        let_go(driver, call);  // nothing is known of where it is: let go
+      }
+      break;
+  }
+}
+
+void wake(OdriveDriver& driver, DriverCall& call) {
+  if (driver.phase == OdrivePhase::kClaimingControl) {
+    call.report.wake_at = kNever;
+    begin(driver, call);
+  } else if (driver.phase == OdrivePhase::kNone) {
+    call.report.wake_at = kNever;
+  } else if (call.now - driver.heard_at > kLost) {
+    again_later(driver, call, DeviceTrouble::kSilent);
+  } else {
+    let_go(driver, call);
+    call.report.wake_at = call.now + kSilence;
+  }
+}
+
+void rest(OdriveDriver& driver, DriverCall& call) {
+  call.report.wake_at = kNever;
+  if (driver.phase == OdrivePhase::kSettingUp || driver.phase == OdrivePhase::kLive) {
+    driver.writes.under_way = false;  // whatever is on its way, this one is to be the last
+    write(driver, call, kIdle);
+  }
+  driver.phase = OdrivePhase::kNone;
+}
+
+}  // namespace torsion

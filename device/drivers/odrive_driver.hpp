@@ -1,0 +1,28 @@
+#pragma once
+
+// ODrive v3 as a knob: its motor's shaft is the tool's twist axis. Torque in N m goes out, turns
+// come back, as lines of text.
+
+#include "device/drivers/driver.hpp"
+#include "device/protocols/odrive.hpp"
+
+namespace torsion {
+
+enum class OdrivePhase : std::uint8_t { kClaimingControl, kClaimingData, kSettingUp, kLive, kNone };
+
+struct OdriveDriver {
+  OdrivePhase phase = OdrivePhase::kClaimingControl;
+  std::size_t at = 0;  // in the lines of the set-up
+  WriteGate writes;
+  std::uint8_t data = 0;  // number of the interface that has it
+  ReadQueue reads;
+  OdriveStream stream;
+  double heard_at = 0.0;  // s
+};
+
+void begin(OdriveDriver& driver, DriverCall& call);
+void take(OdriveDriver& driver, DriverCall& call, const UsbEvent& event);
+void wake(OdriveDriver& driver, DriverCall& call);
+void rest(OdriveDriver& driver, DriverCall& call);
+
+}  // namespace torsion

@@ -1,0 +1,141 @@
+// Several devices as one, and devices that are pulled out.
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "tests/device/device_client.hpp"
+#include "tests/device/fake_bus.hpp"
+
+namespace torsion {
+namespace {
+
+using test::DeviceClient;
+using test::EmulatedFalcon;
+using test::EmulatedOdrive;
+using test::EmulatedSpaceMouse;
+using test::EmulatedWooden;
+using test::FakeBus;
+
+constexpr double kStart = 0.5;   // s: by then a device that needs nobody is live
+constexpr double kLetGo = 2e-3;  // s: the longest that a force may outlive what it counted on
+
+TEST(DeviceLoopTest, AFalconMovesAndAKnobTwists) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  EmulatedFalcon falcon;
+  falcon.place = {0.02, 0.0, 0.115};
+  EmulatedOdrive knob;
+  knob.turns = -0.125;
+  const std::size_t first = bus.plug(falcon);
+  const std::size_t second = bus.plug(knob);
+  bus.run(kStart);
+  ASSERT_EQ(client.last.state, DeviceState::kLive);
+  EXPECT_EQ(client.last.sensed, kTranslationAxes | kTwistAxis);
+  EXPECT_EQ(client.last.actuated, kTranslationAxes | kTwistAxis);
+  EXPECT_NEAR(client.last.pose.position.x, 0.02, 1e-4);
+  EXPECT_LT(client.last.pose.rotation.y, -0.38);  // sin(45 degrees / 2), less
+  EXPECT_EQ(bus.without_force_for(first), 0.0);
+  EXPECT_NEAR(bus.device<EmulatedOdrive>(second).torque, 0.05, 1e-6);
+}
+
+TEST(DeviceLoopTest, AFalconMovesAndASpaceMouseTurns) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  bus.plug(EmulatedFalcon{});
+  const std::size_t mouse = bus.plug(EmulatedSpaceMouse{});
+  bus.run(kStart);
+  ASSERT_EQ(client.last.state, DeviceState::kLive);
+  EXPECT_FALSE(client.last.steers_rate);  // its place is the Falcon's
+  for (int i = 0; i < 10; ++i) {
+    bus.send(mouse, test::space_mouse_report(1, {350, 0, 0}));
+    bus.send(mouse, test::space_mouse_report(2, {350, 0, 0}));
+    bus.run(8e-3);
+  }
+  EXPECT_NEAR(client.last.pose.position.x, 0.0, 1e-4);
+  EXPECT_GT(client.last.pose.rotation.x, 0.0);
+}
+
+TEST(DeviceLoopTest, TwoFalconsDisplayATorqueAcrossTheirLine) {
+  DeviceClient client;
+  client.wanted = {{0.0, 0.0, 0.0}, {0.0, 0.2, 0.0}};
+  FakeBus bus({}, client.sink());
+  const std::size_t left = bus.plug(EmulatedFalcon{});
+  const std::size_t right = bus.plug(EmulatedFalcon{});
+  bus.run(kStart);
+  ASSERT_EQ(client.last.state, DeviceState::kLive);
+  EXPECT_EQ(client.last.actuated, kTranslationAxes | kRotationAxes);
+  // 0.2 m apart: 1 N each, opposite, along z.
+  const glm::dvec3 place = client.last.pose.position + glm::dvec3(0.0, 0.0, 0.115);
+  EXPECT_EQ(bus.device<EmulatedFalcon>(left).motors, falcon_motors(place, {0.0, 0.0, 1.0}));
+  EXPECT_EQ(bus.device<EmulatedFalcon>(right).motors, falcon_motors(place, {0.0, 0.0, -1.0}));
+}
+
+TEST(DeviceLoopTest, PullingOneOutLetsGoOfTheOthersForce) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  const std::size_t first = bus.plug(EmulatedFalcon{});
+  const std::size_t second = bus.plug(EmulatedFalcon{});
+  bus.run(kStart);
+  ASSERT_EQ(bus.without_force_for(second), 0.0);
+  const std::uint32_t epoch = client.last.epoch;
+  client.wanted = {};  // as a guard does that sees another epoch
+  bus.unplug(first);
+  bus.run(kLetGo);
+  EXPECT_GT(bus.without_force_for(second), 0.0);
+  EXPECT_NE(client.last.epoch, epoch);
+  EXPECT_EQ(client.last.sensed, kTranslationAxes);  // it goes on by itself
+  bus.plug(EmulatedFalcon{});
+  bus.run(kStart);
+  EXPECT_EQ(client.last.actuated, kTranslationAxes | kRotationAxes);
+}
+
+TEST(DeviceLoopTest, OneThatIsHeldElsewhereDoesNotKeepTheOthersFromWorking) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  bus.plug(EmulatedFalcon{});
+  const std::size_t mouse = bus.plug(EmulatedSpaceMouse{});
+  bus.claims(mouse, UsbStatus::kBusy);
+  bus.run(kStart);
+  EXPECT_EQ(client.last.state, DeviceState::kLive);
+  EXPECT_EQ(client.last.trouble, DeviceTrouble::kHeldElsewhere);  // but it is said
+}
+
+TEST(DeviceLoopTest, AThousandTimesPulledOutAtRandomMoments) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> moment(0.0, 0.15);
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  std::size_t falcon = bus.plug(EmulatedFalcon{});
+  std::size_t other = bus.plug(EmulatedOdrive{});
+  int live = 0;
+  for (int i = 0; i < 1000; ++i) {
+    bus.run(moment(random));
+    const bool was_live = client.last.state == DeviceState::kLive;
+    live += was_live ? 1 : 0;
+    const std::uint32_t epoch = client.last.epoch;
+    const bool knob = random() % 2 == 0;
+    (knob ? bus.unplug(other) : bus.unplug(falcon));
+    // What is left may go on, but from another epoch: whoever holds it begins with no force.
+    client.wanted = {};
+    bus.run(kLetGo);
+    if (was_live) {
+      ASSERT_GT(bus.without_force_for(knob ? falcon : other), 0.0) << i;
+      ASSERT_NE(client.last.epoch, epoch) << i;
+    }
+    client.wanted = {{0.0, -2.0, 0.0}, {0.0, 0.05, 0.0}};
+    bus.run(moment(random));
+    if (knob) {
+      other = bus.plug(EmulatedOdrive{});
+    } else {
+      falcon = bus.plug(EmulatedFalcon{});
+    }
+  }
+  EXPECT_GT(live, 500);  // or it would say little
+  bus.run(1.0);
+  EXPECT_EQ(client.last.state, DeviceState::kLive);
+  EXPECT_EQ(bus.without_force_for(falcon), 0.0);
+}
+
+}  // namespace
+}  // namespace torsion

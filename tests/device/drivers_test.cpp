@@ -1,0 +1,321 @@
+// Each driver over a bus and a clock that are made up: its whole life, and what may go wrong in it.
+
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "tests/device/device_client.hpp"
+#include "tests/device/fake_bus.hpp"
+
+namespace torsion {
+namespace {
+
+using test::Buffer;
+using test::DeviceClient;
+using test::EmulatedFalcon;
+using test::EmulatedOdrive;
+using test::EmulatedSpaceMouse;
+using test::EmulatedWooden;
+using test::FakeBus;
+
+constexpr double kStart = 0.5;  // s: by then a device that needs nobody is live
+
+TEST(SpaceMouseDriverTest, SteersAtTheSpeedOfItsDeflection) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  const std::size_t row = bus.plug(EmulatedSpaceMouse{});
+  bus.run(0.1);
+  ASSERT_EQ(client.last.state, DeviceState::kLive);
+  EXPECT_TRUE(client.last.steers_rate);
+  EXPECT_TRUE(bus.device<EmulatedSpaceMouse>(row).light);
+  // Full deflection to the right: 0.1 m/s, for as long as it is repeated.
+  for (int i = 0; i < 125; ++i) {
+    bus.send(row, test::space_mouse_report(1, {350, 0, 0}));
+    bus.run(8e-3);
+  }
+  bus.send(row, test::space_mouse_report(1, {0, 0, 0}));
+  bus.run(0.1);
+  EXPECT_NEAR(client.last.pose.position.x, 0.1, 2e-3 * 0.1 + 1e-4);
+  EXPECT_EQ(client.last.pose.position.y, 0.0);
+  EXPECT_NEAR(client.last.rate, 1000.0, 50.0);
+}
+
+TEST(SpaceMouseDriverTest, ForgetsADeflectionThatNobodyRepeats) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  const std::size_t row = bus.plug(EmulatedSpaceMouse{});
+  bus.run(0.1);
+  bus.send(row, test::space_mouse_report(1, {350, 0, 0}));
+  bus.run(5.0);
+  EXPECT_LT(client.last.pose.position.x, 0.1 * 0.26);  // a quarter of a second at 0.1 m/s
+}
+
+TEST(SpaceMouseDriverTest, ReadsAKnownOneThatDoesNotSayWhatItIs) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  EmulatedSpaceMouse mouse;
+  mouse.has_descriptor = false;
+  const std::size_t row = bus.plug(mouse);
+  bus.run(0.2);
+  ASSERT_EQ(client.last.state, DeviceState::kLive);
+  bus.send(row, test::space_mouse_report(2, {0, 0, -350}));  // raw z is down: a turn about world y
+  bus.run(0.1);
+  EXPECT_GT(client.last.pose.rotation.y, 0.0);
+}
+
+TEST(FalconDriverTest, SaysItsPlaceAndTakesForce) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  EmulatedFalcon falcon;
+  falcon.place = {0.01, -0.02, 0.12};
+  const std::size_t row = bus.plug(falcon);
+  bus.run(kStart);
+  ASSERT_EQ(client.last.state, DeviceState::kLive);
+  // One count of an encoder is 0.036 degrees, at most 64 um at the grip for each of three legs.
+  EXPECT_NEAR(glm::length(client.last.pose.position - glm::dvec3(0.01, -0.02, 0.005)), 0.0, 1e-4);
+  EXPECT_GT(client.last.rate, 900.0);
+  EXPECT_EQ(client.last.sensed, kTranslationAxes);
+  const auto expected =
+      falcon_motors(client.last.pose.position + glm::dvec3(0.0, 0.0, 0.115), client.wanted.force);
+  EXPECT_EQ(bus.device<EmulatedFalcon>(row).motors, expected);
+}
+
+TEST(FalconDriverTest, AsksForFirmwareThatItDoesNotHave) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  EmulatedFalcon falcon;
+  falcon.has_firmware = false;
+  bus.plug(falcon);
+  bus.run(2.0);
+  EXPECT_EQ(client.last.state, DeviceState::kStarting);
+  EXPECT_EQ(client.last.trouble, DeviceTrouble::kNoFirmware);
+}
+
+Buffer made_up_firmware() {
+  Buffer bytes(1500);  // no multiple of the 62 bytes of a piece
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    bytes[i] = static_cast<std::uint8_t>(i * 7 + i / 256);
+  }
+  return bytes;
+}
+
+TEST(FalconDriverTest, WritesTheFirmwareByteForByteAndGoesOn) {
+  const Buffer firmware = made_up_firmware();
+  DeviceClient client;
+  LoopOptions options;
+  options.drivers.falcon_firmware = firmware;
+  FakeBus bus(options, client.sink());
+  EmulatedFalcon falcon;
+  falcon.has_firmware = false;
+  falcon.firmware_size = firmware.size();
+  const std::size_t row = bus.plug(falcon);
+  bus.run(2.0);
+  EXPECT_EQ(bus.device<EmulatedFalcon>(row).firmware, firmware);
+  EXPECT_EQ(client.last.state, DeviceState::kLive);
+}
+
+TEST(FalconDriverTest, GivesUpOnFirmwareThatComesBackWrong) {
+  const Buffer firmware = made_up_firmware();
+  DeviceClient client;
+  LoopOptions options;
+  options.drivers.falcon_firmware = firmware;
+  FakeBus bus(options, client.sink());
+  EmulatedFalcon falcon;
+  falcon.has_firmware = false;
+  falcon.echoes_wrongly = true;
+  falcon.firmware_size = firmware.size();
+  bus.plug(falcon);
+  bus.run(60.0);
+  EXPECT_EQ(client.last.trouble, DeviceTrouble::kBadFirmware);
+}
+
+TEST(FalconDriverTest, HasNoForceBeforeItsZerosAreFound) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  EmulatedFalcon falcon;
+  falcon.homed = false;
+  const std::size_t row = bus.plug(falcon);
+  bus.run(kStart);
+  EXPECT_EQ(client.last.trouble, DeviceTrouble::kNotHomed);
+  EXPECT_GT(bus.without_force_for(row), 0.9 * kStart);
+  EXPECT_GT(bus.writes(row), 400U);  // it is fed all the same
+  bus.device<EmulatedFalcon>(row).homed = true;
+  bus.run(0.1);
+  EXPECT_EQ(client.last.state, DeviceState::kLive);
+  EXPECT_EQ(bus.without_force_for(row), 0.0);
+}
+
+TEST(WoodenDriverTest, PushesInTheWorldsAxes) {
+  DeviceClient client;
+  client.wanted = {{0.0, 1.0, 0.0}, glm::dvec3(0.0)};  // up
+  FakeBus bus({}, client.sink());
+  EmulatedWooden wooden;
+  wooden.encoders = {0, 300, 300, 0, 0, 0};
+  const std::size_t row = bus.plug(wooden);
+  bus.run(kStart);
+  ASSERT_EQ(client.last.state, DeviceState::kLive);
+  EXPECT_EQ(client.last.sensed, kTranslationAxes | kRotationAxes);
+  EXPECT_GT(client.last.rate, 900.0);
+  const WoodenGeometry geometry = wooden_haptics_2015();
+  const glm::dvec3 angles = wooden_body_angles(geometry, {wooden.encoders, 0});
+  // Of the base: z is up.
+  EXPECT_EQ(bus.device<EmulatedWooden>(row).currents,
+            wooden_currents(geometry, angles, {0.0, 0.0, 1.0}));
+  EXPECT_NEAR(client.last.pose.position.y, wooden_position(geometry, angles).z, 1e-12);
+}
+
+TEST(WoodenDriverTest, SetsItsEncodersOnceWhenTheButtonIsPressed) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  EmulatedWooden wooden;
+  wooden.encoders = {10, 20, 30, 40, 50, 60};
+  const std::size_t row = bus.plug(wooden);
+  bus.run(kStart);
+  const std::uint32_t epoch = client.last.epoch;
+  bus.device<EmulatedWooden>(row).button = true;
+  bus.run(0.2);
+  EXPECT_EQ(client.last.trouble, DeviceTrouble::kNotHomed);
+  EXPECT_GT(bus.without_force_for(row), 0.19);
+  bus.device<EmulatedWooden>(row).button = false;
+  bus.run(0.1);
+  EXPECT_EQ(bus.device<EmulatedWooden>(row).calibrations, 1U);
+  EXPECT_EQ(bus.device<EmulatedWooden>(row).encoders, (std::array<std::int16_t, 6>{}));
+  EXPECT_EQ(client.last.state, DeviceState::kLive);
+  EXPECT_NE(client.last.epoch, epoch);  // its pose has jumped
+}
+
+TEST(OdriveDriverTest, TurnsTheTwistAxisAndTakesTorqueUpToItsLimit) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  EmulatedOdrive knob;
+  knob.turns = 0.25;
+  const std::size_t row = bus.plug(knob);
+  bus.run(kStart);
+  ASSERT_EQ(client.last.state, DeviceState::kLive);
+  EXPECT_TRUE(bus.device<EmulatedOdrive>(row).closed_loop);
+  EXPECT_NEAR(client.last.pose.rotation.y, std::sin(std::numbers::pi / 4.0), 1e-6);
+  EXPECT_NEAR(bus.device<EmulatedOdrive>(row).torque, 0.05, 1e-6);
+  client.wanted.torque.y = -3.0;
+  bus.run(0.01);
+  EXPECT_NEAR(bus.device<EmulatedOdrive>(row).torque, -0.2, 1e-6);
+  bus.rest(row);
+  bus.run(0.01);
+  EXPECT_EQ(bus.device<EmulatedOdrive>(row).torque, 0.0);
+  EXPECT_FALSE(bus.device<EmulatedOdrive>(row).closed_loop);
+}
+
+/// What may come over the wire instead of a packet.
+struct WireFault {
+  const char* name;
+  std::optional<UsbStatus> status;
+  Buffer packet;
+};
+
+class WireFaultTest : public testing::TestWithParam<WireFault> {};
+
+TEST_P(WireFaultTest, LetsGoOrKeepsTheLastPoseAndIsLiveAgain) {
+  for (const int kind : {0, 1, 2, 3}) {
+    DeviceClient client;
+    FakeBus bus({}, client.sink());
+    test::EmulatedDevice device;
+    kind == 1 ? device = EmulatedFalcon{} : kind == 2 ? device = EmulatedWooden{} : device;
+    kind == 3 ? device = EmulatedOdrive{} : device;
+    const std::size_t row = bus.plug(device);
+    bus.run(kStart);
+    SCOPED_TRACE(testing::Message() << GetParam().name << ", kind " << kind);
+    ASSERT_EQ(client.last.state, DeviceState::kLive);
+    const Pose before = client.last.pose;
+    for (int i = 0; i < 50; ++i) {
+      if (GetParam().status) {
+        bus.fail_next_read(row, *GetParam().status);
+      } else {
+        bus.send(row, GetParam().packet);
+      }
+      bus.run(3.3e-3);
+    }
+    EXPECT_NEAR(glm::length(client.last.pose.position - before.position), 0.0, 1e-12);
+    bus.run(1.0);
+    EXPECT_EQ(client.last.state, DeviceState::kLive);
+    if (kind != 0) {
+      EXPECT_GT(client.last.rate, 900.0);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, WireFaultTest,
+    testing::Values(WireFault{"stall", UsbStatus::kStall, {}},
+                    WireFault{"overflow", UsbStatus::kOverflow, {}},
+                    WireFault{"failed", UsbStatus::kFailed, {}},
+                    WireFault{"nothing", std::nullopt, {0x01, 0x60}},
+                    WireFault{"short", std::nullopt, {0x01, 0x60, '<', 'A', 'B'}},
+                    WireFault{"garbage", std::nullopt, {0xFF, 0x00, 0x13, 0x37, 0x0A, 0x41, '>'}}),
+    [](const auto& instance) { return std::string(instance.param.name); });
+
+TEST(DriversTest, AStallLetsGoOfTheForceAtOnce) {
+  for (const bool falcon : {true, false}) {
+    DeviceClient client;
+    FakeBus bus({}, client.sink());
+    const std::size_t row = falcon ? bus.plug(EmulatedFalcon{}) : bus.plug(EmulatedOdrive{});
+    bus.run(kStart);
+    ASSERT_EQ(bus.without_force_for(row), 0.0);
+    bus.silence(row, true);
+    bus.run(1e-3);  // the last answer
+    ASSERT_EQ(bus.without_force_for(row), 0.0);
+    bus.fail_next_read(row, UsbStatus::kStall);
+    bus.send(row, {});
+    bus.run(1e-3);
+    EXPECT_GT(bus.without_force_for(row), 0.0);
+  }
+}
+
+TEST(DriversTest, ASilentDeviceIsToldToLetGoAndComesBack) {
+  for (const int kind : {1, 2, 3}) {
+    DeviceClient client;
+    FakeBus bus({}, client.sink());
+    EmulatedWooden wooden;
+    wooden.encoders = {0, 300, 300, 0, 0, 0};
+    const std::size_t row = kind == 1   ? bus.plug(EmulatedFalcon{})
+                            : kind == 2 ? bus.plug(wooden)
+                                        : bus.plug(EmulatedOdrive{});
+    bus.run(kStart);
+    SCOPED_TRACE(kind);
+    ASSERT_EQ(client.last.state, DeviceState::kLive);
+    bus.silence(row, true);
+    bus.run(0.01);
+    EXPECT_GT(bus.without_force_for(row), 0.0);
+    bus.run(1.0);
+    EXPECT_EQ(client.last.state, DeviceState::kStarting);
+    bus.silence(row, false);
+    bus.run(2.5);
+    EXPECT_EQ(client.last.state, DeviceState::kLive);
+  }
+}
+
+TEST(DriversTest, SaysWhoKeepsItFromTheDeviceAndTriesAgain) {
+  for (const UsbStatus status : {UsbStatus::kBusy, UsbStatus::kNoAccess}) {
+    for (const int kind : {0, 1, 2, 3}) {
+      DeviceClient client;
+      FakeBus bus({}, client.sink());
+      const std::size_t row = kind == 0   ? bus.plug(EmulatedSpaceMouse{})
+                              : kind == 1 ? bus.plug(EmulatedFalcon{})
+                              : kind == 2 ? bus.plug(EmulatedWooden{})
+                                          : bus.plug(EmulatedOdrive{});
+      bus.claims(row, status);
+      bus.run(1.0);
+      SCOPED_TRACE(kind);
+      EXPECT_EQ(client.last.state, DeviceState::kStarting);
+      EXPECT_EQ(client.last.trouble, status == UsbStatus::kBusy ? DeviceTrouble::kHeldElsewhere
+                                                                : DeviceTrouble::kNoAccess);
+      bus.claims(row, UsbStatus::kDone);
+      bus.run(1.0);
+      EXPECT_EQ(client.last.state, DeviceState::kLive);
+      EXPECT_EQ(client.last.trouble, DeviceTrouble::kNone);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace torsion

@@ -1,0 +1,71 @@
+#pragma once
+
+// Devices made up of software, as far as their packets go: what they say to what they are told.
+// They stand behind a made-up bus and behind an emulated kernel alike.
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "device/drivers/drivers.hpp"
+
+namespace torsion::test {
+
+using Buffer = std::vector<std::uint8_t>;
+
+/// Deflected by what a test says; sends its reports when asked to by the test.
+struct EmulatedSpaceMouse {
+  bool has_descriptor = true;
+  bool light = false;
+};
+
+struct EmulatedFalcon {
+  bool has_firmware = true;
+  bool homed = true;
+  glm::dvec3 place{0.0, 0.0, 0.115};     // m, device axes
+  std::array<std::int16_t, 3> motors{};  // as told last
+  Buffer firmware;                       // as it arrived
+  std::size_t firmware_size = 0;         // how long it is to be
+  bool echoes_wrongly = false;
+  std::uint32_t baud = 0;  // divisor
+};
+
+struct EmulatedWooden {
+  std::array<std::int16_t, 6> encoders{};
+  bool button = false;
+  std::array<std::int16_t, 3> currents{};  // mA, as told last
+  std::uint32_t calibrations = 0;
+};
+
+struct EmulatedOdrive {
+  double turns = 0.0;
+  double torque = 0.0;  // N m, as told last
+  bool closed_loop = false;
+  Buffer line;
+};
+
+using EmulatedDevice =
+    std::variant<EmulatedSpaceMouse, EmulatedFalcon, EmulatedWooden, EmulatedOdrive>;
+
+/// Takes a packet on the OUT endpoint.
+/// @return what the device puts on its IN endpoint, one USB packet; empty: nothing
+Buffer told(EmulatedDevice& device, Bytes packet);
+
+/// A control transfer. @return the data stage of one that comes in; nothing: the device stalls
+std::optional<Buffer> controlled(EmulatedDevice& device, const UsbSetup& setup, Bytes data);
+
+/// True where the device's motors hold nothing.
+bool without_force(const EmulatedDevice& device);
+
+/// As the device would be found on a bus.
+UsbIdentity identity_of(const EmulatedDevice& device);
+/// The same as the kernel has it: device and configuration descriptor.
+Buffer descriptors_of(const EmulatedDevice& device);
+
+/// A SpaceMouse's report of three axes, raw counts; id 1 translation, 2 rotation.
+Buffer space_mouse_report(std::uint8_t id, std::array<std::int16_t, 3> axes);
+
+}  // namespace torsion::test

@@ -1,10 +1,13 @@
 #include "systems/carry_tractions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "systems/distance_shapes.hpp"
 #include "systems/frames.hpp"
 #include "systems/scratch.hpp"
+#include "systems/widest.hpp"
 
 namespace torsion {
 namespace {
@@ -35,12 +38,6 @@ CellMap map_of(const RegionFrame& old, const RegionFrame& now, std::uint32_t sid
   return {origin, (place(side - 1, 0) - origin) / steps, (place(0, side - 1) - origin) / steps};
 }
 
-CarriedCell mix(const CarriedCell& a, const CarriedCell& b, double share) {
-  return {a.per_cell + share * (b.per_cell - a.per_cell),
-          a.coverage + share * (b.coverage - a.coverage),
-          a.kinetic_share + share * (b.kinetic_share - a.kinetic_share)};
-}
-
 /// How far the farthest corner has moved, in cells.
 double farthest_move(const CellMap& map, std::uint32_t side) {
   const auto last = static_cast<double>(side - 1);
@@ -56,7 +53,7 @@ double farthest_move(const CellMap& map, std::uint32_t side) {
 /// are per area of contact, so they count with its coverage.
 void copy_with_border(std::span<const CellTraction> cells, std::uint32_t side,
                       std::span<CarriedCell> copy) {
-  std::ranges::fill(copy, CarriedCell{});
+  std::ranges::fill(copy, CarriedCell(0.0));
   for (std::uint32_t j = 0; j < side; ++j) {
     for (std::uint32_t i = 0; i < side; ++i) {
       const CellTraction& cell = cells[j * side + i];
@@ -66,25 +63,49 @@ void copy_with_border(std::span<const CellTraction> cells, std::uint32_t side,
   }
 }
 
-/// Between the four old cells around `place`.
-CarriedCell between(std::span<const CarriedCell> old, std::uint32_t side, glm::dvec2 place) {
-  place = glm::clamp(place + 1.0, glm::dvec2(0.0), glm::dvec2(static_cast<double>(side) + 0.999));
-  const auto i = static_cast<std::uint32_t>(place.x);
-  const auto j = static_cast<std::uint32_t>(place.y);
-  const double x = place.x - static_cast<double>(i);
-  const double y = place.y - static_cast<double>(j);
-  const CarriedCell* at = &old[std::size_t{j} * (side + 2) + i];
-  const CarriedCell low = mix(at[0], at[1], x);
-  const CarriedCell high = mix(at[side + 2], at[side + 3], x);
-  return mix(low, high, y);
+/// A row of the new grid.
+struct CarriedRow {
+  std::array<std::uint32_t, kMaxGridSide> corner;  // the lowest of the four old cells around
+  std::array<double, kMaxGridSide> x, y;           // shares of the way to the next ones
+  std::array<CarriedCell, kMaxGridSide> carried;
+};
+
+/// Where the row's cells lie among the old ones, which have a border of one cell.
+/// @param first  the row's first cell
+TORSION_WIDEST
+void locate(const glm::dvec2& first, const glm::dvec2& along, std::uint32_t side,
+            CarriedRow& __restrict row) {
+  const double last = static_cast<double>(side) + 0.999;
+  const double first_x = first.x + 1.0;
+  const double first_y = first.y + 1.0;
+  const double along_x = along.x;
+  const double along_y = along.y;
+  const int width = static_cast<int>(side) + 2;
+  for (int i = 0; i < static_cast<int>(side); ++i) {
+    const double x = larger(first_x + along_x * static_cast<double>(i), 0.0);
+    const double y = larger(first_y + along_y * static_cast<double>(i), 0.0);
+    const double inside_x = x < last ? x : last;
+    const double inside_y = y < last ? y : last;
+    const int column = static_cast<int>(inside_x);
+    const int line = static_cast<int>(inside_y);
+    const auto at = static_cast<std::size_t>(i);
+    row.x[at] = inside_x - static_cast<double>(column);
+    row.y[at] = inside_y - static_cast<double>(line);
+    row.corner[at] = static_cast<std::uint32_t>(line * width + column);
+  }
 }
 
-/// What is new of a cell's contact has no traction: spread over all of it there is less.
-void dilute(CellTraction& cell, double coverage) {
-  if (coverage > cell.coverage) {
-    cell.traction *= cell.coverage / coverage;
+/// Between the four old cells around each of the row's.
+TORSION_WIDEST
+void mix_row(const CarriedCell* old, std::uint32_t side, CarriedRow& __restrict row) {
+  for (std::uint32_t i = 0; i < side; ++i) {
+    const CarriedCell* low = old + row.corner[i];
+    const CarriedCell* high = low + side + 2;
+    const double x = row.x[i];
+    const CarriedCell below = low[0] + x * (low[1] - low[0]);
+    const CarriedCell above = high[0] + x * (high[1] - high[0]);
+    row.carried[i] = below + row.y[i] * (above - below);
   }
-  cell.coverage = coverage;
 }
 
 /// Turns a traction of the old grid's plane into the new one's.
@@ -92,7 +113,8 @@ glm::dvec2 turned(const RegionFrame& old, const RegionFrame& now, const glm::dve
   return glm::dvec2(body_to_grid_direction(now, tangent_to_body(old, traction)));
 }
 
-/// Gives each cell that is in contact the traction of the place where it is.
+/// Gives each cell that is in contact the traction of the place where it is. What is new of a
+/// cell's contact has no traction: spread over all of it there is less.
 void follow_grid(StepContext& context, const CellMap& map, const RegionFrame& old,
                  const RegionFrame& now, Range rows) {
   const std::uint32_t side = context.world.settings.at<Settings>(0).grid_side;
@@ -102,23 +124,32 @@ void follow_grid(StepContext& context, const CellMap& map, const RegionFrame& ol
   copy_with_border(cells, side, before);
   const glm::dvec2 turn_x = turned(old, now, {1.0, 0.0});
   const glm::dvec2 turn_y = turned(old, now, {0.0, 1.0});
+  CarriedRow row;
   std::uint32_t cell = 0;
   for (std::uint32_t j = 0; j < side; ++j) {
+    locate(map.origin + map.y * static_cast<double>(j), map.x, side, row);
+    mix_row(before.data(), side, row);
     for (std::uint32_t i = 0; i < side; ++i, ++cell) {
-      if (geometry[cell].coverage <= 0.0) {
+      const double coverage = geometry[cell].coverage;
+      if (coverage <= 0.0) {
         cells[cell] = CellTraction{};
         continue;
       }
-      const CarriedCell carried =
-          between(before, side,
-                  map.origin + map.x * static_cast<double>(i) + map.y * static_cast<double>(j));
-      const double inverse = carried.coverage > 0.0 ? 1.0 / carried.coverage : 0.0;
-      const glm::dvec2 traction = carried.per_cell * inverse;
-      cells[cell].traction = turn_x * traction.x + turn_y * traction.y;
-      cells[cell].coverage = carried.coverage;
-      cells[cell].kinetic_share = carried.kinetic_share;
+      const CarriedCell& carried = row.carried[i];
+      const double share = 1.0 / std::max(carried.z, coverage);
+      cells[cell].traction = share * (turn_x * carried.x + turn_y * carried.y);
+      cells[cell].coverage = coverage;
+      cells[cell].kinetic_share = carried.w;
     }
   }
+}
+
+/// As follow_grid, for a grid that stays.
+void dilute(CellTraction& cell, double coverage) {
+  if (coverage > cell.coverage) {
+    cell.traction *= cell.coverage / coverage;
+  }
+  cell.coverage = coverage;
 }
 
 void carry(StepContext& context, std::uint32_t region) {
@@ -135,6 +166,7 @@ void carry(StepContext& context, std::uint32_t region) {
   if (farthest_move(map, side) >= kStill) {
     follow_grid(context, map, old, now, rows);
     old = now;
+    return;
   }
   const auto geometry = world.cells.rows<CellGeometry>(rows);
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {

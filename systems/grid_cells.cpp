@@ -190,29 +190,56 @@ void take_depth_from_plane(const Grid& grid, std::size_t cell, double facing) {
       2.0 * over_slope *
           (std::abs(columns.tool_x[cell]) * half.x + std::abs(columns.tool_y[cell]) * half.y) +
       1e-30;
-  CellGeometry& geometry = grid.cells[cell];
-  const double below = share_below(-geometry.height, across);
-  const double mean = below < 1.0 ? 0.5 * below * across : -geometry.height;
-  geometry.depth = facing * geometry.depth - (1.0 - facing) * geometry.height;
-  geometry.coverage *= facing + (1.0 - facing) * below;
-  if (geometry.coverage > 0.0) {
+  const double height = columns.points.z[cell];
+  const double below = share_below(-height, across);
+  const double mean = below < 1.0 ? 0.5 * below * across : -height;
+  double& coverage = columns.coverage[cell];
+  columns.depth[cell] = facing * columns.depth[cell] - (1.0 - facing) * height;
+  coverage *= facing + (1.0 - facing) * below;
+  if (coverage > 0.0) {
     // What makes the mean over the covered part of a cell that is partly covered be `mean`.
     columns.depth_change[cell] =
-        facing * columns.depth_change[cell] + (1.0 - facing) * 2.0 * mean / geometry.coverage;
+        facing * columns.depth_change[cell] + (1.0 - facing) * 2.0 * mean / coverage;
   }
 }
 
-void find_coverage(const Grid& grid) {
+TORSION_WIDEST
+void find_shares(const double* depth, const double* across, std::size_t count,
+                 double* __restrict coverage) {
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    const double inside = depth[cell] > 0.0 ? 1.0 : 0.0;
+    const double at_edge = 0.5 + depth[cell] / across[cell];
+    coverage[cell] = 2.0 * std::abs(depth[cell]) >= across[cell] ? inside : at_edge;
+  }
+}
+
+/// Leaves the coverage in the columns, and depth and coverage where beside an edge.
+CellBits find_coverage(const Grid& grid) {
+  const CellColumns& columns = grid.scratch.cell_columns;
+  find_shares(columns.depth.data(), columns.depth_change.data(), columns.depth.size(),
+              columns.coverage.data());
+  CellBits covered{};
+  std::size_t cell = 0;
+  const double* normal = columns.points.gradient_z.data();
+  double* coverage = columns.coverage.data();
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    std::uint64_t row = 0;
+    for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
+      if (normal[cell] < kFullyFacing && coverage[cell] > 0.0) {
+        take_depth_from_plane(grid, cell, facing_share(normal[cell]));
+      }
+      row |= static_cast<std::uint64_t>(coverage[cell] > 0.0) << i;
+    }
+    covered[j] = row;
+  }
+  return covered;
+}
+
+/// From the columns to the table.
+void store_cells(const Grid& grid) {
   const CellColumns& columns = grid.scratch.cell_columns;
   for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
-    CellGeometry& geometry = grid.cells[cell];
-    geometry.height = columns.points.z[cell];
-    geometry.depth = columns.depth[cell];
-    geometry.coverage = share_below(geometry.depth, columns.depth_change[cell]);
-    const double facing = facing_share(columns.points.gradient_z[cell]);
-    if (facing < 1.0 && geometry.coverage > 0.0) {
-      take_depth_from_plane(grid, cell, facing);
-    }
+    grid.cells[cell] = {columns.points.z[cell], columns.depth[cell], columns.coverage[cell]};
   }
 }
 
@@ -248,8 +275,8 @@ bool spread_one_step(const Grid& grid, CellBits& free, CellBits& bits) {
 
 /// Takes the coverage from cells that are not joined to the region's own contact points, or are
 /// nearer to those of another cluster, in steps from cell to cell. Returns those that keep it.
-CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact) {
-  const CellBits covered = covered_cells(grid);
+CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact, const CellBits& covered) {
+  const CellColumns& columns = grid.scratch.cell_columns;
   CellBits free = covered;
   CellBits own{};
   CellBits foreign{};
@@ -261,7 +288,7 @@ CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact) {
     if (std::abs(place.x) <= reach.x && std::abs(place.y) <= reach.y) {
       const std::uint32_t cell = cell_at(grid, place);
       const bool is_own = point.cluster == contact.cluster;
-      if (grid.cells[cell].coverage > 0.0) {
+      if (columns.coverage[cell] > 0.0) {
         set(is_own ? own : foreign, grid, cell);
         any_own = any_own || is_own;
         any_foreign = any_foreign || !is_own;
@@ -270,8 +297,8 @@ CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact) {
   }
   if (!any_own) {
     // The points fall between the cells: the deepest cell is the nearest thing to them.
-    const auto deepest = std::ranges::max_element(grid.cells, {}, &CellGeometry::depth);
-    set(own, grid, static_cast<std::uint32_t>(deepest - grid.cells.begin()));
+    const auto deepest = std::ranges::max_element(columns.depth);
+    set(own, grid, static_cast<std::uint32_t>(deepest - columns.depth.begin()));
   }
   for (std::uint32_t j = 0; j < grid.side; ++j) {
     foreign[j] &= ~own[j];
@@ -285,7 +312,7 @@ CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact) {
   for (std::uint32_t j = 0; j < grid.side; ++j) {
     for (std::uint64_t lost = covered[j] & ~own[j]; lost != 0; lost &= lost - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(lost));
-      grid.cells[std::size_t{j} * grid.side + i].coverage = 0.0;
+      columns.coverage[std::size_t{j} * grid.side + i] = 0.0;
     }
   }
   return own;
@@ -323,8 +350,9 @@ CellBits find_cells(const Grid& grid, const RegionPoints& contact) {
   find_depths(columns.points, columns.depth.size(), columns.depth.data());
   find_depth_changes(columns, cell_half_size(grid), columns.depth.size(),
                      columns.depth_change.data());
-  find_coverage(grid);
-  return keep_own_cells(grid, contact);
+  const CellBits own = keep_own_cells(grid, contact, find_coverage(grid));
+  store_cells(grid);
+  return own;
 }
 
 }  // namespace torsion

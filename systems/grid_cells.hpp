@@ -58,15 +58,17 @@ CellBits covered_cells(const Grid& grid);
 /// How much a cell's nearest face of the body counts as the one that the tool presses on: 1 while
 /// it faces the grid, 0 where it is the body's side, beside an edge or deep down.
 /// @param slope  cosine between that face's normal and the grid's
+inline constexpr double kFullyFacing = 0.5;
 inline double facing_share(double slope) {
-  const double t = slope < 0.25 ? 0.0 : slope > 0.5 ? 1.0 : 4.0 * slope - 1.0;
+  const double above = slope > 0.25 ? 4.0 * slope - 1.0 : 0.0;
+  const double t = slope < kFullyFacing ? above : 1.0;
   return t * t * (3.0 - 2.0 * t);
 }
 
 /// Finds, for every cell of the grid, the tool's surface along the normal, how deep it lies under
 /// the body's rest surface, and the share of the cell that is in contact. Cells that are not joined
 /// to the region's own contact points belong to a neighbour and get coverage 0. Leaves in
-/// Scratch::cell_columns the body's distances at the cells' points, and the depths.
+/// Scratch::cell_columns the body's distances at the cells' points, depths and coverage.
 /// @return the cells with coverage
 CellBits find_cells(const Grid& grid, const RegionPoints& contact);
 

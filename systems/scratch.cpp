@@ -22,18 +22,21 @@ void Scratch::reserve(const World& world) {
   overlaps.reserve(std::size_t{kMaxRegionsPerBody} * samples);
   region_commands.reserve(world.regions.capacity());
   region_points.assign(world.regions.capacity(), RegionPoints{});
+  main_beams.assign(world.sections.empty() ? 0 : world.regions.capacity(), MainBeam{});
   const std::size_t cells = std::size_t{side} * side;
   const bool patches = !world.patch_cells.empty();
-  column_memory.assign((patches ? 26 : 12) * cells, 0.0);
+  // Columns end in zeros up to a multiple of 8, so that loops may take eight cells at a time.
+  const std::size_t stride = (cells + 7) / 8 * 8;
+  column_memory.assign((patches ? 27 : 13) * stride, 0.0);
   std::size_t next = 0;
   const auto column = [&] {
-    return std::span<double>(column_memory).subspan(cells * next++, cells);
+    return std::span<double>(column_memory).subspan(stride * next++, cells);
   };
   DistanceColumns& found = cell_columns.points;
   for (std::span<double>* each :
        {&found.x, &found.y, &found.z, &found.value, &found.gradient_x, &found.gradient_y,
         &found.gradient_z, &cell_columns.tool_x, &cell_columns.tool_y, &cell_columns.tool_z,
-        &cell_columns.depth, &cell_columns.depth_change}) {
+        &cell_columns.depth, &cell_columns.depth_change, &cell_columns.coverage}) {
     *each = column();
   }
   if (!world.footings.empty()) {
@@ -55,7 +58,7 @@ void Scratch::reserve(const World& world) {
     patch_before.assign(cells, PatchCell{});
     tractions_before.assign(cells, CellTraction{});
   }
-  carried_cells.assign(std::size_t{side + 2} * (side + 2), CarriedCell{});
+  carried_cells.assign(std::size_t{side + 2} * (side + 2), CarriedCell(0.0));
   near_parts.assign(world.parts.size(), 0);
 }
 

@@ -5,10 +5,12 @@
 #include <vector>
 
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include "ecs/commands.hpp"
 #include "ecs/components.hpp"
 #include "ecs/world.hpp"
+#include "systems/body_models/main_beam.hpp"
 #include "systems/contact_models/mdr_layers.hpp"
 #include "systems/contact_models/patch_solver.hpp"
 #include "systems/distance.hpp"
@@ -45,6 +47,11 @@ struct ClusterOwner {
   double overlap = 0.0;
 };
 
+/// The region's block of cells, by number: it does not move when rows do.
+inline std::uint32_t block_of(const RegionIdentity& region) {
+  return region.cells.first / region.cells.count;
+}
+
 /// Which of a pair's clusters a region continues in this step.
 struct RegionPoints {
   Range points;  // in Scratch::points: all of the pair
@@ -57,6 +64,7 @@ struct CellColumns {
   std::span<double> tool_x, tool_y, tool_z;  // gradient of the distance to the tool
   std::span<double> depth;                   // m, as in CellGeometry
   std::span<double> depth_change;            // m, across the cell
+  std::span<double> coverage;                // as in CellGeometry
 };
 
 /// How far the body as a whole has moved the cells of one region, beside its RegionSupport, m, in
@@ -65,12 +73,10 @@ struct SupportColumns {
   std::span<double> x, y, z;
 };
 
-/// What a place on the body carries from one grid to the next.
-struct CarriedCell {
-  glm::dvec2 per_cell{0.0};    // Pa: traction times coverage
-  double coverage = 0.0;       // share of the cell
-  double kinetic_share = 0.0;  // as in CellTraction
-};
+/// What a place on the body carries from one grid to the next: traction times coverage along x and
+/// y, Pa; coverage, as a share of the cell; kinetic share, as in CellTraction. In one vector, for
+/// all four go the same way.
+using CarriedCell = glm::dvec4;
 
 /// Memory that the systems of one step share. Reserved at load; nothing in it outlives a step, so
 /// that a saved world replays without it.
@@ -99,6 +105,9 @@ struct Scratch {
   CellColumns cell_columns;                // (cells of one region)
   std::vector<CarriedCell> carried_cells;  // (cells of one region and a border of one around them)
   std::vector<std::uint32_t> near_parts;   // (parts of all bodies and tools)
+
+  // main_beams
+  std::vector<MainBeam> main_beams;  // (regions) by block of cells
 
   // compliance
   std::vector<double> compliance_matrix;     // (6 kMaxRegionsPerBody)^2, row-major

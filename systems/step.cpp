@@ -84,6 +84,8 @@ std::vector<System<StepContext>> step_systems() {
        region_grids},
       {"carry_tractions", "keeps tractions at their place on the body",
        "a body with contact model paper and friction", any_paper_friction, carry_tractions},
+      {"main_beams", "the beam from what is fixed to every region",
+       "a body with body model skeleton", any_skeleton, main_beams},
       {"paper_normal_forces", "normal force f = k1 x + k3 x^3", "a body with contact model paper",
        any_contact_model<ContactModel::kPaper>, paper_normal_forces},
       {"mdr_contacts", "where smooth shapes lie deepest in each other",

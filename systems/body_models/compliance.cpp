@@ -134,7 +134,7 @@ void find_stands(CompliantBody& body) {
     }
     Stand& stand = body.stands[body.count++];
     stand.region = region;
-    stand.block = identity.cells.first / identity.cells.count;
+    stand.block = block_of(identity);
     Footing& footing = footing_of(body, stand);
     const ContactEllipse contact = contact_ellipse(world, region);
     if (!still_fits(footing, contact)) {
@@ -329,8 +329,7 @@ void move_anchors_of(World& world, std::uint32_t body) {
     if (identity.body != body) {
       continue;
     }
-    const Footing& footing =
-        world.footings.at<Footing>(identity.cells.first / identity.cells.count);
+    const Footing& footing = world.footings.at<Footing>(block_of(identity));
     PortVectors forces;
     forces_at_ports(footing, contact_load(world, region, footing).moments, forces);
     AnchorTurns& turns = world.regions.at<AnchorTurns>(region);

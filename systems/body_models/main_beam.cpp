@@ -68,6 +68,13 @@ double shear_coefficient(const BeamSection& section) {
   return 5.0 / 6.0 + (6.0 / 7.0 - 5.0 / 6.0) * std::clamp(roundness, 0.0, 1.0);
 }
 
+/// @param t  m from the piece's start
+SectionMotion motion_in_piece(const BeamPiece& piece, double t) {
+  const glm::dvec2 across = t * t * (piece.shift2 + t * piece.shift3);
+  return {piece.shift0 + t * piece.shift1 + glm::dvec3(across, 0.0),
+          piece.turn0 + t * (piece.turn1 + t * piece.turn2)};
+}
+
 }  // namespace
 
 MainBeam main_beam(const World& world, std::uint32_t body, const glm::dvec3& tip) {
@@ -96,64 +103,56 @@ MainBeam main_beam(const World& world, std::uint32_t body, const glm::dvec3& tip
 BeamDeflection deflect(const MainBeam& beam, const Elasticity& elasticity, const glm::dvec3& force,
                        const glm::dvec2& moment) {
   BeamDeflection deflection;
-  deflection.force = force;
-  deflection.moment = moment;
-  deflection.length = beam.length;
   const double youngs_modulus = elasticity.youngs_modulus;
   const double shear_modulus = elasticity.shear_modulus();
-  deflection.turn[0] = glm::dvec2(0.0);
-  deflection.shift[0] = glm::dvec3(0.0);
-  const double piece = beam.length / kStations;
+  const double length = beam.length / kStations;
+  deflection.piece_length = length;
+  // Moment over a piece: m + (lever - t) B, lever from its start to the tip, B = direction x force.
+  const glm::dvec2 lever_moment(-force.y, force.x);
+  glm::dvec2 turn(0.0);
+  glm::dvec3 shift(0.0);
   for (std::size_t k = 0; k < kBeamStations; ++k) {
     const BeamSection& section = beam.sections[k];
-    const double determinant =
-        section.bending_xx * section.bending_yy - section.bending_xy * section.bending_xy;
-    const double scale = 1.0 / (youngs_modulus * determinant);
-    deflection.bending[k] = glm::dvec3(section.bending_yy * scale, section.bending_xx * scale,
-                                       section.bending_xy * scale);
+    const double scale = 1.0 / (youngs_modulus * (section.bending_xx * section.bending_yy -
+                                                  section.bending_xy * section.bending_xy));
+    const auto curvature = [&](const glm::dvec2& m) {
+      return scale * glm::dvec2(section.bending_yy * m.x + section.bending_xy * m.y,
+                                section.bending_xy * m.x + section.bending_xx * m.y);
+    };
+    const double lever = beam.length - length * static_cast<double>(k);
+    const glm::dvec2 bent = curvature(moment + lever * lever_moment);
+    const glm::dvec2 falls = curvature(lever_moment);
     const double shear = 1.0 / (shear_coefficient(section) * shear_modulus * section.area);
-    deflection.straining[k] = glm::dvec3(shear, shear, 1.0 / (youngs_modulus * section.area));
+    deflection.strain[k] = force.z / (youngs_modulus * section.area);
+    BeamPiece& piece = deflection.pieces[k];
+    piece.turn0 = turn;
+    piece.turn1 = bent;
+    piece.turn2 = -0.5 * falls;
+    piece.shift0 = shift;
+    piece.shift1 = {turn.y + shear * force.x, -turn.x + shear * force.y, deflection.strain[k]};
+    piece.shift2 = {0.5 * bent.y, -0.5 * bent.x};
+    piece.shift3 = {-1.0 / 6.0 * falls.y, 1.0 / 6.0 * falls.x};
     // The end of this piece is the start of the next one.
-    const SectionMotion end = section_motion(deflection, piece * static_cast<double>(k + 1));
-    deflection.turn[k + 1] = end.turn;
-    deflection.shift[k + 1] = end.shift;
+    const SectionMotion end = motion_in_piece(piece, length);
+    turn = end.turn;
+    shift = end.shift;
   }
   return deflection;
 }
 
 SectionMotion section_motion(const BeamDeflection& deflection, double along) {
-  const double piece = deflection.length / kStations;
-  // A piece owns its far end, so that `deflect` can ask for it before the next piece is there.
-  const double place = along / piece * (1.0 - 1e-12);
-  const auto k = static_cast<std::size_t>(std::clamp(place, 0.0, kStations - 1.0));
-  const double start = piece * static_cast<double>(k);
-  const double t = along - start;
-  const double lever = deflection.length - start;
-  // Moment over the piece: M = m + (lever - x) B with B = direction x force; its first and second
-  // integral to t.
-  const glm::dvec2 lever_moment(-deflection.force.y, deflection.force.x);
-  const glm::dvec2 once = deflection.moment * t + lever_moment * (lever * t - 0.5 * t * t);
-  const glm::dvec2 twice =
-      deflection.moment * (0.5 * t * t) + lever_moment * (0.5 * lever * t * t - t * t * t / 6.0);
-  const glm::dvec3& c = deflection.bending[k];
-  const glm::dvec2& turn = deflection.turn[k];
-  const glm::dvec2 turned(turn.x * t + c.x * twice.x + c.z * twice.y,
-                          turn.y * t + c.z * twice.x + c.y * twice.y);
-  SectionMotion motion;
-  motion.turn = turn + glm::dvec2(c.x * once.x + c.z * once.y, c.z * once.x + c.y * once.y);
-  motion.shift = deflection.shift[k] + glm::dvec3(turned.y, -turned.x, 0.0) +
-                 deflection.straining[k] * deflection.force * t;
-  return motion;
+  const double place =
+      std::clamp(along / deflection.piece_length * (1.0 - 1e-12), 0.0, kStations - 1.0);
+  const auto k = static_cast<std::uint32_t>(place);
+  return motion_in_piece(deflection.pieces[k],
+                         along - deflection.piece_length * static_cast<double>(k));
 }
 
 double axial_strain(const BeamDeflection& deflection, double along) {
-  const double place =
-      std::clamp(along / deflection.length * kStations - 0.5, 0.0, kStations - 1.0);
-  const auto k =
-      std::min(static_cast<std::size_t>(place), static_cast<std::size_t>(kBeamStations - 2));
+  const double place = std::clamp(along / deflection.piece_length - 0.5, 0.0, kStations - 1.0);
+  const auto k = std::min(static_cast<std::uint32_t>(place), kBeamStations - 2);
   const double share = place - static_cast<double>(k);
-  return deflection.force.z *
-         (deflection.straining[k].z * (1.0 - share) + deflection.straining[k + 1].z * share);
+  return deflection.strain[k] + share * (deflection.strain[k + 1] - deflection.strain[k]);
 }
 
 }  // namespace torsion

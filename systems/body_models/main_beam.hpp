@@ -26,19 +26,25 @@ struct MainBeam {
 /// @param tip  m, body frame
 MainBeam main_beam(const World& world, std::uint32_t body, const glm::dvec3& tip);
 
-/// Elastic state of a main beam under a force and a moment at its tip, in the beam's frame (first,
-/// second, direction): Timoshenko's beam theory, exact for each piece. Torsion is not in it.
-struct BeamDeflection {
-  std::array<glm::dvec2, kBeamStations + 1>
-      turn;  // rad about first and second, at the ends of the pieces
-  std::array<glm::dvec3, kBeamStations + 1> shift;  // m, at the ends of the pieces
-  std::array<glm::dvec3, kBeamStations> bending;  // 1/(N m^2): 11, 22 and 12 of the inverse of E I
-  std::array<glm::dvec3, kBeamStations> straining;  // 1/N: 1/(kappa G A), the same, 1/(E A)
-  glm::dvec3 force{0.0};                            // N, at the tip
-  glm::dvec2 moment{0.0};                           // N m, at the tip
-  double length = 0.0;                              // m
+/// One piece of a deflected beam, t [m] from its start, in the beam's frame (first, second,
+/// direction): turn = turn0 + turn1 t + turn2 t^2, rad about first and second; shift = shift0 +
+/// shift1 t + shift2 t^2 + shift3 t^3, m, the last two across the beam only.
+struct BeamPiece {
+  glm::dvec2 turn0{0.0}, turn1{0.0}, turn2{0.0};
+  glm::dvec3 shift0{0.0}, shift1{0.0};
+  glm::dvec2 shift2{0.0}, shift3{0.0};
 };
 
+/// Elastic state of a main beam under a force and a moment at its tip: Timoshenko's beam theory,
+/// exact for each piece. Torsion is not in it.
+struct BeamDeflection {
+  std::array<BeamPiece, kBeamStations> pieces;
+  std::array<double, kBeamStations> strain{};  // axial, of each piece
+  double piece_length = 0.0;                   // m
+};
+
+/// @param force   N, at the tip, beam frame
+/// @param moment  N m, at the tip, about first and second
 BeamDeflection deflect(const MainBeam& beam, const Elasticity& elasticity, const glm::dvec3& force,
                        const glm::dvec2& moment);
 

@@ -5,8 +5,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "systems/body_models/main_beam.hpp"
 #include "systems/frames.hpp"
+#include "systems/scratch.hpp"
 #include "systems/smooth_step.hpp"
 
 namespace torsion {
@@ -47,7 +47,7 @@ void move_anchors(const MainBeam& beam, const BeamDeflection& deflection, const 
                   std::span<AnchorMotion> motion) {
   constexpr double kPi = 3.14159265358979323846;
   const double radius = std::sqrt(beam.sections[kBeamStations / 2].area / kPi);
-  const double entry = std::min(radius, 0.5 * beam.length);
+  const double over_entry = 1.0 / std::min(radius, 0.5 * beam.length);
   for (std::size_t j = 0; j < rest.size(); ++j) {
     const glm::dvec3 from_root = rest[j].position - fixed.point;
     const double along = std::clamp(place_along(beam, fixed, from_root), 0.0, beam.length);
@@ -57,7 +57,7 @@ void move_anchors(const MainBeam& beam, const BeamDeflection& deflection, const 
     const double z = glm::dot(rib, beam.direction);
     const SectionMotion section = section_motion(deflection, along);
     const double swelling =
-        -poisson_ratio * axial_strain(deflection, along) * smooth_step(along / entry);
+        -poisson_ratio * axial_strain(deflection, along) * smooth_step(along * over_entry);
     const glm::dvec3 local(section.shift.x + section.turn.y * z + swelling * x,
                            section.shift.y - section.turn.x * z + swelling * y,
                            section.shift.z + section.turn.x * y - section.turn.y * x);
@@ -68,9 +68,7 @@ void move_anchors(const MainBeam& beam, const BeamDeflection& deflection, const 
 
 }  // namespace
 
-BeamSummary beam_summary(const World& world, std::uint32_t body, const glm::dvec3& point) {
-  const Elasticity& elasticity = world.bodies.at<Elasticity>(body);
-  const MainBeam beam = main_beam(world, body, point);
+BeamSummary beam_summary(const MainBeam& beam, const Elasticity& elasticity) {
   BeamSummary summary;
   summary.length = beam.length;
   if (!beam.has_sections) {
@@ -92,6 +90,17 @@ BeamSummary beam_summary(const World& world, std::uint32_t body, const glm::dvec
   return summary;
 }
 
+void main_beams(StepContext& context) {
+  World& world = context.world;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+    if (world.bodies.at<BodyModels>(identity.body).body == BodyModel::kSkeleton) {
+      context.scratch.main_beams[block_of(identity)] =
+          main_beam(world, identity.body, world.regions.at<RegionGeometry>(region).rest_point);
+    }
+  }
+}
+
 void skeleton(StepContext& context) {
   World& world = context.world;
   const auto identities = world.regions.column<RegionIdentity>();
@@ -108,8 +117,7 @@ void skeleton(StepContext& context) {
       if (identities[region].body != body) {
         continue;
       }
-      const MainBeam beam =
-          main_beam(world, body, world.regions.at<RegionGeometry>(region).rest_point);
+      const MainBeam& beam = context.scratch.main_beams[block_of(identities[region])];
       const TipLoad load = tip_load(beam, world.regions.at<RegionFrame>(region),
                                     world.regions.at<RegionNormal>(region),
                                     world.regions.at<RegionFriction>(region));

@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 
 #include "ecs/world.hpp"
+#include "systems/body_models/main_beam.hpp"
 #include "systems/step.hpp"
 
 namespace torsion {
@@ -19,17 +20,19 @@ struct BeamSummary {
   double torsion_compliance = 0.0;  // integral of ds / (G J), J Saint-Venant's constant, rad/(N m)
 };
 
-/// The main beam to `point`, its sections interpolated between the beams of the nearest anchors.
-/// Continuous in `point`. O(anchors). A body without anchors gives its length and zeros.
-/// @param body   row in world.bodies
-/// @param point  m, body frame, on the rest surface (where p_eq was)
-BeamSummary beam_summary(const World& world, std::uint32_t body, const glm::dvec3& point);
+/// Of a beam of main_beam. A body without anchors gives its length and zeros.
+BeamSummary beam_summary(const MainBeam& beam, const Elasticity& elasticity);
+
+/// The beam to every region of a body whose body model is kSkeleton, to where p_eq was at rest.
+/// Writes Scratch::main_beams.
+void main_beams(StepContext& context);
 
 /// Displacements of the anchors of each body whose body model is kSkeleton, summed over its regions
 /// in their order of formation: bending, shear, stretch and sideways contraction of a Timoshenko
 /// beam from q_f to where p_eq was at rest. Torsion about the beam is left out: the twist angles of
 /// the drawn vertices carry it (systems/surface_field.hpp). Writes AnchorMotion; zero for bodies
-/// with another model. Source: docs/models.md, "Body model skeleton".
+/// with another model. Takes the beams that main_beams found. Source: docs/models.md, "Body model
+/// skeleton".
 void skeleton(StepContext& context);
 
 }  // namespace torsion

@@ -190,7 +190,7 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
   RegionNormal& normal = world.regions.at<RegionNormal>(region);
   RegionFriction& tangential = world.regions.at<RegionFriction>(region);
   const RoundContact round = contact_of(world, region);
-  const std::uint32_t block = identity.cells.first / identity.cells.count;
+  const std::uint32_t block = block_of(identity);
   const auto layers = world.mdr_layers.rows<MdrLayer>({block * kMdrLayers, kMdrLayers});
   normal = RegionNormal{};
   tangential = RegionFriction{};

@@ -3,6 +3,7 @@
 
 #include "systems/body_models/skeleton.hpp"
 #include "systems/contact_models/paper.hpp"
+#include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {
@@ -38,7 +39,8 @@ PaperNormalLaw paper_normal_law(double contact_modulus, double radius, double ax
 void paper_normal_forces(StepContext& context) {
   World& world = context.world;
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
+    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+    const std::uint32_t body = identity.body;
     if (world.bodies.at<BodyModels>(body).contact != ContactModel::kPaper) {
       continue;
     }
@@ -46,7 +48,7 @@ void paper_normal_forces(StepContext& context) {
     const Elasticity& elasticity = world.bodies.at<Elasticity>(body);
     BeamSummary beam;
     if (world.bodies.at<BodyModels>(body).body == BodyModel::kSkeleton) {
-      beam = beam_summary(world, body, geometry.rest_point);
+      beam = beam_summary(context.scratch.main_beams[block_of(identity)], elasticity);
     }
     const double deepest = deepest_allowed(world.bodies.at<Bounds>(body), beam);
     const double depth = std::min(geometry.mean_depth, deepest);

@@ -117,7 +117,7 @@ void fill_field(StepContext& context, std::uint32_t region, ContactModel model) 
                  static_cast<double>(kFieldBlocks);
   field.center = press_blocks(source, world.regions.at<RegionNormal>(region).force, field);
   if (model == ContactModel::kMdr) {
-    const std::uint32_t block = identity.cells.first / identity.cells.count;
+    const std::uint32_t block = block_of(identity);
     const MdrState& state = world.regions.at<MdrState>(region);
     const MdrPlaces places =
         places_of(context.scratch.mdr_tables, {state.flat_share, state.elongation});

@@ -42,7 +42,7 @@ RegionInfluences region_influences(World& world, std::uint32_t region) {
     return result;
   }
   const auto own_count = static_cast<std::uint32_t>(layer_influence_count(side));
-  const std::uint32_t block = identity.cells.first / identity.cells.count;
+  const std::uint32_t block = block_of(identity);
   const auto own_rows = world.layer_influences.rows<Influence>({block * own_count, own_count});
   const std::span<double> own(&own_rows.front().value, own_rows.size());
   if (!serves(filled, thickness, frame.half_size)) {

@@ -170,7 +170,7 @@ World body_world(const BodyDescription& body) {
 std::uint32_t add_region(World& world, const RegionOnBody& region) {
   const std::uint32_t row = world.regions.append()->first;
   world.regions.at<RegionIdentity>(row) =
-      RegionIdentity{*world.region_handles.create(row), 0, 0, row, Range{}};
+      RegionIdentity{*world.region_handles.create(row), 0, 0, row, Range{row, 1}};
   const TransverseAxes axes = transverse_axes(region.normal, glm::dvec3(0.0, 1.0, 0.0));
   RegionFrame& frame = world.regions.at<RegionFrame>(row);
   frame =
@@ -194,6 +194,8 @@ void run_skeleton(World& world) {
   Scratch scratch;
   const std::vector<Pose> poses(world.tools.size());
   StepContext context{world, poses, scratch};
+  scratch.main_beams.resize(world.regions.capacity());
+  main_beams(context);
   skeleton(context);
 }
 

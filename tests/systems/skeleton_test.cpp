@@ -185,7 +185,8 @@ TEST(SkeletonTest, AnchorsMoveContinuouslyWhileTheContactSlides) {
 TEST(BeamSummaryTest, SquareBarHasSaintVenantsComplianceAndItsAxialStiffness) {
   const double side = 0.1;
   World world = body_world(exact_body(ShapeKind::kBox, glm::dvec3(side / 2), FixedKind::kFace));
-  const BeamSummary summary = beam_summary(world, 0, {0.0, side / 2, 0.0});
+  const BeamSummary summary =
+      beam_summary(main_beam(world, 0, {0.0, side / 2, 0.0}), world.bodies.at<Elasticity>(0));
   EXPECT_NEAR(summary.length, side, 1e-12);
   EXPECT_NEAR(summary.area / (side * side), 1.0, 5e-3);
   EXPECT_NEAR(summary.axial_stiffness / (3e6 * side), 1.0, 5e-3);
@@ -196,7 +197,8 @@ TEST(BeamSummaryTest, SquareBarHasSaintVenantsComplianceAndItsAxialStiffness) {
 
 TEST(BeamSummaryTest, RoundBarHasItsClosedForms) {
   World world = body_world(exact_body(ShapeKind::kCylinder, {0.05, 0.05, 0.05}, FixedKind::kFace));
-  const BeamSummary summary = beam_summary(world, 0, {0.0, 0.05, 0.0});
+  const BeamSummary summary =
+      beam_summary(main_beam(world, 0, {0.0, 0.05, 0.0}), world.bodies.at<Elasticity>(0));
   // physics B8: G = 1e6 Pa, r = 0.05 m, L = 0.1 m, phi = 0.1 rad needs 9.81747704 N m.
   EXPECT_NEAR(summary.torsion_compliance * 9.81747704 / 0.1, 1.0, 5e-3);
   EXPECT_NEAR(summary.area / (kPi * 0.0025), 1.0, 5e-3);

@@ -21,6 +21,7 @@ inline constexpr int kUsage = 2;
 /// Each adds one subcommand to `app` and sets `command` when that subcommand was given.
 void add_simulate(CLI::App& app, Command& command);
 void add_render(CLI::App& app, Command& command);
+void add_view(CLI::App& app, Command& command);
 void add_export(CLI::App& app, Command& command);
 void add_check(CLI::App& app, Command& command);
 

@@ -16,6 +16,7 @@ int run(int argc, char** argv) {
   torsion::add_simulate(app, command);
 #ifdef TORSION_WITH_RENDER
   torsion::add_render(app, command);
+  torsion::add_view(app, command);
 #endif
   torsion::add_export(app, command);
   torsion::add_check(app, command);

@@ -87,7 +87,7 @@ RunStatistics run_realtime(Session& session, std::uint64_t steps, const RunFiles
   LiveLoop loop;
   loop.wants_rows = files.trace != nullptr;
   loop.wants_inputs = files.record != nullptr;
-  reserve(loop, session);
+  reserve(loop, session, session.simulation);
   loop.steps_left = steps;
   std::vector<TraceRow> rows(session.scene.tools.size());
   std::thread physics(run_live, std::ref(loop));

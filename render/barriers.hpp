@@ -132,12 +132,13 @@ inline void to_depth_target(const vk::raii::CommandBuffer& commands, vk::Image i
                 });
 }
 
-/// A colour image to be drawn anew, after it was last drawn to, resolved into, or copied from.
+/// A colour image to be drawn anew, after it was last drawn to, resolved into, or copied or
+/// stretched from.
 inline void to_color_target(const vk::raii::CommandBuffer& commands, vk::Image image) {
   using namespace detail;
   image_barrier(commands, image, vk::ImageAspectFlagBits::eColor,
                 {
-                    .srcStageMask = Stage::eColorAttachmentOutput | Stage::eCopy,
+                    .srcStageMask = Stage::eColorAttachmentOutput | Stage::eCopy | Stage::eBlit,
                     .srcAccessMask = Access::eColorAttachmentWrite,
                     .dstStageMask = Stage::eColorAttachmentOutput,
                     .dstAccessMask = Access::eColorAttachmentRead | Access::eColorAttachmentWrite,
@@ -157,6 +158,73 @@ inline void color_target_to_copy_source(const vk::raii::CommandBuffer& commands,
                     .dstAccessMask = Access::eTransferRead,
                     .oldLayout = vk::ImageLayout::eColorAttachmentOptimal,
                     .newLayout = vk::ImageLayout::eTransferSrcOptimal,
+                });
+}
+
+/// The finished picture of the scene, before it is stretched into the window's image.
+inline void color_target_to_blit_source(const vk::raii::CommandBuffer& commands, vk::Image image) {
+  using namespace detail;
+  image_barrier(commands, image, vk::ImageAspectFlagBits::eColor,
+                {
+                    .srcStageMask = Stage::eColorAttachmentOutput,
+                    .srcAccessMask = Access::eColorAttachmentWrite,
+                    .dstStageMask = Stage::eBlit,
+                    .dstAccessMask = Access::eTransferRead,
+                    .oldLayout = vk::ImageLayout::eColorAttachmentOptimal,
+                    .newLayout = vk::ImageLayout::eTransferSrcOptimal,
+                });
+}
+
+/// The window's image, acquired, before the scene is stretched into it: what was on it is gone. The
+/// wait for its semaphore is at the same stage.
+inline void acquired_to_blit_target(const vk::raii::CommandBuffer& commands, vk::Image image) {
+  using namespace detail;
+  image_barrier(commands, image, vk::ImageAspectFlagBits::eColor,
+                {
+                    .srcStageMask = Stage::eBlit,
+                    .dstStageMask = Stage::eBlit,
+                    .dstAccessMask = Access::eTransferWrite,
+                    .oldLayout = vk::ImageLayout::eUndefined,
+                    .newLayout = vk::ImageLayout::eTransferDstOptimal,
+                });
+}
+
+/// The window's image with the scene on it, before the overlay is drawn over that.
+inline void blit_target_to_color_target(const vk::raii::CommandBuffer& commands, vk::Image image) {
+  using namespace detail;
+  image_barrier(commands, image, vk::ImageAspectFlagBits::eColor,
+                {
+                    .srcStageMask = Stage::eBlit,
+                    .srcAccessMask = Access::eTransferWrite,
+                    .dstStageMask = Stage::eColorAttachmentOutput,
+                    .dstAccessMask = Access::eColorAttachmentRead | Access::eColorAttachmentWrite,
+                    .oldLayout = vk::ImageLayout::eTransferDstOptimal,
+                    .newLayout = vk::ImageLayout::eColorAttachmentOptimal,
+                });
+}
+
+/// The window's image, copied for a screenshot, before it is shown. The semaphore does the rest.
+inline void copy_source_to_present(const vk::raii::CommandBuffer& commands, vk::Image image) {
+  using namespace detail;
+  image_barrier(commands, image, vk::ImageAspectFlagBits::eColor,
+                {
+                    .srcStageMask = Stage::eCopy,
+                    .dstStageMask = Stage::eNone,
+                    .oldLayout = vk::ImageLayout::eTransferSrcOptimal,
+                    .newLayout = vk::ImageLayout::ePresentSrcKHR,
+                });
+}
+
+/// The window's finished image, before it is shown. The semaphore does the rest.
+inline void color_target_to_present(const vk::raii::CommandBuffer& commands, vk::Image image) {
+  using namespace detail;
+  image_barrier(commands, image, vk::ImageAspectFlagBits::eColor,
+                {
+                    .srcStageMask = Stage::eColorAttachmentOutput,
+                    .srcAccessMask = Access::eColorAttachmentWrite,
+                    .dstStageMask = Stage::eNone,
+                    .oldLayout = vk::ImageLayout::eColorAttachmentOptimal,
+                    .newLayout = vk::ImageLayout::ePresentSrcKHR,
                 });
 }
 

@@ -14,7 +14,14 @@ namespace torsion {
 namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
-constexpr std::array kDeviceExtensions = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+
+std::vector<const char*> device_extensions(const GpuOptions& options) {
+  std::vector<const char*> extensions = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+  if (!options.surface_extensions.empty()) {
+    extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  }
+  return extensions;
+}
 
 VKAPI_ATTR VkBool32 VKAPI_CALL keep_message(VkDebugUtilsMessageSeverityFlagBitsEXT /*severity*/,
                                             VkDebugUtilsMessageTypeFlagsEXT types,
@@ -44,24 +51,27 @@ bool has_validation_layer(const vk::raii::Context& context) {
                              });
 }
 
-vk::raii::Instance make_instance(const vk::raii::Context& context, ValidationLog* log) {
+vk::raii::Instance make_instance(const vk::raii::Context& context, const GpuOptions& options) {
   const vk::ApplicationInfo application{.pApplicationName = "torsion",
                                         .apiVersion = VK_API_VERSION_1_3};
-  vk::InstanceCreateInfo info{.pApplicationInfo = &application};
-  if (log == nullptr) {
-    return {context, info};
+  std::vector<const char*> extensions;
+  for (const std::string& extension : options.surface_extensions) {
+    extensions.push_back(extension.c_str());
   }
+  vk::InstanceCreateInfo info{.pApplicationInfo = &application};
   const std::array enabled = {vk::ValidationFeatureEnableEXT::eSynchronizationValidation};
   const vk::ValidationFeaturesEXT features{.enabledValidationFeatureCount = enabled.size(),
                                            .pEnabledValidationFeatures = enabled.data()};
-  vk::DebugUtilsMessengerCreateInfoEXT messenger = messenger_info(log);
+  vk::DebugUtilsMessengerCreateInfoEXT messenger = messenger_info(options.validation);
   messenger.pNext = &features;
-  const char* const extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
-  info.pNext = &messenger;
-  info.enabledLayerCount = 1;
-  info.ppEnabledLayerNames = &kValidationLayer;
-  info.enabledExtensionCount = 1;
-  info.ppEnabledExtensionNames = &extension;
+  if (options.validation != nullptr) {
+    extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    info.pNext = &messenger;
+    info.enabledLayerCount = 1;
+    info.ppEnabledLayerNames = &kValidationLayer;
+  }
+  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   return {context, info};
 }
 
@@ -93,7 +103,7 @@ std::optional<std::uint32_t> find_queue_family(const vk::raii::PhysicalDevice& d
   return std::nullopt;
 }
 
-DeviceFacts facts_of(const vk::raii::PhysicalDevice& device) {
+DeviceFacts facts_of(const vk::raii::PhysicalDevice& device, const GpuOptions& options) {
   const vk::PhysicalDeviceProperties properties = device.getProperties();
   DeviceFacts facts{properties.deviceName, kind_of(properties.deviceType), {}};
   if (properties.apiVersion < VK_API_VERSION_1_3) {
@@ -114,7 +124,7 @@ DeviceFacts facts_of(const vk::raii::PhysicalDevice& device) {
   }
   const std::vector<vk::ExtensionProperties> extensions =
       device.enumerateDeviceExtensionProperties();
-  for (const char* wanted : kDeviceExtensions) {
+  for (const char* wanted : device_extensions(options)) {
     const bool there =
         std::ranges::any_of(extensions, [&](const vk::ExtensionProperties& extension) {
           return std::strcmp(extension.extensionName, wanted) == 0;
@@ -126,7 +136,9 @@ DeviceFacts facts_of(const vk::raii::PhysicalDevice& device) {
   return facts;
 }
 
-vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, std::uint32_t queue_family) {
+vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, std::uint32_t queue_family,
+                             const GpuOptions& options) {
+  const std::vector<const char*> extensions = device_extensions(options);
   const float priority = 1.0F;
   const vk::DeviceQueueCreateInfo queue{
       .queueFamilyIndex = queue_family, .queueCount = 1, .pQueuePriorities = &priority};
@@ -136,8 +148,8 @@ vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, std::uint
                         .pNext = &features,
                         .queueCreateInfoCount = 1,
                         .pQueueCreateInfos = &queue,
-                        .enabledExtensionCount = kDeviceExtensions.size(),
-                        .ppEnabledExtensionNames = kDeviceExtensions.data(),
+                        .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+                        .ppEnabledExtensionNames = extensions.data(),
                     }};
 }
 
@@ -187,7 +199,7 @@ Result<Gpu> open_gpu(const GpuOptions& options) {
     return Error{"The Vulkan validation layer is not installed (package vulkan-validationlayers)."};
   }
   try {
-    gpu.instance = make_instance(gpu.context, options.validation);
+    gpu.instance = make_instance(gpu.context, options);
   } catch (const vk::IncompatibleDriverError&) {  // what the loader says when it finds none
     return choose_device({}, {}).error();
   }
@@ -198,7 +210,7 @@ Result<Gpu> open_gpu(const GpuOptions& options) {
   std::vector<vk::raii::PhysicalDevice> devices;
   std::vector<DeviceFacts> facts;
   for (vk::raii::PhysicalDevice& device : vk::raii::PhysicalDevices(gpu.instance)) {
-    facts.push_back(facts_of(device));
+    facts.push_back(facts_of(device, options));
     devices.push_back(std::move(device));
   }
   const Result<std::size_t> chosen = choose_device(facts, wanted_name(options));
@@ -208,7 +220,7 @@ Result<Gpu> open_gpu(const GpuOptions& options) {
 
   gpu.physical = std::move(devices[chosen.value()]);
   gpu.queue_family = *find_queue_family(gpu.physical);
-  gpu.device = make_device(gpu.physical, gpu.queue_family);
+  gpu.device = make_device(gpu.physical, gpu.queue_family, options);
   gpu.queue = {gpu.device, gpu.queue_family, 0};
   gpu.name = full_name(gpu.physical);
   gpu.limits = gpu.physical.getProperties().limits;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "ecs/result.hpp"
 #include "render/validation_log.hpp"
@@ -13,6 +14,8 @@ struct GpuOptions {
   ValidationLog* validation = nullptr;  // switches the validation layers on; must outlive the Gpu
   bool force_staging = false;
   std::string device_name;  // part of the name; empty: TORSION_GPU, else the best
+  // What a window's surface needs of an instance; empty: no window, and no swapchain either.
+  std::vector<std::string> surface_extensions;
 };
 
 /// A device with one queue that does everything. Members are in the order of creation.

@@ -25,10 +25,21 @@ struct OverlayAtlas {
   std::vector<std::uint8_t> alpha;  // width * height
 };
 
+/// A run of indices of which only what lies in a rectangle is drawn.
+struct OverlayClip {
+  std::uint32_t first = 0;  // of the indices
+  std::uint32_t count = 0;
+  std::int32_t left = 0;  // pixels, of the target
+  std::int32_t top = 0;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+};
+
 /// Triangles, drawn in order, blended one over the other.
 struct OverlayDrawList {
   std::vector<OverlayVertex> vertices;
   std::vector<std::uint32_t> indices;  // three for each triangle
+  std::vector<OverlayClip> clips;      // in order; empty: all indices, unclipped
 };
 
 }  // namespace torsion

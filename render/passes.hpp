@@ -43,6 +43,7 @@ struct FrameInputs {
   std::span<const Range> contacts;  // rows in slot.contacts, one for each body
   std::uint32_t arrow_vertices = 0;
   const OverlayDrawList* overlay = nullptr;
+  bool overlay_apart = false;  // it is drawn by record_overlay(), not over the scene's picture
 };
 
 /// Records the copies of what the CPU wrote for this frame, where there are staging buffers.
@@ -52,7 +53,13 @@ void record_deform(const vk::raii::CommandBuffer& commands, const FrameInputs& i
 void record_normals(const vk::raii::CommandBuffer& commands, const FrameInputs& inputs);
 void record_shadow(const vk::raii::CommandBuffer& commands, const FrameInputs& inputs);
 
-/// Ground, bodies and arrows, the tools over them, the overlay over all.
+/// Ground, bodies and arrows, the tools over them, the overlay over all unless `inputs` has none.
 void record_draw(const Frame& target, const FrameInputs& inputs);
+
+/// The overlay alone over what is on the image.
+/// @param pipeline  for that image's format, one sample a pixel
+void record_overlay(const vk::raii::CommandBuffer& commands, vk::ImageView view,
+                    vk::Extent2D extent, const vk::raii::Pipeline& pipeline,
+                    const FrameInputs& inputs);
 
 }  // namespace torsion

@@ -205,7 +205,8 @@ struct RowInput {
 };
 
 vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, vk::PipelineLayout layout,
-                                         vk::Format color_format, vk::SampleCountFlagBits samples) {
+                                         vk::Format color_format, vk::Format depth_format,
+                                         vk::SampleCountFlagBits samples) {
   const std::array<vk::VertexInputBindingDescription, 1> bindings = {
       {{0, sizeof(OverlayVertex), vk::VertexInputRate::eVertex}}};
   const std::array<vk::VertexInputAttributeDescription, 3> attributes = {{
@@ -219,6 +220,7 @@ vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, vk::PipelineLayout layo
                                  .bindings = bindings,
                                  .attributes = attributes,
                                  .color_format = color_format,
+                                 .depth_format = depth_format,
                                  .samples = samples,
                                  .cull = vk::CullModeFlagBits::eNone,
                                  .write_depth = false,
@@ -227,6 +229,12 @@ vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, vk::PipelineLayout layo
 }
 
 }  // namespace
+
+vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, const Pipelines& pipelines,
+                                         vk::Format color_format) {
+  return make_overlay_pipeline(gpu, *pipelines.draw_layout, color_format, vk::Format::eUndefined,
+                               vk::SampleCountFlagBits::e1);
+}
 
 Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCountFlagBits samples) {
   Pipelines pipelines;
@@ -268,7 +276,7 @@ Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCoun
   recipe.write_color = false;
   pipelines.tool_depth = make_graphics_pipeline(gpu, layout, recipe);
 
-  pipelines.overlay = make_overlay_pipeline(gpu, layout, color_format, samples);
+  pipelines.overlay = make_overlay_pipeline(gpu, layout, color_format, kDepthFormat, samples);
   return pipelines;
 }
 

@@ -35,6 +35,10 @@ struct Pipelines {
   vk::raii::Pipeline overlay = nullptr;
 };
 
+/// A pipeline that draws the overlay alone over an image of that format, one sample a pixel.
+vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, const Pipelines& pipelines,
+                                         vk::Format color_format);
+
 /// Throws vk::SystemError.
 Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCountFlagBits samples);
 

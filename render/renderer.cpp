@@ -17,6 +17,7 @@
 #include "render/passes.hpp"
 #include "render/pipelines.hpp"
 #include "render/scene_buffers.hpp"
+#include "render/window_target.hpp"
 
 namespace torsion {
 namespace {
@@ -41,9 +42,9 @@ std::optional<Error> check(const RendererOptions& options) {
                  std::to_string(options.height) + " pixels; each side must be 1 to " +
                  std::to_string(kLargestSide) + "."};
   }
-  if (options.samples != 1 && options.samples != 4) {
+  if (options.samples != 0 && options.samples != 1 && options.samples != 4) {
     return Error{"The number of samples a pixel is " + std::to_string(options.samples) +
-                 "; it must be 1 or 4."};
+                 "; it must be 1 or 4, or 0 to choose."};
   }
   if (options.shadow_size < 1 || options.shadow_size > kLargestSide / 2) {
     return Error{"The shadow map's side is " + std::to_string(options.shadow_size) +
@@ -68,16 +69,20 @@ Image2d make_color_maps(const Gpu& gpu) {
                              std::as_bytes(std::span(texels)));
 }
 
-Surfaces make_surfaces(const Gpu& gpu, const RendererOptions& options, vk::Format color_format,
-                       vk::SampleCountFlagBits samples) {
+/// What has the size of the scene's picture.
+void fit_surfaces(const Gpu& gpu, vk::Extent2D extent, vk::Format color_format,
+                  vk::SampleCountFlagBits samples, Surfaces& surfaces) {
   using Usage = vk::ImageUsageFlagBits;
-  const vk::Extent2D extent{options.width, options.height};
-  Surfaces surfaces;
   if (samples != vk::SampleCountFlagBits::e1) {
     surfaces.color = make_image(gpu, extent, color_format, samples,
                                 Usage::eColorAttachment | Usage::eTransientAttachment);
   }
   surfaces.depth = make_image(gpu, extent, kDepthFormat, samples, Usage::eDepthStencilAttachment);
+}
+
+Surfaces make_surfaces(const Gpu& gpu, const RendererOptions& options) {
+  using Usage = vk::ImageUsageFlagBits;
+  Surfaces surfaces;
   surfaces.shadow_map =
       make_image(gpu, {2 * options.shadow_size, options.shadow_size}, kDepthFormat,
                  vk::SampleCountFlagBits::e1, Usage::eDepthStencilAttachment | Usage::eSampled);
@@ -115,9 +120,11 @@ struct Renderer::Impl {
   Surfaces surfaces;
   Pipelines pipelines;
   std::vector<vk::raii::QueryPool> timestamps;  // one for each slot
-  std::optional<OffscreenTarget> target;
+  vk::raii::Pipeline window_overlay = nullptr;
+  std::optional<OffscreenTarget> pictures;  // one of these two is there
+  std::optional<WindowTarget> window;
 
-  vk::Extent2D size;
+  vk::SampleCountFlagBits samples = vk::SampleCountFlagBits::e1;
   std::uint64_t drawn = 0;  // frames so far
   ArrowMesh arrows;
   std::vector<shared::ContactSpot> contacts;
@@ -143,8 +150,15 @@ struct Renderer::Impl {
                     SlotBuffers& slot);
   void write_overlay(const OverlayDrawList* overlay, SlotBuffers& slot) const;
   void record(const Frame& frame, const FrameInputs& inputs, SlotBuffers& slot);
+  void draw(const Frame& target, const FrameWorld& frame, const Snapshot& snapshot,
+            const Camera& camera, const DrawOptions& draw_options, const OverlayDrawList* overlay);
+  [[nodiscard]] Target& target();
   [[nodiscard]] std::vector<glm::vec4> read_rows(const Buffer& buffer) const;
 };
+
+Target& Renderer::Impl::target() {
+  return pictures ? static_cast<Target&>(*pictures) : static_cast<Target&>(*window);
+}
 
 ArrowScale Renderer::Impl::arrow_scale(const Snapshot& snapshot, const Camera& camera,
                                        const DrawOptions& options) {
@@ -209,8 +223,35 @@ void Renderer::Impl::record(const Frame& frame, const FrameInputs& inputs, SlotB
   stamp();
   record_draw(frame, inputs);
   stamp();
-  target->finish(frame);
+  if (window) {
+    window->stretch(frame);
+    record_overlay(commands, window->window_view(), window->window_extent(), window_overlay,
+                   inputs);
+  }
+  target().finish(frame);
   stamp();
+}
+
+void Renderer::Impl::draw(const Frame& target, const FrameWorld& frame, const Snapshot& snapshot,
+                          const Camera& camera, const DrawOptions& draw_options,
+                          const OverlayDrawList* overlay) {
+  SlotBuffers& slot = buffers.slots[target.slot];
+  write_columns(frame, slot);
+  const double aspect = static_cast<double>(target.extent.width) / target.extent.height;
+  const shared::FrameUniforms uniforms =
+      frame_uniforms(extent, camera, aspect, surfaces.shadow_map.extent.height, draw_options);
+  slot.uniforms.write(0, std::as_bytes(std::span(&uniforms, 1)));
+  contact_spots(snapshot, frame.bodies.size(), contacts, contact_ranges);
+  slot.contacts.write(0, std::as_bytes(std::span(contacts)));
+  write_arrows(snapshot, camera, draw_options, slot);
+  write_overlay(overlay, slot);
+  record(target,
+         {gpu, pipelines, buffers, surfaces, extent, frame, draw_options, slot, uniforms.background,
+          contact_ranges, static_cast<std::uint32_t>(arrows.positions.size()), overlay,
+          window.has_value()},
+         slot);
+  this->target().submit(target);
+  ++drawn;
 }
 
 std::vector<glm::vec4> Renderer::Impl::read_rows(const Buffer& buffer) const {
@@ -236,7 +277,9 @@ Result<Renderer> Renderer::create(const RendererOptions& options, const FrameWor
   if (const auto error = check(options)) {
     return *error;
   }
-  Result<Gpu> gpu = open_gpu({options.validation, options.force_staging, options.device_name});
+  Result<Gpu> gpu =
+      open_gpu({options.validation, options.force_staging, options.device_name,
+                options.window == nullptr ? std::vector<std::string>{} : surface_extensions()});
   if (!gpu) {
     return gpu.error();
   }
@@ -248,12 +291,24 @@ Result<Renderer> Renderer::create(const RendererOptions& options, const FrameWor
     return buffers.error();
   }
   impl->buffers = std::move(buffers).value();
-  impl->size = vk::Extent2D{options.width, options.height};
-  impl->target.emplace(impl->gpu, impl->size, kSlots);
-  const vk::SampleCountFlagBits samples =
-      options.samples == 4 ? vk::SampleCountFlagBits::e4 : vk::SampleCountFlagBits::e1;
-  impl->surfaces = make_surfaces(impl->gpu, options, impl->target->format(), samples);
-  impl->pipelines = make_pipelines(impl->gpu, impl->target->format(), samples);
+  const bool on_processor =
+      impl->gpu.physical.getProperties().deviceType == vk::PhysicalDeviceType::eCpu;
+  impl->samples = options.samples == 4 || (options.samples == 0 && !on_processor)
+                      ? vk::SampleCountFlagBits::e4
+                      : vk::SampleCountFlagBits::e1;
+  impl->surfaces = make_surfaces(impl->gpu, options);
+  if (options.window != nullptr) {
+    impl->window.emplace(impl->gpu, *options.window, kSlots);
+  } else {
+    const vk::Extent2D size{options.width, options.height};
+    impl->pictures.emplace(impl->gpu, size, kSlots);
+    fit_surfaces(impl->gpu, size, impl->pictures->format(), impl->samples, impl->surfaces);
+  }
+  impl->pipelines = make_pipelines(impl->gpu, impl->target().format(), impl->samples);
+  if (impl->window) {
+    impl->window_overlay =
+        make_overlay_pipeline(impl->gpu, impl->pipelines, impl->window->window_format());
+  }
   for (std::uint32_t slot = 0; slot < kSlots; ++slot) {
     impl->timestamps.emplace_back(
         impl->gpu.device,
@@ -275,33 +330,55 @@ Result<std::uint64_t> Renderer::draw(const FrameWorld& frame, const Snapshot& sn
   if (const auto error = check_columns(impl.gpu, frame)) {
     return *error;
   }
-  const Frame target = impl.target->begin();
-  SlotBuffers& slot = impl.buffers.slots[target.slot];
-  write_columns(frame, slot);
-  const double aspect = static_cast<double>(impl.size.width) / impl.size.height;
-  const shared::FrameUniforms uniforms =
-      frame_uniforms(impl.extent, camera, aspect, impl.surfaces.shadow_map.extent.height, options);
-  slot.uniforms.write(0, std::as_bytes(std::span(&uniforms, 1)));
-  contact_spots(snapshot, frame.bodies.size(), impl.contacts, impl.contact_ranges);
-  slot.contacts.write(0, std::as_bytes(std::span(impl.contacts)));
-  impl.write_arrows(snapshot, camera, options, slot);
-  impl.write_overlay(overlay, slot);
-  impl.record(target,
-              {impl.gpu, impl.pipelines, impl.buffers, impl.surfaces, impl.extent, frame, options,
-               slot, uniforms.background, impl.contact_ranges,
-               static_cast<std::uint32_t>(impl.arrows.positions.size()), overlay},
-              slot);
-  impl.target->submit(target);
-  return impl.drawn++;
+  TORSION_ASSERT(impl.pictures.has_value());
+  impl.draw(impl.pictures->begin(), frame, snapshot, camera, options, overlay);
+  return impl.drawn - 1;
 } catch (const vk::SystemError& error) {
   return described(error, "a picture was drawn");
+}
+
+Result<bool> Renderer::show(const FrameWorld& frame, const Snapshot& snapshot, const Camera& camera,
+                            const DrawOptions& options, const OverlayDrawList* overlay,
+                            const Showing& showing) try {
+  Impl& impl = *impl_;
+  TORSION_ASSERT(impl.window.has_value());
+  if (const auto error = check_columns(impl.gpu, frame)) {
+    return *error;
+  }
+  const vk::Extent2D before = impl.window->extent();
+  if (!impl.window->fit(showing.width, showing.height, showing.share)) {
+    return false;
+  }
+  if (impl.window->extent() != before) {
+    fit_surfaces(impl.gpu, impl.window->extent(), impl.window->format(), impl.samples,
+                 impl.surfaces);
+  }
+  const Frame target = impl.window->begin();
+  if (target.commands == nullptr) {
+    return false;
+  }
+  if (showing.keep) {
+    impl.window->keep_next();
+  }
+  impl.draw(target, frame, snapshot, camera, options, overlay);
+  return true;
+} catch (const vk::SystemError& error) {
+  return described(error, "a window was drawn");
+}
+
+Result<Image> Renderer::screenshot() try {
+  TORSION_ASSERT(impl_->window.has_value());
+  return impl_->window->screenshot();
+} catch (const vk::SystemError& error) {
+  return described(error, "a picture was read back");
 }
 
 Result<Image> Renderer::read_pixels(std::uint64_t number) try {
   TORSION_ASSERT(number < impl_->drawn && number + kSlots >= impl_->drawn);
   const std::span<const std::byte> pixels =
-      impl_->target->pixels(static_cast<std::uint32_t>(number % kSlots));
-  Image image{impl_->size.width, impl_->size.height, std::vector<std::uint8_t>(pixels.size())};
+      impl_->pictures->pixels(static_cast<std::uint32_t>(number % kSlots));
+  const vk::Extent2D size = impl_->pictures->extent();
+  Image image{size.width, size.height, std::vector<std::uint8_t>(pixels.size())};
   std::memcpy(image.rgba.data(), pixels.data(), pixels.size());
   return image;
 } catch (const vk::SystemError& error) {
@@ -311,7 +388,7 @@ Result<Image> Renderer::read_pixels(std::uint64_t number) try {
 Result<PassTimes> Renderer::pass_times(std::uint64_t number) try {
   TORSION_ASSERT(number < impl_->drawn && number + kSlots >= impl_->drawn);
   const auto slot = static_cast<std::uint32_t>(number % kSlots);
-  impl_->target->wait(slot);
+  impl_->pictures ? impl_->pictures->wait(slot) : impl_->window->wait(slot);
   const auto [result, ticks] = impl_->timestamps[slot].getResults<std::uint64_t>(
       0, kTimestamps, kTimestamps * sizeof(std::uint64_t), sizeof(std::uint64_t),
       vk::QueryResultFlagBits::e64);

@@ -17,13 +17,15 @@
 #include "render/image.hpp"
 #include "render/overlay_draw_list.hpp"
 #include "render/validation_log.hpp"
+#include "render/window.hpp"
 
 namespace torsion {
 
 struct RendererOptions {
   std::uint32_t width = 1280;       // pixels, 1 to 16384
   std::uint32_t height = 720;       // pixels, 1 to 16384
-  std::uint32_t samples = 4;        // per pixel: 1, or 4 for smooth edges at about twice the time
+  std::uint32_t samples = 4;        // per pixel: 1, or 4 for smooth edges at about twice the time;
+                                    // 0: 1 where a processor draws, else 4
   std::uint32_t shadow_size = 512;  // texels along the side of the shadow map, 1 to 8192
   ValidationLog* validation =
       nullptr;  // switches validation and synchronization validation on and takes what they
@@ -33,6 +35,7 @@ struct RendererOptions {
   std::string
       device_name;  // part of a device's name; empty: the environment's TORSION_GPU, else the best
   const OverlayAtlas* overlay_atlas = nullptr;  // copied; without it no overlay is drawn
+  const Window* window = nullptr;  // draw into it; must outlive the renderer. null: into pictures
 };
 
 /// Milliseconds that each pass of one frame took on the device.
@@ -41,12 +44,12 @@ struct PassTimes {
   double deform = 0.0;
   double normals = 0.0;
   double shadow = 0.0;
-  double draw = 0.0;  // bodies, ground, arrows, tools, overlay
-  double read_back = 0.0;
+  double draw = 0.0;       // bodies, ground, arrows, tools, overlay
+  double read_back = 0.0;  // or what brings it into the window, overlay and all
 };
 
-/// Deforms and draws a frame world into pictures of one size. One thread at a time. Needs no
-/// window.
+/// Deforms and draws a frame world into pictures of one size, which needs no window, or into a
+/// window. One thread at a time.
 class Renderer {
  public:
   /// Frames that may be under way at once, and whose results can still be read.
@@ -69,6 +72,25 @@ class Renderer {
   Result<std::uint64_t> draw(const FrameWorld& frame, const Snapshot& snapshot,
                              const Camera& camera, const DrawOptions& options,
                              const OverlayDrawList* overlay);
+
+  /// How a window is to be filled.
+  struct Showing {
+    std::uint32_t width = 0;  // pixels of the window now
+    std::uint32_t height = 0;
+    double share = 1.0;  // of these, along each side, in which the scene is drawn; the overlay is
+                         // always sharp
+    bool keep = false;   // screenshot() gets this picture
+  };
+
+  /// As draw(), into the window. Blocks until the picture is handed over, which on a processor's
+  /// driver is nearly as long as drawing takes. False: nothing is shown this time, because the
+  /// window has no size, or has just changed it; come again.
+  Result<bool> show(const FrameWorld& frame, const Snapshot& snapshot, const Camera& camera,
+                    const DrawOptions& options, const OverlayDrawList* overlay,
+                    const Showing& showing);
+
+  /// The picture that the last show() with `keep` put into the window, overlay and all.
+  Result<Image> screenshot();
 
   /// The picture with that number, which must be one of the last kFramesInFlight drawn. Waits until
   /// it is done.

@@ -37,7 +37,7 @@ Pose next_pose(LiveLoop& loop, std::uint32_t row, Pose& handle) {
   LiveTool& tool = loop.tools[row];
   const World& world = loop.simulation->world;
   take_sample(tool);
-  if (tool.from == PoseFrom::kScript) {
+  if (tool.from == PoseFrom::kScript || world.clock.at<Clock>(0).step == 0) {
     handle = scripted_pose(loop.session->scene.tools[row].script, next_time(world));
     return handle;
   }
@@ -101,6 +101,7 @@ void go_over(LiveLoop& loop, Generation& to, bool carry) {
   } else {
     loop.statistics = RunStatistics{};
     for (LiveTool& tool : loop.tools) {
+      tool.from = PoseFrom::kScript;
       tool.sample = 0;
       tool.books = PassivityState{};
     }
@@ -145,6 +146,51 @@ bool due_now(LiveLoop& loop) {
   return loop.ticks % loop.slowness == 0;
 }
 
+LiveRow live_row(const LiveLoop& loop, std::uint32_t tool, double step_us, double late_us) {
+  const World& world = loop.simulation->world;
+  LiveRow row;
+  row.trace = trace_row(world, tool, step_us);
+  row.late_us = late_us;
+  row.generation = loop.generation;
+  row.tool = tool;
+  row.faults = world.clock.at<Clock>(0).faults;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+    if (identity.tool == tool) {
+      const glm::dquat& to_world = world.bodies.at<Pose>(identity.body).rotation;
+      row.normal = to_world * world.regions.at<RegionFrame>(region).normal;
+      row.tangent_x = to_world * world.regions.at<RegionFrame>(region).tangent_x;
+      row.twist = world.regions.at<RegionMotion>(region).turn;
+      row.couple = world.regions.at<RegionFriction>(region).couple;
+      break;
+    }
+  }
+  return row;
+}
+
+/// Where the cells are that carry pressure.
+void mark_cells(const World& world, std::vector<CellMark>& marks) {
+  marks.clear();
+  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+    const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+    const Pose& body = world.bodies.at<Pose>(identity.body);
+    const glm::dvec2 cell = 2.0 * frame.half_size / static_cast<double>(side);
+    const auto tractions = world.cells.rows<CellTraction>(identity.cells);
+    const auto geometry = world.cells.rows<CellGeometry>(identity.cells);
+    for (std::uint32_t i = 0; i < tractions.size() && marks.size() < kMostCellMarks; ++i) {
+      if (tractions[i].pressure > 0.0) {
+        const double x = (i % side + 0.5) * cell.x - frame.half_size.x;
+        const double y = (i / side + 0.5) * cell.y - frame.half_size.y;
+        const glm::dvec3 place = frame.origin + frame.tangent_x * x + frame.tangent_y * y +
+                                 frame.normal * geometry[i].height;
+        marks.push_back({glm::vec3(body.position + body.rotation * place), tractions[i].sticks});
+      }
+    }
+  }
+}
+
 void step_and_tell(LiveLoop& loop, double late_us) {
   World& world = loop.simulation->world;
   const std::uint64_t number = world.clock.at<Clock>(0).step;
@@ -163,9 +209,7 @@ void step_and_tell(LiveLoop& loop, double late_us) {
   loop.statistics.add_step(world, step_us);
   loop.statistics.overruns += 1e3 * step_us > static_cast<double>(loop.schedule.period) ? 1U : 0U;
   for (std::uint32_t row = 0; loop.wants_rows && row < poses.size(); ++row) {
-    const LiveRow out{trace_row(world, row, step_us), late_us, loop.generation, row,
-                      world.clock.at<Clock>(0).faults};
-    loop.statistics.lost_rows += loop.rows.push(out) ? 0U : 1U;
+    loop.statistics.lost_rows += loop.rows.push(live_row(loop, row, step_us, late_us)) ? 0U : 1U;
   }
   loop.steps_left -= 1;
 }
@@ -174,6 +218,10 @@ void publish_frame(LiveLoop& loop) {
   LiveFrame& frame = loop.frames.back();
   capture(loop.simulation->world, frame.snapshot);
   frame.statistics = loop.statistics;
+  frame.cells.clear();
+  if (loop.wants_cells.load(std::memory_order_relaxed)) {
+    mark_cells(loop.simulation->world, frame.cells);
+  }
   frame.generation = loop.generation;
   frame.skipped = loop.schedule.skipped;
   frame.slowness = loop.slowness;
@@ -183,11 +231,11 @@ void publish_frame(LiveLoop& loop) {
 
 }  // namespace
 
-void reserve(LiveLoop& loop, Session& session) {
-  const World& world = session.simulation.world;
+void reserve(LiveLoop& loop, Session& session, Simulation& simulation) {
+  const World& world = simulation.world;
   const double dt = world.clock.at<Clock>(0).dt;
   loop.session = &session;
-  loop.simulation = &session.simulation;
+  loop.simulation = &simulation;
   loop.schedule.period = static_cast<Nanoseconds>(std::llround(1e9 * dt));
   loop.tools.assign(session.scene.tools.size(), LiveTool{});
   const std::size_t rows =
@@ -197,6 +245,7 @@ void reserve(LiveLoop& loop, Session& session) {
   loop.commands.reserve(kCommands);
   loop.frames.prepare([&world](LiveFrame& frame) {
     frame.snapshot.reserve(world);
+    frame.cells.reserve(kMostCellMarks);
     capture(world, frame.snapshot);
   });
 }

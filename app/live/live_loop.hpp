@@ -12,6 +12,7 @@
 #include "app/session.hpp"
 #include "app/trace.hpp"
 #include "device/handle_slot.hpp"
+#include "ecs/frame_world.hpp"
 #include "ecs/ring.hpp"
 #include "ecs/snapshot.hpp"
 #include "ecs/triple_buffer.hpp"
@@ -38,9 +39,10 @@ struct LiveTool {
   std::uint32_t still_steps = 0;  // for which a held tool stays where it is
 };
 
-/// A prepared world that the physics thread may go over to.
+/// A prepared world that the physics thread may go over to, and what draws it.
 struct Generation {
   Simulation simulation;
+  FrameWorld frame;
   std::vector<BodyPick> picks;  // (bodies), of which it was prepared
   std::uint64_t number = 0;
 };
@@ -65,15 +67,28 @@ struct LiveCommand {
 struct LiveRow {
   TraceRow trace;
   double late_us = 0.0;
+  // Of the tool's oldest region; without one zero.
+  glm::dvec3 normal{0.0};     // world, unit
+  glm::dvec3 tangent_x{0.0};  // world, unit
+  double twist = 0.0;         // rad: since the region formed
+  double couple = 0.0;        // N m: about the normal through the pressure centre, on the tool
   std::uint64_t generation = 0;
   std::uint32_t tool = 0;
   std::uint32_t faults = 0;
 };
 
+/// A cell that carries pressure, for who draws it.
+struct CellMark {
+  glm::vec3 place{0.0F};  // m, world
+  std::uint32_t sticks = 0;
+};
+inline constexpr std::uint32_t kMostCellMarks = 4096;
+
 /// What the physics thread shows of itself after a step, whole.
 struct LiveFrame {
   Snapshot snapshot;
   RunStatistics statistics;
+  std::vector<CellMark> cells;  // up to kMostCellMarks, if anybody wants them
   std::uint64_t generation = 0;
   std::uint64_t skipped = 0;  // periods by which the clock was moved
   std::uint32_t slowness = 1;
@@ -103,6 +118,7 @@ struct LiveLoop {
   Ring<InputEntry> inputs;         // from it: everything that went in
   TripleBuffer<LiveFrame> frames;  // from it: the newest state
   RealtimeMode mode;               // valid once `ready`
+  std::atomic<bool> wants_cells = false;
   std::atomic<bool> ready = false;
   std::atomic<bool> stop = false;
   std::atomic<bool> over = false;  // all steps are taken, or stop was seen
@@ -110,7 +126,8 @@ struct LiveLoop {
 
 /// Takes all memory, after the `wants_` are set: rings of half a minute, frames, tools that follow
 /// their scripts.
-void reserve(LiveLoop& loop, Session& session);
+/// @param simulation  of the session's scene, with which the loop begins
+void reserve(LiveLoop& loop, Session& session, Simulation& simulation);
 
 /// Does what was asked since the last call. Allocates nothing.
 void take_commands(LiveLoop& loop);

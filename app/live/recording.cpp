@@ -166,18 +166,24 @@ Result<Done> rebuild(const Recording& recording, const std::vector<BodyPick>& pi
 
 }  // namespace
 
-Recording begin_recording(const Session& session, const PrepareOptions& options) {
+Recording recording_head(const SceneDescription& scene, const std::vector<BodyPick>& picks,
+                         const PrepareOptions& options, const World& world) {
   Recording recording;
-  recording.scene = session.scene.path;
+  recording.scene = scene.path;
   recording.rate = options.rate;
   recording.settings = options.settings;
-  recording.scene_picks = picks_of(session.scene, {});
-  recording.picks = picks_of(session.scene, options);
-  for (const ToolDescription& tool : session.scene.tools) {
+  recording.scene_picks = picks_of(scene, {});
+  recording.picks = picks;
+  for (const ToolDescription& tool : scene.tools) {
     recording.tools.push_back(tool.node);
   }
-  recording.world_hash = hash(session.simulation.world);
+  recording.world_hash = hash(world);
   return recording;
+}
+
+Recording begin_recording(const Session& session, const PrepareOptions& options) {
+  return recording_head(session.scene, picks_of(session.scene, options), options,
+                        session.simulation.world);
 }
 
 std::uint64_t steps_in(const Recording& recording) {

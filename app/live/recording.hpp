@@ -25,6 +25,12 @@ struct Recording {
   std::vector<InputEntry> entries;
 };
 
+/// A recording without entries yet.
+/// @param scene  as its file says
+/// @param picks  of which `world` was prepared
+Recording recording_head(const SceneDescription& scene, const std::vector<BodyPick>& picks,
+                         const PrepareOptions& options, const World& world);
+
 /// The recording of a session that has taken no step yet; entries are still to come.
 Recording begin_recording(const Session& session, const PrepareOptions& options);
 

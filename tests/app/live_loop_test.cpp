@@ -61,7 +61,7 @@ TEST(LiveLoopTest, ATickTakesNothingFromTheHeap) {
   LiveLoop loop;
   loop.wants_rows = true;
   loop.wants_inputs = true;
-  reserve(loop, session);
+  reserve(loop, session, session.simulation);
   loop.tools[0] = {PoseFrom::kHandle, &slot, coupling(), {}, {}, {}, {}, 0};
   for (int i = 0; i < 200; ++i) {
     hold_at(slot, static_cast<std::uint64_t>(i) + 1, kTouching - 1e-5 * i, 1e-3 * i);
@@ -77,7 +77,7 @@ TEST(LiveLoopTest, TheHandleFeelsWhatTheToolDoes) {
   Session session = ball_session();
   HandleSlot slot;
   LiveLoop loop;
-  reserve(loop, session);
+  reserve(loop, session, session.simulation);
   loop.tools[0].from = PoseFrom::kHandle;
   loop.tools[0].slot = &slot;
   loop.tools[0].coupling = coupling();
@@ -98,7 +98,7 @@ TEST(LiveLoopTest, TheHandleFeelsWhatTheToolDoes) {
 TEST(LiveLoopTest, PauseHoldsTheTimeAndASingleStepMovesItByOne) {
   Session session = ball_session();
   LiveLoop loop;
-  reserve(loop, session);
+  reserve(loop, session, session.simulation);
   const Clock& clock = session.simulation.world.clock.at<Clock>(0);
   live_tick(loop, 0.0);
   EXPECT_EQ(clock.step, 1U);
@@ -123,7 +123,7 @@ TEST(LiveLoopTest, ASwitchOfModelsGoesOnWhereTheToolIs) {
   HandleSlot slot;
   LiveLoop loop;
   loop.wants_inputs = true;
-  reserve(loop, session);
+  reserve(loop, session, session.simulation);
   loop.tools[0].from = PoseFrom::kHandle;
   loop.tools[0].slot = &slot;
   loop.tools[0].coupling = coupling();
@@ -165,7 +165,7 @@ TEST(LiveLoopTest, ThreeThreadsShareNothingButBoxesAndTheRecordingGivesTheSameBi
   loop.wants_privileges = false;
   loop.wants_inputs = true;
   loop.wants_rows = true;
-  reserve(loop, session);
+  reserve(loop, session, session.simulation);
   loop.steps_left = 400;
   loop.tools[0].from = PoseFrom::kHandle;
   loop.tools[0].slot = &slot;

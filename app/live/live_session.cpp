@@ -1,0 +1,170 @@
+#include "app/live/live_session.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include <glm/geometric.hpp>
+
+#include "ecs/hash.hpp"
+#include "systems/surface_field.hpp"
+
+namespace torsion {
+namespace {
+
+// A ball of radius r pressed a tenth of r deep into a half-space takes 4/3 E* r^2 0.1^(3/2) =
+// 0.042 E* r^2 (Hertz), with a stiffness of 2 E* r 0.1^(1/2) = 0.63 E* r: the largest force is that
+// one, and the coupling is softer than the contact, so that the hand's shaking does not show.
+constexpr double kForceShare = 0.04;      // of E* r^2
+constexpr double kStiffnessShare = 0.15;  // of E* r
+// The friction's torque at that depth, 3 pi / 16 mu F a with a = 0.32 r, is 0.006 E* r^3.
+constexpr double kTorqueShare = 0.01;     // of E* r^3
+constexpr double kTurnStiffShare = 0.05;  // of E* r^3: a fifth of a radian at the largest torque
+
+}  // namespace
+
+VirtualCoupling mouse_coupling(const SceneDescription& scene, double radius) {
+  double modulus = 0.0;
+  for (const BodyDescription& body : scene.bodies) {
+    modulus = std::max(modulus, body.elasticity.contact_modulus());
+  }
+  const double er = modulus * radius;
+  return {kStiffnessShare * er,
+          0.0,
+          kTurnStiffShare * er * radius * radius,
+          0.0,
+          kForceShare * er * radius,
+          kTorqueShare * er * radius * radius};
+}
+
+LiveSession::LiveSession(Session session, const PrepareOptions& options)
+    : session_(std::move(session)), options_(options) {
+  recording_ = begin_recording(session_, options_);
+  auto first = std::make_unique<Generation>();
+  first->simulation = std::move(session_.simulation);
+  first->picks = picks_of(session_.scene, options_);
+  first->frame = prepare_frame(session_.scene, first->simulation.world);
+  generations_.push_back(std::move(first));
+  const World& world = generations_.front()->simulation.world;
+  loop_.wants_rows = true;
+  loop_.wants_inputs = true;
+  reserve(loop_, session_, generations_.front()->simulation);
+  for (std::uint32_t tool = 0; tool < world.tools.size(); ++tool) {
+    const Bounds& bounds = world.tools.at<Bounds>(tool);
+    slots_.push_back(std::make_unique<HandleSlot>());
+    couplings_.push_back(
+        mouse_coupling(session_.scene, 0.5 * glm::length(bounds.highest - bounds.lowest) / 1.75));
+    loop_.tools[tool].slot = slots_.back().get();
+    loop_.tools[tool].coupling = couplings_.back();
+  }
+  samples_.resize(world.tools.size(), 0);
+  held_.resize(world.tools.size(), 0);
+}
+
+LiveSession::~LiveSession() {
+  loop_.stop.store(true, std::memory_order_release);
+  if (physics_.joinable()) {
+    physics_.join();
+  }
+  if (worker_.joinable()) {
+    worker_.join();
+  }
+}
+
+void LiveSession::start(bool privileges) {
+  loop_.wants_privileges = privileges;
+  physics_ = std::thread(run_live, std::ref(loop_));
+  while (!loop_.ready.load(std::memory_order_acquire)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+void LiveSession::take_inputs() {
+  std::vector<InputEntry>& entries = recording_.entries;
+  while (const auto entry = loop_.inputs.pop()) {
+    if (!entries.empty() && entry->step < entries.back().step) {
+      recording_ = restarted_;
+    }
+    recording_.entries.push_back(*entry);
+  }
+}
+
+bool LiveSession::refresh() {
+  take_prepared();
+  take_inputs();
+  if (!loop_.frames.refresh()) {
+    return false;
+  }
+  // The physics thread has left every generation before the one it shows.
+  while (generations_.front()->number < loop_.frames.front().generation) {
+    generations_.erase(generations_.begin());
+  }
+  return true;
+}
+
+void LiveSession::hold(std::uint32_t tool, const Pose& handle) {
+  HandleSample& sample = slots_[tool]->sample.back();
+  sample.pose = handle;
+  sample.number = ++samples_[tool];
+  sample.time_ns = monotonic_now();
+  slots_[tool]->sample.publish();
+  if (held_[tool] == 0) {
+    held_[tool] = 1;
+    send(
+        {LiveCommandKind::kPoseFrom, tool, static_cast<std::uint64_t>(PoseFrom::kHandle), nullptr});
+  }
+}
+
+bool LiveSession::choose(const std::vector<BodyPick>& picks, bool restart) {
+  if (preparing()) {
+    return false;
+  }
+  error_.clear();
+  restart_ = restart;
+  done_ = false;
+  worker_ = std::thread(&LiveSession::prepare_in_background, this, picks);
+  return true;
+}
+
+void LiveSession::prepare_in_background(std::vector<BodyPick> picks) {
+  SceneDescription scene = session_.scene;
+  apply_picks(picks, scene);
+  PrepareOptions options = options_;
+  options.contact_model = ContactModel::kAuto;  // the picks say it
+  options.body_model = BodyModel::kAuto;
+  options.expected_poses = expected_poses(scene);
+  Result<Simulation> made = prepare(scene, options);
+  if (made) {
+    prepared_ = std::make_unique<Generation>();
+    prepared_->simulation = std::move(made).value();
+    prepared_->frame = prepare_frame(scene, prepared_->simulation.world);
+    prepared_->picks = std::move(picks);
+    if (restart_) {
+      restarted_ =
+          recording_head(session_.scene, prepared_->picks, options_, prepared_->simulation.world);
+    }
+  } else {
+    worker_error_ = made.error().text;
+  }
+  done_.store(true, std::memory_order_release);
+}
+
+void LiveSession::take_prepared() {
+  if (!worker_.joinable() || !done_.load(std::memory_order_acquire)) {
+    return;
+  }
+  worker_.join();
+  error_ = std::move(worker_error_);
+  worker_error_.clear();
+  if (prepared_ == nullptr) {
+    return;
+  }
+  prepared_->number = next_number_++;
+  generations_.push_back(std::move(prepared_));
+  send({restart_ ? LiveCommandKind::kRestart : LiveCommandKind::kSwap, 0, 0,
+        generations_.back().get()});
+  if (restart_) {
+    std::ranges::fill(held_, std::uint8_t{0});
+  }
+}
+
+}  // namespace torsion

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/live/live_loop.hpp"
+#include "app/live/recording.hpp"
+
+namespace torsion {
+
+/// A scene under way: its physics thread, the handles of its tools, what was recorded of it, and
+/// the preparation of other models beside it. All functions are for one thread, the window's.
+class LiveSession {
+ public:
+  /// @param session  prepared with `options`, no step taken
+  LiveSession(Session session, const PrepareOptions& options);
+  ~LiveSession();
+  LiveSession(const LiveSession&) = delete;
+  LiveSession& operator=(const LiveSession&) = delete;
+  LiveSession(LiveSession&&) = delete;
+  LiveSession& operator=(LiveSession&&) = delete;
+
+  /// Starts the physics thread and waits until it knows what the system grants it.
+  /// @param privileges  whether to ask for SCHED_FIFO and locked memory
+  void start(bool privileges = true);
+
+  /// Takes the newest frame, all inputs, and worlds that are ready. False: nothing new to show.
+  bool refresh();
+  [[nodiscard]] const LiveFrame& frame() const { return loop_.frames.front(); }
+  /// The world that the newest frame is of, for what is constant in it, and what draws it.
+  [[nodiscard]] Generation& shown() { return *generations_.front(); }
+
+  /// Every row since the last call, in order.
+  template <class F>
+  void take_rows(F&& f) {
+    while (const auto row = loop_.rows.pop()) {
+      f(*row);
+    }
+  }
+
+  void pause(bool on) { send({LiveCommandKind::kPause, 0, on ? 1U : 0U, nullptr}); }
+  void step_once() { send({LiveCommandKind::kStepOnce, 0, 0, nullptr}); }
+  void slow_down(std::uint32_t periods) { send({LiveCommandKind::kSlowness, 0, periods, nullptr}); }
+  void show_cells(bool on) { loop_.wants_cells.store(on, std::memory_order_relaxed); }
+
+  /// Holds a tool at `handle`, through its coupling; an animation lets go of it.
+  void hold(std::uint32_t tool, const Pose& handle);
+  [[nodiscard]] bool held(std::uint32_t tool) const { return held_[tool] != 0; }
+  [[nodiscard]] const VirtualCoupling& coupling(std::uint32_t tool) const {
+    return couplings_[tool];
+  }
+
+  /// Prepares the scene with these in another thread, then goes over to it. `restart`: from the
+  /// scene's start, else where the tools are. False while another preparation is under way.
+  bool choose(const std::vector<BodyPick>& picks, bool restart);
+  [[nodiscard]] bool preparing() const { return worker_.joinable(); }
+  /// Why the last preparation failed; empty if it did not.
+  [[nodiscard]] const std::string& preparation_error() const { return error_; }
+
+  [[nodiscard]] const SceneDescription& scene() const { return session_.scene; }
+  [[nodiscard]] const RealtimeMode& mode() const { return loop_.mode; }
+  [[nodiscard]] const Recording& recording() const { return recording_; }
+
+ private:
+  void send(const LiveCommand& command) { loop_.commands.push(command); }
+  void prepare_in_background(std::vector<BodyPick> picks);
+  void take_prepared();
+  void take_inputs();
+
+  Session session_;  // its simulation is in the first generation
+  PrepareOptions options_;
+  LiveLoop loop_;
+  std::vector<std::unique_ptr<Generation>> generations_;  // the shown one first
+  std::vector<std::unique_ptr<HandleSlot>> slots_;
+  std::vector<std::uint64_t> samples_;  // so many were sent, one count a tool
+  std::vector<std::uint8_t> held_;
+  std::vector<VirtualCoupling> couplings_;
+  Recording recording_;
+  std::thread physics_;
+
+  std::thread worker_;
+  std::unique_ptr<Generation> prepared_;  // the worker's, until done_
+  Recording restarted_;                   // how the recording begins after a restart
+  std::string worker_error_;
+  std::atomic<bool> done_ = false;
+  bool restart_ = false;
+  std::uint64_t next_number_ = 1;
+  std::string error_;
+};
+
+/// A coupling between a mouse, which feels nothing, and a tool: stiff enough for the scene's bodies
+/// that the tool follows, limited so that it does not go deeper than the models hold.
+/// @param radius  m: of the tool
+VirtualCoupling mouse_coupling(const SceneDescription& scene, double radius);
+
+}  // namespace torsion

@@ -1,0 +1,113 @@
+#include "app/view/gui.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <imgui.h>
+
+namespace torsion {
+namespace {
+
+// What ImGui writes is what the renderer reads.
+static_assert(sizeof(ImDrawVert) == sizeof(OverlayVertex));
+static_assert(offsetof(ImDrawVert, pos) == offsetof(OverlayVertex, x));
+static_assert(offsetof(ImDrawVert, uv) == offsetof(OverlayVertex, u));
+static_assert(offsetof(ImDrawVert, col) == offsetof(OverlayVertex, rgba));
+
+constexpr float kFontSize = 15.0F;  // pixels
+constexpr const char* kFontFile = TORSION_FONT_FILE;
+
+OverlayAtlas make_atlas() {
+  ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
+  // The degree sign and the like, and a few Greek letters and arrows that units and keys need.
+  static const ImWchar ranges[] = {0x0020, 0x00FF, 0x0391, 0x03C9, 0x2190, 0x2193, 0};
+  fonts.AddFontFromFileTTF(kFontFile, kFontSize, nullptr, ranges);
+  unsigned char* alpha = nullptr;
+  int width = 0;
+  int height = 0;
+  fonts.GetTexDataAsAlpha8(&alpha, &width, &height);
+  OverlayAtlas atlas{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
+  atlas.alpha.assign(alpha, alpha + std::ptrdiff_t{width} * height);
+  return atlas;
+}
+
+void set_style() {
+  ImGui::StyleColorsLight();
+  ImGuiStyle& style = ImGui::GetStyle();
+  style.WindowRounding = 4.0F;
+  style.FrameRounding = 3.0F;
+  style.WindowBorderSize = 0.0F;
+  style.Colors[ImGuiCol_WindowBg] = ImVec4(1.0F, 1.0F, 1.0F, 0.88F);
+  style.Colors[ImGuiCol_Text] = ImVec4(0.10F, 0.11F, 0.13F, 1.0F);
+}
+
+}  // namespace
+
+Gui::Gui() {
+  ImGui::CreateContext();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;  // no file beside the scene
+  io.LogFilename = nullptr;
+  io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;  // lists of over 65536 vertices
+  set_style();
+  atlas_ = make_atlas();
+}
+
+Gui::~Gui() {
+  ImGui::DestroyContext();
+}
+
+void Gui::begin(const WindowInput& input, double seconds) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = ImVec2(static_cast<float>(input.width), static_cast<float>(input.height));
+  io.DeltaTime = static_cast<float>(std::max(seconds, 1e-4));
+  io.MousePos = ImVec2(static_cast<float>(input.mouse_x), static_cast<float>(input.mouse_y));
+  std::copy(input.buttons.begin(), input.buttons.end(), io.MouseDown);
+  io.MouseWheel = static_cast<float>(input.wheel);
+  io.KeyShift = input.shift;
+  io.KeyAlt = input.alt;
+  io.KeyCtrl = input.control;
+  ImGui::NewFrame();
+}
+
+void Gui::append(const ImDrawCmd& command, const ImDrawList& from, std::uint32_t base_vertex) {
+  const auto left = static_cast<std::int32_t>(std::floor(command.ClipRect.x));
+  const auto top = static_cast<std::int32_t>(std::floor(command.ClipRect.y));
+  const auto right = static_cast<std::int32_t>(std::ceil(command.ClipRect.z));
+  const auto bottom = static_cast<std::int32_t>(std::ceil(command.ClipRect.w));
+  if (right <= left || bottom <= top) {
+    return;
+  }
+  list_.clips.push_back({static_cast<std::uint32_t>(list_.indices.size()), command.ElemCount, left,
+                         top, static_cast<std::uint32_t>(right - left),
+                         static_cast<std::uint32_t>(bottom - top)});
+  for (unsigned i = 0; i < command.ElemCount; ++i) {
+    const ImDrawIdx index = from.IdxBuffer[static_cast<int>(command.IdxOffset + i)];
+    list_.indices.push_back(base_vertex + command.VtxOffset + index);
+  }
+}
+
+const OverlayDrawList& Gui::end() {
+  ImGui::Render();
+  const ImDrawData& data = *ImGui::GetDrawData();
+  list_.vertices.clear();
+  list_.indices.clear();
+  list_.clips.clear();
+  for (int i = 0; i < data.CmdListsCount; ++i) {
+    const ImDrawList& from = *data.CmdLists[i];
+    const auto base_vertex = static_cast<std::uint32_t>(list_.vertices.size());
+    const auto* vertices = reinterpret_cast<const OverlayVertex*>(from.VtxBuffer.Data);
+    list_.vertices.insert(list_.vertices.end(), vertices, vertices + from.VtxBuffer.Size);
+    for (const ImDrawCmd& command : from.CmdBuffer) {
+      append(command, from, base_vertex);
+    }
+  }
+  return list_;
+}
+
+bool Gui::has_mouse() {
+  return ImGui::GetIO().WantCaptureMouse;
+}
+
+}  // namespace torsion

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "app/live/live_loop.hpp"
+
+namespace torsion {
+
+/// A row of a session, thinned for plots.
+struct PlotPoint {
+  double time = 0.0;     // s
+  Wrench world;          // on the tool
+  Wrench contact;        // the same along the oldest region's tangents (x, y) and normal (z)
+  double twist = 0.0;    // rad
+  double couple = 0.0;   // N m
+  double step_us = 0.0;  // the longest of the rows that the point stands for
+  double late_us = 0.0;  // likewise
+  std::uint64_t generation = 0;
+};
+
+/// The last seconds of one tool. Fixed memory; the oldest goes first.
+class History {
+ public:
+  static constexpr std::size_t kPoints = 4096;
+  static constexpr double kPeriod = 4e-3;  // s: between points
+
+  void add(const LiveRow& row);
+  void clear();
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// @param i  0: the oldest
+  [[nodiscard]] const PlotPoint& operator[](std::size_t i) const {
+    return points_[(first_ + i) % kPoints];
+  }
+
+ private:
+  std::vector<PlotPoint> points_ = std::vector<PlotPoint>(kPoints);
+  std::size_t first_ = 0;
+  std::size_t size_ = 0;
+  double longest_step_ = 0.0;
+  double latest_ = 0.0;
+};
+
+/// A wrench in the axes of a contact: tangents and normal. World axes where there is none.
+Wrench in_contact_axes(const Wrench& world, const glm::dvec3& normal, const glm::dvec3& tangent_x);
+
+}  // namespace torsion

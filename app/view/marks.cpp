@@ -1,0 +1,117 @@
+#include <cmath>
+#include <numbers>
+
+#include <imgui.h>
+
+#include "app/view/panels.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr ImU32 kRegion = IM_COL32(20, 20, 20, 220);
+constexpr ImU32 kSticks = IM_COL32(20, 130, 60, 255);
+constexpr ImU32 kSlips = IM_COL32(220, 60, 30, 255);
+constexpr ImU32 kAnchor = IM_COL32(120, 40, 160, 255);
+constexpr ImU32 kFixedPoint = IM_COL32(60, 60, 70, 255);
+constexpr std::uint32_t kMostFixed = 400;  // dots
+
+struct Pencil {
+  ImDrawList& list;
+  Camera camera;
+  glm::dvec2 picture;
+
+  void dot(const glm::dvec3& place, float radius, ImU32 color) const {
+    const glm::dvec3 at = seen_at(camera, place, picture);
+    if (at.z > camera.near_plane) {
+      list.AddCircleFilled(ImVec2(static_cast<float>(at.x), static_cast<float>(at.y)), radius,
+                           color, 6);
+    }
+  }
+  void line(const glm::dvec3& from, const glm::dvec3& to, ImU32 color) const {
+    const glm::dvec3 a = seen_at(camera, from, picture);
+    const glm::dvec3 b = seen_at(camera, to, picture);
+    if (a.z > camera.near_plane && b.z > camera.near_plane) {
+      list.AddLine(ImVec2(static_cast<float>(a.x), static_cast<float>(a.y)),
+                   ImVec2(static_cast<float>(b.x), static_cast<float>(b.y)), color, 1.5F);
+    }
+  }
+};
+
+glm::dvec3 in_world(const Pose& pose, const glm::dvec3& point) {
+  return pose.position + pose.rotation * point;
+}
+
+/// A ring around the contact with a stroke along the normal, and one that shows the twist.
+void draw_region(const Pencil& pencil, const LiveFrame& frame, const World& world,
+                 std::uint32_t region) {
+  constexpr int kSides = 32;
+  const RegionTable& regions = frame.snapshot.regions;
+  const Pose& body = world.bodies.at<Pose>(regions.at<RegionIdentity>(region).body);
+  const RegionFrame& axes = regions.at<RegionFrame>(region);
+  const RegionGeometry& geometry = regions.at<RegionGeometry>(region);
+  const auto on_ring = [&](double angle) {
+    return in_world(
+        body, geometry.equivalent_point + geometry.radius * (std::cos(angle) * axes.tangent_x +
+                                                             std::sin(angle) * axes.tangent_y));
+  };
+  for (int i = 0; i < kSides; ++i) {
+    const double step = 2.0 * std::numbers::pi / kSides;
+    pencil.line(on_ring(i * step), on_ring((i + 1) * step), kRegion);
+  }
+  const glm::dvec3 center = in_world(body, geometry.equivalent_point);
+  pencil.line(center,
+              in_world(body, geometry.equivalent_point + 1.5 * geometry.radius * axes.normal),
+              kRegion);
+  pencil.line(center, on_ring(regions.at<RegionMotion>(region).turn), kRegion);
+}
+
+void draw_fixed(const Pencil& pencil, const FrameWorld& frame) {
+  for (std::uint32_t body = 0; body < frame.bodies.size(); ++body) {
+    const Pose& pose = frame.bodies.at<Pose>(body);
+    const auto rest =
+        frame.body_vertices.rows<VertexRest>(frame.bodies.at<DrawRange>(body).vertices);
+    const std::size_t stride = rest.size() / kMostFixed + 1;
+    for (std::size_t i = 0; i < rest.size(); i += stride) {
+      if (rest[i].position.w > 0.5F) {
+        pencil.dot(in_world(pose, glm::dvec3(rest[i].position)), 2.0F, kFixedPoint);
+      }
+    }
+  }
+}
+
+void draw_anchors(const Pencil& pencil, const LiveFrame& frame, const World& world) {
+  for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
+    const Pose& pose = world.bodies.at<Pose>(body);
+    const Range rows = world.bodies.at<OwnedRows>(body).anchors;
+    const auto rest = world.anchors.rows<AnchorRest>(rows);
+    const auto moved = frame.snapshot.anchors.rows<AnchorMotion>(rows);
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      pencil.dot(in_world(pose, rest[i].position + moved[i].displacement), 3.0F, kAnchor);
+    }
+  }
+}
+
+}  // namespace
+
+void draw_marks(const ViewState& state, LiveSession& session, const glm::dvec2& picture) {
+  const LiveFrame& frame = session.frame();
+  const Generation& shown = session.shown();
+  const Pencil pencil{*ImGui::GetBackgroundDrawList(), camera_of(state.camera), picture};
+  if (state.show_fixed) {
+    draw_fixed(pencil, shown.frame);
+  }
+  if (state.show_anchors) {
+    draw_anchors(pencil, frame, shown.simulation.world);
+  }
+  if (state.show_cells) {
+    for (const CellMark& cell : frame.cells) {
+      pencil.dot(glm::dvec3(cell.place), 2.5F, cell.sticks != 0 ? kSticks : kSlips);
+    }
+  }
+  for (std::uint32_t region = 0; state.show_regions && region < frame.snapshot.regions.size();
+       ++region) {
+    draw_region(pencil, frame, shown.simulation.world, region);
+  }
+}
+
+}  // namespace torsion

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace torsion {
+
+/// Looks whether the files of a scene have changed on disk: the .gltf or .glb, and the buffers
+/// that it names.
+class SceneWatch {
+ public:
+  explicit SceneWatch(std::filesystem::path scene);
+
+  /// True once after a change, when the files have been quiet for one call since: a writer that is
+  /// still at work is not read half-way.
+  bool changed();
+
+ private:
+  struct Stamp {
+    std::filesystem::path path;
+    std::filesystem::file_time_type time;
+    std::uintmax_t size = 0;
+    bool operator==(const Stamp&) const = default;
+  };
+  [[nodiscard]] std::vector<Stamp> look() const;
+
+  std::filesystem::path scene_;
+  std::vector<Stamp> known_;
+  std::vector<Stamp> last_;
+};
+
+}  // namespace torsion

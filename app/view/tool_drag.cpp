@@ -1,0 +1,51 @@
+#include "app/view/tool_drag.hpp"
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace torsion {
+
+std::optional<double> meets_box(const PixelRay& ray, const Pose& pose, const Bounds& bounds) {
+  const glm::dquat to_box = glm::conjugate(pose.rotation);
+  const glm::dvec3 origin = to_box * (ray.origin - pose.position);
+  const glm::dvec3 direction = to_box * ray.direction;
+  double enters = 0.0;
+  double leaves = 1e300;
+  for (int axis = 0; axis < 3; ++axis) {
+    // A direction along the face divides by zero: both ends are infinite, of opposite signs inside.
+    const double a = (bounds.lowest[axis] - origin[axis]) / direction[axis];
+    const double b = (bounds.highest[axis] - origin[axis]) / direction[axis];
+    enters = std::fmax(enters, std::fmin(a, b));
+    leaves = std::fmin(leaves, std::fmax(a, b));
+  }
+  return enters <= leaves && leaves > 0.0 ? std::optional(enters) : std::nullopt;
+}
+
+void turn(Pose& handle, const glm::dvec3& pivot, const glm::dvec3& axis, double angle) {
+  const glm::dquat rotation = glm::angleAxis(angle, axis);
+  handle.position = pivot + rotation * (handle.position - pivot);
+  handle.rotation = glm::normalize(rotation * handle.rotation);
+}
+
+void drag(ToolDrag& taken, DragKind kind, const glm::dvec2& mouse, const Camera& camera,
+          double picture_height, const glm::dvec3& pivot, const glm::dvec3& axis, Pose& handle) {
+  const glm::dvec2 moved = mouse - taken.mouse;
+  taken.mouse = mouse;
+  const double meters = 2.0 * taken.depth * std::tan(camera.vertical_field_of_view / 2.0) /
+                        std::max(picture_height, 1.0);
+  const glm::dquat& view = camera.pose.rotation;
+  switch (kind) {
+    case DragKind::kAcross:
+      handle.position += view * glm::dvec3(moved.x * meters, -moved.y * meters, 0.0);
+      break;
+    case DragKind::kAlong:
+      handle.position += view * glm::dvec3(0.0, 0.0, moved.y * meters);
+      break;
+    case DragKind::kTurn:
+      turn(handle, pivot, axis, kRadiansAPixel * moved.x);
+      break;
+  }
+}
+
+}  // namespace torsion

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <glm/vec2.hpp>
+
+#include "app/view/orbit_camera.hpp"
+
+namespace torsion {
+
+/// How a mouse that has taken a tool moves it.
+enum class DragKind : std::uint8_t {
+  kAcross,  // in the plane of the view
+  kAlong,   // towards and away from the person
+  kTurn,    // about an axis
+};
+
+/// A handle that a mouse has taken hold of.
+struct ToolDrag {
+  std::uint32_t tool = 0;
+  double depth = 0.0;     // m: of the point taken, before the camera
+  glm::dvec2 mouse{0.0};  // pixels, last seen
+};
+
+/// How far along the ray a box is met, m; nothing where it misses it.
+/// @param pose, bounds  of the box: its frame in the world, and itself in that frame
+std::optional<double> meets_box(const PixelRay& ray, const Pose& pose, const Bounds& bounds);
+
+/// Moves the handle as the mouse moved: across, one pixel of the picture at the depth of the point
+/// taken; along, as far towards or away; a turn, kRadiansAPixel about `axis` through `pivot`.
+/// @param axis  world, unit
+void drag(ToolDrag& taken, DragKind kind, const glm::dvec2& mouse, const Camera& camera,
+          double picture_height, const glm::dvec3& pivot, const glm::dvec3& axis, Pose& handle);
+
+/// Turns the handle about an axis through `pivot`.
+void turn(Pose& handle, const glm::dvec3& pivot, const glm::dvec3& axis, double angle);
+
+inline constexpr double kRadiansAPixel = 0.005;
+inline constexpr double kRadiansANotch = 0.05;
+
+}  // namespace torsion

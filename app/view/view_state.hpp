@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/live/live_session.hpp"
+#include "app/view/history.hpp"
+#include "app/view/orbit_camera.hpp"
+#include "render/draw_options.hpp"
+
+namespace torsion {
+
+/// What a person has set in the window, and what the window shows of the session. The panels read
+/// and write it; the viewer acts on the `wants_`.
+struct ViewState {
+  DrawOptions draw;
+  bool show_panels = true;
+  bool show_regions = true;
+  bool show_cells = false;
+  bool show_anchors = false;
+  bool show_fixed = false;
+  bool contact_axes = true;  // plots along the contact's axes, else the world's
+  bool paused = false;
+  std::uint32_t slowness = 1;   // periods of the clock to a step
+  std::uint32_t tool = 0;       // of the plots
+  std::uint32_t body = 0;       // of the choice of models
+  std::vector<BodyPick> picks;  // (bodies) as chosen, taken over by wants_choice
+
+  bool wants_step = false;
+  bool wants_restart = false;
+  bool wants_choice = false;
+  bool wants_screenshot = false;
+  bool wants_saved_recording = false;
+  bool wants_release = false;
+
+  OrbitCamera camera;
+  std::vector<History> histories;  // (tools)
+  std::string message;             // what was just done, shown for a while
+  double message_until = 0.0;      // s, of the window's clock
+  std::string scene_error;         // why the file on disk cannot be shown; empty: it can
+  double frames_per_second = 0.0;
+  double share = 1.0;    // of the window's pixels along each side in which the scene is drawn
+  bool grabbed = false;  // the mouse has a tool
+  std::uint32_t missed_lately = 0;  // deadlines in the last second
+};
+
+/// The number of BodyPick's models and materials that differ.
+bool differ(const std::vector<BodyPick>& a, const std::vector<BodyPick>& b);
+
+}  // namespace torsion

@@ -1,0 +1,353 @@
+#include "app/view/viewer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "app/view/panels.hpp"
+#include "app/view/plots.hpp"
+#include "render/auto_camera.hpp"
+#include "render/image_io.hpp"
+#include "systems/surface_field.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr std::uint32_t kWidth = 1280;
+constexpr std::uint32_t kHeight = 720;
+constexpr double kFramePeriod = 1.0 / 60.0;  // s: no faster than that
+constexpr double kHiddenPeriod = 0.1;        // s: while nothing can be seen
+constexpr double kLookPeriod = 0.3;          // s: between looks at the scene's files
+constexpr double kSlowFrame = 1.0 / 28.0;    // s: over that the inner resolution goes down
+constexpr double kFastFrame = 1.0 / 50.0;    // s: under that it goes up
+constexpr double kSmallestShare = 0.4;
+constexpr double kMessageSeconds = 4.0;
+constexpr double kLeastTwistScale = 5.0 * std::numbers::pi / 180.0;  // rad
+
+/// Ends of the colour scales that hold everything so far.
+void widen_scales(const Snapshot& snapshot, DrawOptions& draw, double& twist, double& pressure) {
+  for (std::uint32_t region = 0; region < snapshot.regions.size(); ++region) {
+    const double area = snapshot.regions.at<RegionGeometry>(region).area;
+    twist = std::max(twist, std::abs(snapshot.regions.at<RegionMotion>(region).turn));
+    if (area > 0.0) {
+      pressure = std::max(pressure, snapshot.regions.at<RegionNormal>(region).force / area);
+    }
+  }
+  draw.heat_limit = draw.heat_map == HeatMap::kPressure
+                        ? round_up(pressure)
+                        : std::max(kLeastTwistScale, round_up(twist * 180.0 / std::numbers::pi) *
+                                                         std::numbers::pi / 180.0);
+}
+
+}  // namespace
+
+Viewer::Viewer(ViewerOptions options) : options_(std::move(options)) {}
+
+Viewer::~Viewer() {
+  if (reloader_.joinable()) {
+    reloader_.join();
+  }
+  renderer_.reset();  // before the window that it draws into
+}
+
+double Viewer::now() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+void Viewer::say(const std::string& text) {
+  state_.message = text;
+  state_.message_until = now() + kMessageSeconds;
+}
+
+std::string Viewer::file_name(const std::string& extension) {
+  const std::string stem = std::filesystem::path(options_.scene).stem().string();
+  std::string name;
+  do {
+    name = fmt::format("{}_{}{}", stem, ++files_written_, extension);
+  } while (std::filesystem::exists(name));
+  return name;
+}
+
+Result<Done> Viewer::make_renderer() {
+  renderer_.reset();
+  RendererOptions options;
+  options.samples = 0;
+  options.window = &*window_;
+  options.overlay_atlas = &gui_->atlas();
+  Result<Renderer> made = Renderer::create(options, session_->shown().frame);
+  if (!made) {
+    return made.error();
+  }
+  renderer_ = std::move(made).value();
+  return Done{};
+}
+
+/// Takes over a prepared scene: at the start, and after its file has changed.
+Result<Done> Viewer::begin(Session session) {
+  const bool again = session_ != nullptr;
+  renderer_.reset();
+  session_.reset();
+  session_ = std::make_unique<LiveSession>(std::move(session), options_.prepare);
+  session_->start();
+  if (!session_->mode().fifo) {
+    // Before the driver makes its threads, which inherit it.
+    make_way_for_realtime();
+  }
+  session_->pause(state_.paused);
+  const std::size_t tools = session_->scene().tools.size();
+  state_.histories.assign(tools, History{});
+  state_.tool = 0;
+  state_.body = 0;
+  state_.picks = session_->shown().picks;
+  handles_.assign(tools, Pose{});
+  grab_ = Grab{};
+  if (!again) {
+    FrameWorld& frame = session_->shown().frame;
+    Snapshot first;
+    first.reserve(session_->shown().simulation.world);
+    const double aspect = static_cast<double>(kWidth) / kHeight;
+    const std::vector<CameraDescription>& cameras = session_->scene().cameras;
+    state_.camera = orbit_of(
+        cameras.empty() ? auto_camera(frame, aspect) : camera_of(cameras.front()), glm::dvec3(0.0));
+  }
+  while (!session_->refresh()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return make_renderer();
+}
+
+/// Does what panels and keys asked for.
+void Viewer::take_wishes() {
+  const LiveFrame& frame = session_->frame();
+  if (state_.paused != frame.paused) {
+    session_->pause(state_.paused);
+  }
+  if (state_.slowness != frame.slowness) {
+    session_->slow_down(state_.slowness);
+  }
+  if (state_.wants_step) {
+    state_.paused = true;
+    session_->pause(true);
+    session_->step_once();
+  }
+  if (state_.wants_release) {
+    for (std::uint32_t tool = 0; tool < handles_.size(); ++tool) {
+      handles_[tool] = frame.snapshot.tools.at<ToolPose>(tool).now;
+      if (session_->held(tool)) {
+        session_->hold(tool, handles_[tool]);
+      }
+    }
+  }
+  if (state_.wants_restart && session_->choose(state_.picks, true)) {
+    grab_ = Grab{};
+    say("from the start");
+  }
+  if (state_.wants_choice && differ(state_.picks, session_->shown().picks)) {
+    session_->choose(state_.picks, false);
+  }
+  if (state_.wants_saved_recording) {
+    const std::string name = file_name(".rec");
+    const Result<Done> saved = save_recording(session_->recording(), name);
+    say(saved ? fmt::format("{}: {:.1f} s, everything since the start; play it with torsion "
+                            "simulate --replay",
+                            name,
+                            static_cast<double>(steps_in(session_->recording())) /
+                                session_->recording().rate)
+              : saved.error().text);
+  }
+  state_.wants_step = false;
+  state_.wants_release = false;
+  state_.wants_restart = false;
+  state_.wants_choice = false;
+  state_.wants_saved_recording = false;
+  session_->show_cells(state_.show_cells);
+}
+
+void Viewer::take_history() {
+  session_->take_rows([this](const LiveRow& row) { state_.histories[row.tool].add(row); });
+  const std::uint64_t missed = session_->frame().statistics.missed_deadlines;
+  if (missed < missed_then_ || now() > missed_since_ + 1.0) {
+    state_.missed_lately =
+        static_cast<std::uint32_t>(missed > missed_then_ ? missed - missed_then_ : 0);
+    missed_then_ = missed;
+    missed_since_ = now();
+  }
+}
+
+void Viewer::watch_scene() {
+  if (now() < next_look_ || reloader_.joinable()) {
+    return;
+  }
+  next_look_ = now() + kLookPeriod;
+  if (watch_->changed()) {
+    reloaded_done_ = false;
+    reloader_ = std::thread([this] {
+      constexpr bool kQuiet = true;
+      reloaded_ = open_session(options_.scene, options_.prepare, kQuiet);
+      reloaded_done_.store(true, std::memory_order_release);
+    });
+  }
+}
+
+void Viewer::take_reloaded() {
+  if (!reloader_.joinable() || !reloaded_done_.load(std::memory_order_acquire)) {
+    return;
+  }
+  reloader_.join();
+  if (!*reloaded_) {
+    state_.scene_error = reloaded_->error().text;
+    return;
+  }
+  state_.scene_error.clear();
+  const Result<Done> begun = begin(std::move(*reloaded_).value());
+  if (begun) {
+    say("the scene's file has changed: loaded anew");
+  } else {
+    state_.scene_error = begun.error().text;
+  }
+}
+
+/// Holds the frame rate by the inner resolution, in small steps with pauses between.
+void Viewer::fit_share(double frame_seconds) {
+  shown_frame_time_ =
+      shown_frame_time_ == 0.0 ? frame_seconds : 0.9 * shown_frame_time_ + 0.1 * frame_seconds;
+  state_.frames_per_second = 1.0 / std::max(shown_frame_time_, kFramePeriod);
+  if (now() < next_fit_) {
+    return;
+  }
+  next_fit_ = now() + 1.0;
+  if (shown_frame_time_ > kSlowFrame && state_.share > kSmallestShare) {
+    state_.share = std::max(kSmallestShare, 0.85 * state_.share);
+  } else if (shown_frame_time_ < kFastFrame && state_.share < 1.0) {
+    state_.share = std::min(1.0, 1.1 * state_.share);
+  }
+}
+
+Result<Done> Viewer::show(const WindowInput& input, const OverlayDrawList& overlay) {
+  Generation& shown = session_->shown();
+  const Snapshot& snapshot = session_->frame().snapshot;
+  surface_field(shown.simulation.world, snapshot, shown.frame);
+  widen_scales(snapshot, state_.draw, twist_scale_, pressure_scale_);
+  const bool keep = state_.wants_screenshot;
+  const Result<bool> drawn = renderer_->show(shown.frame, snapshot, camera(), state_.draw, &overlay,
+                                             {input.width, input.height, state_.share, keep});
+  if (!drawn) {
+    return drawn.error();
+  }
+  outcome_.frames += drawn.value() ? 1U : 0U;
+  if (drawn.value() && outcome_.frames == 1) {
+    outcome_.opened_after = now();
+  }
+  if (drawn.value() && keep) {
+    state_.wants_screenshot = false;
+    const std::string name = file_name(".png");
+    const Result<Done> written = write_screenshot(name);
+    say(written ? name : written.error().text);
+  }
+  return Done{};
+}
+
+Result<Done> Viewer::write_screenshot(const std::string& path) {
+  const Result<Image> image = renderer_->screenshot();
+  return image ? write_png(image.value(), path) : image.error();
+}
+
+Result<Done> Viewer::frame() {
+  const double before = now();
+  // Pictures come at a rate of their own; what is left of the period is slept away.
+  const double wait = last_frame_ + kFramePeriod - before;
+  const WindowInput& input = window_->look(std::max(wait, 0.0));
+  if (input.hidden) {
+    window_->look(kHiddenPeriod);
+  }
+  session_->refresh();
+  take_history();
+  watch_scene();
+  take_reloaded();
+  gui_->begin(input, now() - last_frame_);
+  const double started = now();
+  last_frame_ = started;
+  take_keys(input);
+  take_mouse(input);
+  if (state_.show_panels) {
+    draw_marks(state_, *session_, {input.width, input.height});
+  }
+  draw_panels(state_, *session_, started);
+  const OverlayDrawList& overlay = gui_->end();
+  take_wishes();
+  if (input.hidden) {
+    return Done{};
+  }
+  const Result<Done> shown = show(input, overlay);
+  fit_share(now() - started);
+  return shown;
+}
+
+Result<ViewerOutcome> Viewer::run() {
+  constexpr bool kQuiet = false;
+  Result<Session> session = open_session(options_.scene, options_.prepare, kQuiet);
+  if (!session) {
+    return session.error();
+  }
+  start_ = std::chrono::steady_clock::now();
+  Result<Window> window = Window::open(
+      "Torsion: " + std::filesystem::path(options_.scene).filename().string(), kWidth, kHeight);
+  if (!window) {
+    return window.error();
+  }
+  window_ = std::move(window).value();
+  gui_ = std::make_unique<Gui>();
+  watch_.emplace(options_.scene);
+  Result<Done> done = begin(std::move(session).value());
+  while (done) {
+    done = frame();
+    const bool over = options_.seconds >= 0.0 && now() > options_.seconds;
+    const WindowInput& input = window_->input();
+    if (over || input.close || std::ranges::count(input.pressed, kKeyEscape) > 0) {
+      break;
+    }
+  }
+  if (!done) {
+    return done.error();
+  }
+  return finish();
+}
+
+/// Writes what was asked for at the end.
+Result<ViewerOutcome> Viewer::finish() {
+  if (!options_.screenshot.empty()) {
+    state_.wants_screenshot = true;
+    const WindowInput& input = window_->look();
+    gui_->begin(input, kFramePeriod);
+    draw_marks(state_, *session_, {input.width, input.height});
+    draw_panels(state_, *session_, now());
+    const OverlayDrawList& overlay = gui_->end();
+    Generation& shown = session_->shown();
+    const Result<bool> drawn =
+        renderer_->show(shown.frame, session_->frame().snapshot, camera(), state_.draw, &overlay,
+                        {input.width, input.height, 1.0, true});
+    const Result<Done> written =
+        drawn ? write_screenshot(options_.screenshot) : Result<Done>(drawn.error());
+    if (!written) {
+      return written.error();
+    }
+  }
+  outcome_.statistics = session_->frame().statistics;
+  outcome_.mode = describe(session_->mode());
+  outcome_.seconds = now();
+  outcome_.share = state_.share;
+  if (!options_.record.empty()) {
+    session_->refresh();
+    const Result<Done> saved = save_recording(session_->recording(), options_.record);
+    if (!saved) {
+      return saved.error();
+    }
+  }
+  return outcome_;
+}
+
+}  // namespace torsion

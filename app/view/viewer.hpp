@@ -1,0 +1,108 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/live/live_session.hpp"
+#include "app/view/gui.hpp"
+#include "app/view/scene_watch.hpp"
+#include "app/view/tool_drag.hpp"
+#include "app/view/view_state.hpp"
+#include "render/renderer.hpp"
+#include "render/window.hpp"
+
+namespace torsion {
+
+struct ViewerOptions {
+  std::string scene;
+  PrepareOptions prepare;
+  double seconds = -1.0;   // s: closes by itself after that; negative: when the person does
+  std::string record;      // file to write the recording to at the end; empty: none
+  std::string screenshot;  // file to write the last picture to; empty: none
+};
+
+/// What a session in a window was like.
+struct ViewerOutcome {
+  RunStatistics statistics;
+  std::string mode;
+  std::uint64_t frames = 0;
+  double seconds = 0.0;       // that the window was open
+  double opened_after = 0.0;  // s: from the scene being ready to the first picture
+  double share = 1.0;         // inner resolution at the end
+};
+
+/// A scene in a window. Everything is in the main thread but physics, and what prepares worlds.
+class Viewer {
+ public:
+  explicit Viewer(ViewerOptions options);
+  ~Viewer();
+  Viewer(const Viewer&) = delete;
+  Viewer& operator=(const Viewer&) = delete;
+  Viewer(Viewer&&) = delete;
+  Viewer& operator=(Viewer&&) = delete;
+
+  /// Until the window is closed. Fails where the scene, the display or Vulkan does.
+  Result<ViewerOutcome> run();
+
+ private:
+  struct Grab {
+    ToolDrag drag;
+    bool on_tool = false;
+    bool orbiting = false;
+    bool panning = false;
+    glm::dvec2 mouse{0.0};
+  };
+
+  Result<Done> begin(Session session);
+  Result<Done> make_renderer();
+  Result<Done> frame();
+  Result<Done> show(const WindowInput& input, const OverlayDrawList& overlay);
+  Result<Done> write_screenshot(const std::string& path);
+  Result<ViewerOutcome> finish();
+  void take_keys(const WindowInput& input);
+  void take_mouse(const WindowInput& input);
+  void start_drag(const glm::dvec2& mouse, const glm::dvec2& picture);
+  void drag_tool(const WindowInput& input);
+  void take_wishes();
+  void take_history();
+  void watch_scene();
+  void take_reloaded();
+  void fit_share(double frame_seconds);
+  void say(const std::string& text);
+  [[nodiscard]] double now() const;
+  [[nodiscard]] Camera camera() const { return camera_of(state_.camera); }
+  void turn_axis(std::uint32_t tool, glm::dvec3& pivot, glm::dvec3& axis) const;
+  [[nodiscard]] std::string file_name(const std::string& extension);
+
+  ViewerOptions options_;
+  std::optional<Window> window_;
+  std::unique_ptr<Gui> gui_;
+  std::unique_ptr<LiveSession> session_;
+  std::optional<Renderer> renderer_;
+  ViewState state_;
+  ViewerOutcome outcome_;
+  Grab grab_;
+  std::vector<Pose> handles_;  // (tools) where they are held
+  std::optional<SceneWatch> watch_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double last_frame_ = 0.0;        // s
+  double next_look_ = 0.0;         // s: at the file
+  double next_fit_ = 0.0;          // s: of the share
+  double shown_frame_time_ = 0.0;  // s, smoothed
+  double missed_since_ = 0.0;      // s
+  double twist_scale_ = 0.0;       // rad, the largest so far
+  double pressure_scale_ = 0.0;    // Pa, likewise
+  std::uint64_t missed_then_ = 0;
+  int files_written_ = 0;
+
+  std::thread reloader_;
+  std::atomic<bool> reloaded_done_ = false;
+  std::optional<Result<Session>> reloaded_;
+};
+
+}  // namespace torsion

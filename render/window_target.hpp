@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "render/image.hpp"
+#include "render/memory.hpp"
+#include "render/target.hpp"
+#include "render/window.hpp"
+
+namespace torsion {
+
+/// The extensions of an instance that can show pictures in windows. @pre a window is open
+std::vector<std::string> surface_extensions();
+
+/// Pictures into a window. A scene is drawn into an image of its own, which may be smaller, and
+/// stretched over the window's; the overlay is drawn over that at full size.
+class WindowTarget final : public Target {
+ public:
+  /// @param gpu, window  must outlive the target. Throws vk::SystemError.
+  WindowTarget(const Gpu& gpu, const Window& window, std::uint32_t slots);
+  ~WindowTarget() override;
+
+  /// Fits images to the window's present size and to `share` of it along each side for the scene.
+  /// False while the window has no size: then nothing can be drawn.
+  bool fit(std::uint32_t width, std::uint32_t height, double share);
+
+  /// @pre fit() was true
+  Frame begin() override;
+
+  /// Records the scene's way into the window's image, which is then a colour attachment.
+  void stretch(const Frame& frame);
+  void finish(const Frame& frame) override;
+  /// Also shows the picture.
+  void submit(const Frame& frame) override;
+
+  [[nodiscard]] vk::Format format() const override { return vk::Format::eR8G8B8A8Srgb; }
+  [[nodiscard]] vk::Extent2D extent() const override { return inner_; }
+
+  [[nodiscard]] vk::Format window_format() const { return surface_format_.format; }
+  [[nodiscard]] vk::Extent2D window_extent() const { return outer_; }
+  [[nodiscard]] vk::ImageView window_view() const { return *shown_[current_].view; }
+
+  /// The next picture, as shown, can be had from screenshot().
+  void keep_next() { keep_ = true; }
+  /// Waits for the picture that keep_next() asked for.
+  Image screenshot();
+
+  /// Waits until the last frame of `slot` is done.
+  void wait(std::uint32_t slot);
+
+ private:
+  struct Slot {
+    Image2d image;
+    vk::raii::CommandPool pool = nullptr;
+    vk::raii::CommandBuffers commands = nullptr;
+    vk::raii::Fence done = nullptr;
+    vk::raii::Semaphore acquired = nullptr;
+  };
+  struct Shown {
+    vk::Image image;
+    vk::raii::ImageView view = nullptr;
+    vk::raii::Semaphore drawn = nullptr;
+  };
+
+  void make_surface();
+  void make_swapchain(std::uint32_t width, std::uint32_t height);
+  void make_inner(double share);
+  [[nodiscard]] bool acquire(const Slot& slot);
+
+  const Gpu* gpu_;
+  const Window* window_;
+  vk::raii::SurfaceKHR surface_ = nullptr;
+  vk::SurfaceFormatKHR surface_format_;
+  vk::raii::SwapchainKHR swapchain_ = nullptr;
+  std::vector<Shown> shown_;
+  std::vector<Slot> slots_;
+  std::uint32_t next_ = 0;
+  std::uint32_t current_ = 0;  // of shown_
+  vk::Extent2D outer_;
+  vk::Extent2D inner_;
+  double share_ = 0.0;
+  bool stale_ = true;  // the swapchain no longer fits the window
+  bool surface_lost_ = false;
+  bool keep_ = false;
+  std::optional<std::uint32_t> kept_slot_;
+  Buffer kept_;
+};
+
+}  // namespace torsion

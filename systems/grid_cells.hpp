@@ -5,6 +5,7 @@
 #include <span>
 
 #include "systems/scratch.hpp"
+#include "systems/smooth_step.hpp"
 #include "systems/step.hpp"
 
 namespace torsion {
@@ -55,14 +56,14 @@ using CellBits = std::array<std::uint64_t, kMaxGridSide>;
 /// The cells with coverage.
 CellBits covered_cells(const Grid& grid);
 
+/// Cosine from which facing_share is 1.
+inline constexpr double kFullyFacing = 0.5;
+
 /// How much a cell's nearest face of the body counts as the one that the tool presses on: 1 while
 /// it faces the grid, 0 where it is the body's side, beside an edge or deep down.
 /// @param slope  cosine between that face's normal and the grid's
-inline constexpr double kFullyFacing = 0.5;
 inline double facing_share(double slope) {
-  const double above = slope > 0.25 ? 4.0 * slope - 1.0 : 0.0;
-  const double t = slope < kFullyFacing ? above : 1.0;
-  return t * t * (3.0 - 2.0 * t);
+  return smooth_step(4.0 * slope - 1.0);
 }
 
 /// Finds, for every cell of the grid, the tool's surface along the normal, how deep it lies under

@@ -16,16 +16,23 @@ struct SineVersine {
   float versine = 0.0F;  // 1 - cos
 };
 
+/// Taylor series in [-pi/4, pi/4].
+inline float sine_near_zero(float x) {
+  const float z = x * x;
+  return x +
+         x * z *
+             (-1.66666667e-1F + z * (8.33333333e-3F + z * (-1.98412698e-4F + z * 2.75573192e-6F)));
+}
+inline float cosine_near_zero(float x) {
+  const float z = x * x;
+  return 1.0F + z * (-0.5F + z * (4.16666667e-2F + z * (-1.38888889e-3F + z * 2.48015873e-5F)));
+}
+
 /// sine_and_versine() of twice an angle in (-pi/4, pi/4): of that without quarter turns, to the
 /// same bits.
 inline SineVersine sine_and_versine_of_half(float h) {
-  const float z = h * h;
-  const float s =
-      h +
-      h * z * (-1.66666667e-1F + z * (8.33333333e-3F + z * (-1.98412698e-4F + z * 2.75573192e-6F)));
-  const float c =
-      1.0F + z * (-0.5F + z * (4.16666667e-2F + z * (-1.38888889e-3F + z * 2.48015873e-5F)));
-  return {2.0F * s * c, 2.0F * s * s};
+  const float s = sine_near_zero(h);
+  return {2.0F * s * cosine_near_zero(h), 2.0F * s * s};
 }
 
 /// With h = angle / 2: sin = 2 sin h cos h, 1 - cos = 2 sin^2 h, so that small angles keep their
@@ -37,12 +44,8 @@ inline SineVersine sine_and_versine(float angle) {
   const float quarters = std::nearbyint(h * 0.636619772F);
   const float x =
       ((h - quarters * 1.5703125F) - quarters * 4.83989716e-4F) + quarters * 1.62920680e-7F;
-  const float z = x * x;
-  const float s =
-      x +
-      x * z * (-1.66666667e-1F + z * (8.33333333e-3F + z * (-1.98412698e-4F + z * 2.75573192e-6F)));
-  const float c =
-      1.0F + z * (-0.5F + z * (4.16666667e-2F + z * (-1.38888889e-3F + z * 2.48015873e-5F)));
+  const float s = sine_near_zero(x);
+  const float c = cosine_near_zero(x);
   const bool swap = (static_cast<int>(quarters) & 1) != 0;
   const float product = 2.0F * s * c;
   return {swap ? -product : product, swap ? 2.0F * c * c : 2.0F * s * s};

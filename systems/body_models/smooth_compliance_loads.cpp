@@ -12,6 +12,8 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "systems/smooth_step.hpp"
+
 namespace torsion {
 namespace {
 
@@ -30,11 +32,6 @@ Eigen::Vector3d eigen(const glm::dvec3& v) {
 
 Eigen::Index row_of(std::uint32_t node) {
   return 3 * Eigen::Index{node};
-}
-
-double smooth_step(double low, double high, double value) {
-  const double t = std::clamp((value - low) / (high - low), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
 }
 
 /// Force and torque about `about` that a force at `point` is, one column for each force.
@@ -111,7 +108,7 @@ void add_face(const SolidGrid& grid, const std::array<std::uint32_t, 4>& face,
     const double area = share * glm::length(at.normal);
     const bool around = glm::dot(at.normal, port.normal) > 0.7 * glm::length(at.normal);
     const double middle = around ? near.around : near.across_edge;
-    const double kept = smooth_step(0.5 * middle, 1.5 * middle, reach);
+    const double kept = smooth_step(reach / middle - 0.5);
     if (around) {
       for (std::size_t c = 0; c < 4; ++c) {
         left_out.area[Eigen::Index{face[c]}] += (1.0 - kept) * area * at.weights[c];

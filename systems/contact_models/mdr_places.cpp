@@ -5,6 +5,8 @@
 #include <numbers>
 #include <vector>
 
+#include "systems/smooth_step.hpp"
+
 namespace torsion {
 namespace {
 
@@ -66,8 +68,7 @@ Loads make_loads(double flat_share, double power, const std::vector<Integrals>& 
 /// Share of all friction that has slipped once so many pieces have: finer where the first and the
 /// last springs slip, where the exact curve bends most.
 double slipped_share(std::size_t pieces) {
-  const double t = static_cast<double>(pieces) / static_cast<double>(kMdrPieces);
-  return t * t * (3.0 - 2.0 * t);
+  return smooth_step(static_cast<double>(pieces) / static_cast<double>(kMdrPieces));
 }
 
 /// Two places on a piece, t = -1 to 1, whose linear functions (1 at the one, 0 at the other) are

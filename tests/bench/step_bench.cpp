@@ -199,7 +199,7 @@ void whole_run(benchmark::State& state) {
     Progress silent("", true);
     const double duration = session.value().scene.duration;
     const RunStatistics statistics =
-        run_fast(session.value(), steps_in(session.value(), duration), nullptr, silent);
+        run_fast(session.value(), steps_in(session.value(), duration), RunFiles{}, silent).value();
     state.SetIterationTime(statistics.wall_time);
     simulated += duration;
     wall += statistics.wall_time;

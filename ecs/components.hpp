@@ -165,8 +165,8 @@ struct OwnedRows {
   Range influences;  // in `influences`; bodies with contact model patch only: its tables and, of a
                      // layer with body model compliance, its kernel (layer_kernel.hpp)
   Range ports;       // in `ports`; body model compliance only, the first of them are its anchors
-  Range compliance;  // in `compliance`, row-major, 3 columns a port: 3 rows a port, displacements
-                     // by forces, m/N, then 3 rows an anchor, turns by them, rad/N
+  Range compliance;  // in `compliance`, 3 rows a port of 3 numbers a port, displacements by the
+                     // force there, m/N; then 3 rows a port of 3 an anchor, turns by it, rad/N
 };
 
 /// Axis-aligned box of the rest shape in the owner's frame. Written by: load.
@@ -372,8 +372,10 @@ inline constexpr std::uint32_t kAnchorsPerBody = 48;
 /// anchor_motions; all zero with other body models than compliance.
 struct AnchorTurns {
   double turn[kAnchorsPerBody] = {};  // rad
-  double support = 0.0;  // rad: RegionSupport's part about the normal, from which this step's
-                         // contact saw the tool
+  // How far the material under the contact has gone round at distance r from rest_point, rad,
+  // as RegionSupport and SupportField have it, from which the contact sees the tool:
+  double support = 0.0;         // rad: at r = 0
+  double support_growth = 0.0;  // rad/m^2: times r^2, what it is more
 };
 
 /// Written by: region_wrenches.

@@ -92,11 +92,11 @@ std::vector<std::byte> identity_of(const BodyDescription& description) {
   return bytes;
 }
 
-/// The first `rows` of a matrix, row by row.
+/// The first `rows` of a matrix, column by column: what one force does is together.
 void append_values(const Eigen::MatrixXd& matrix, std::size_t rows,
                    std::vector<ComplianceValue>& values) {
-  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(rows); ++i) {
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+  for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(rows); ++i) {
       values.push_back({matrix(i, j)});
     }
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "systems/body_models/anchor_motions.hpp"
 #include "systems/body_models/compliance.hpp"
 #include "systems/body_models/skeleton.hpp"
 #include "systems/carry_tractions.hpp"

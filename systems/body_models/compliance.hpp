@@ -15,8 +15,4 @@ namespace torsion {
 /// own compliance and follows by plain iteration.
 void compliance(StepContext& context);
 
-/// Where the anchors of bodies with body model compliance are under the same tractions, for those
-/// who draw them. Writes AnchorMotion and AnchorTurns.
-void anchor_motions(StepContext& context);
-
 }  // namespace torsion

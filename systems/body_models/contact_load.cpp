@@ -1,6 +1,7 @@
 #include "systems/body_models/contact_load.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -9,6 +10,7 @@
 #include "systems/body_models/support_field.hpp"
 #include "systems/frames.hpp"
 #include "systems/patch_grid.hpp"
+#include "systems/widest.hpp"
 
 namespace torsion {
 namespace {
@@ -97,20 +99,90 @@ void add_wrench(ContactLoad& load, const glm::dvec3& arm, const glm::dvec3& forc
   load.wrench += (Vector6() << force.x, force.y, force.z, couple.x, couple.y, couple.z).finished();
 }
 
+/// One row of loaded cells.
+struct LoadedRow {
+  std::size_t count = 0;
+  // A place in the footing's coordinates, and the traction on the tool, Pa, grid.
+  std::array<double, kMaxGridSide> x, y, along_x, along_y, pressure;
+};
+
+/// Terms of a SupportField and one of zero, to fill vectors.
+constexpr std::size_t kPaddedTerms = kSupportTerms + 1;
+
+/// Sums of term times traction, Pa, grid.
+struct TermSums {
+  std::array<double, kPaddedTerms> along_x{}, along_y{}, pressure{};
+};
+
+/// Adds a row's. The terms lie side by side in vectors, so that no sum is split.
+TORSION_WIDEST
+void add_terms(const LoadedRow& __restrict row, TermSums& __restrict sums) {
+  for (std::size_t cell = 0; cell < row.count; ++cell) {
+    const auto terms = support_terms({row.x[cell], row.y[cell]});
+    std::array<double, kPaddedTerms> padded{};
+    std::copy(terms.begin(), terms.end(), padded.begin());
+    for (std::size_t k = 0; k < kPaddedTerms; ++k) {
+      sums.along_x[k] += padded[k] * row.along_x[cell];
+      sums.along_y[k] += padded[k] * row.along_y[cell];
+      sums.pressure[k] += padded[k] * row.pressure[cell];
+    }
+  }
+}
+
+/// Tractions and their first moments about the grid's origin, grid axes.
+struct PlainSums {
+  glm::dvec2 along{0.0};                 // Pa
+  double pressure = 0.0;                 // Pa
+  glm::dvec2 pressure_times_place{0.0};  // Pa m
+  double turning = 0.0;                  // Pa m: place x traction
+};
+
 ContactLoad load_of_cells(const World& world, std::uint32_t region, const Footing& footing) {
   const LoadedCells cells = cells_of(world, region);
   const RegionFrame& frame = cells.frame;
-  ContactLoad load;
-  for_loaded(cells, [&](const glm::dvec2& at, const CellTraction& traction) {
-    const glm::dvec3 force = -cells.area * (frame.normal * traction.pressure +
-                                            tangent_to_body(frame, traction.traction));
-    const glm::dvec3 point = frame.origin + tangent_to_body(frame, at);
-    const auto terms = support_terms(coordinates_in(footing, point));
-    for (std::size_t k = 0; k < kSupportTerms; ++k) {
-      load.moments[k] += terms[k] * force;
+  const glm::dvec2 origin = plain_coordinates_in(footing, frame.origin);
+  const glm::dvec2 by_x(glm::dot(footing.tangent_x, frame.tangent_x) / footing.reach,
+                        glm::dot(footing.tangent_y, frame.tangent_x) / footing.reach);
+  const glm::dvec2 by_y(glm::dot(footing.tangent_x, frame.tangent_y) / footing.reach,
+                        glm::dot(footing.tangent_y, frame.tangent_y) / footing.reach);
+  PlainSums plain;
+  TermSums sums;
+  LoadedRow row;
+  std::size_t cell = 0;
+  for (std::uint32_t j = 0; j < cells.side; ++j) {
+    row.count = 0;
+    for (std::uint32_t i = 0; i < cells.side; ++i, ++cell) {
+      const CellTraction& at = cells.tractions[cell];
+      if (at.pressure <= 0.0) {
+        continue;
+      }
+      const glm::dvec2 place = cell_center(frame, cells.side, i, j);
+      const glm::dvec2 coordinates = support_coordinates(origin + by_x * place.x + by_y * place.y);
+      row.x[row.count] = coordinates.x;
+      row.y[row.count] = coordinates.y;
+      row.along_x[row.count] = at.traction.x;
+      row.along_y[row.count] = at.traction.y;
+      row.pressure[row.count++] = at.pressure;
+      plain.along += at.traction;
+      plain.pressure += at.pressure;
+      plain.pressure_times_place += at.pressure * place;
+      plain.turning += place.x * at.traction.y - place.y * at.traction.x;
     }
-    add_wrench(load, point - footing.center, force);
-  });
+    add_terms(row, sums);
+  }
+  const auto on_material = [&](double along_x, double along_y, double pressure) {
+    return -cells.area *
+           (frame.normal * pressure + tangent_to_body(frame, glm::dvec2(along_x, along_y)));
+  };
+  ContactLoad load;
+  for (std::size_t k = 0; k < kSupportTerms; ++k) {
+    load.moments[k] = on_material(sums.along_x[k], sums.along_y[k], sums.pressure[k]);
+  }
+  add_wrench(load, frame.origin - footing.center,
+             on_material(plain.along.x, plain.along.y, plain.pressure));
+  const glm::dvec3 couple =
+      on_material(plain.pressure_times_place.y, -plain.pressure_times_place.x, plain.turning);
+  load.wrench.tail<3>() += Eigen::Vector3d(couple.x, couple.y, couple.z);
   return load;
 }
 

@@ -5,10 +5,10 @@
 #include <numbers>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <glm/geometric.hpp>
 
 #include "systems/body_models/support_field.hpp"
+#include "systems/body_models/symmetric_solve.hpp"
 
 namespace torsion {
 namespace {
@@ -27,8 +27,6 @@ double stiffer(int degree, double size) {
   const double base = kStiffer[static_cast<std::size_t>(degree)];
   return base * std::pow(size, -2.0 * degree);
 }
-
-using TermMatrix = Eigen::Matrix<double, kSupportTerms, kSupportTerms>;
 
 constexpr double kNever = 1e300;
 
@@ -76,48 +74,49 @@ void find_ports(const PortCompliance& body, const ContactEllipse& contact, doubl
 /// Weighted least squares: terms = (A' W A + stiffer)^-1 A' W displacements.
 void fit_terms(const PortCompliance& body, const std::array<double, kFootingPorts>& weights,
                double size, Footing& footing) {
-  std::array<std::array<double, kSupportTerms>, kFootingPorts> terms;
-  TermMatrix normal = TermMatrix::Zero();
+  constexpr std::size_t kStride = kSupportTerms + 1;  // even, for vectors
+  std::array<double, kSupportTerms * kStride> normal{};
+  footing.fit = {};
   double sum = 0.0;
   for (std::size_t p = 0; p < footing.count; ++p) {
-    terms[p] = support_terms(coordinates_in(footing, body.ports[footing.ports[p]].position));
+    const auto terms =
+        support_terms(coordinates_in(footing, body.ports[footing.ports[p]].position));
     sum += weights[p];
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
-      for (std::size_t l = 0; l <= k; ++l) {
-        normal(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) +=
-            weights[p] * terms[p][k] * terms[p][l];
+      const double weighted = weights[p] * terms[k];
+      footing.fit[k][p] = weighted;
+      for (std::size_t l = 0; l < kSupportTerms; ++l) {
+        normal[k * kStride + l] += weighted * terms[l];
       }
     }
   }
   for (std::size_t k = 0; k < kSupportTerms; ++k) {
     // The last part only keeps what no port speaks of at zero.
-    normal(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) +=
-        sum * (stiffer(kSupportDegrees[k], size) + 1e-12);
+    normal[k * (kStride + 1)] += sum * (stiffer(kSupportDegrees[k], size) + 1e-12);
   }
-  const Eigen::LLT<TermMatrix> solver(normal);
-  for (std::size_t p = 0; p < footing.count; ++p) {
-    Eigen::Matrix<double, kSupportTerms, 1> column;
-    for (std::size_t k = 0; k < kSupportTerms; ++k) {
-      column[static_cast<Eigen::Index>(k)] = weights[p] * terms[p][k];
-    }
-    solver.solveInPlace(column);
-    for (std::size_t k = 0; k < kSupportTerms; ++k) {
-      footing.fit[k][p] = column[static_cast<Eigen::Index>(k)];
-    }
-  }
+  solve_symmetric(kSupportTerms, kStride, normal.data(), kFootingPorts, footing.fit[0].data(),
+                  1e-13 * sum);
 }
 
-/// Moments of a wrench on the contact, spread as by a rigid disc.
-SupportMoments moments_of_wrench(const Footing& footing, const ContactEllipse& contact,
-                                 const glm::dvec3& force, const glm::dvec3& couple) {
-  SupportMoments moments{};
-  const DiscForces spread = spread_wrench(contact, &DiscPoint::disc_share, force, couple);
+/// Moments of a unit force or couple on the contact along each axis, spread as by a rigid disc.
+std::array<SupportMoments, 6> moments_of_wrenches(const Footing& footing,
+                                                  const ContactEllipse& contact) {
+  std::array<DiscForces, 6> spread;
+  for (std::size_t c = 0; c < 6; ++c) {
+    glm::dvec3 force(0.0);
+    glm::dvec3 couple(0.0);
+    (c < 3 ? force : couple)[static_cast<int>(c % 3)] = 1.0;
+    spread[c] = spread_wrench(contact, &DiscPoint::disc_share, force, couple);
+  }
+  std::array<SupportMoments, 6> moments{};
   for (std::size_t q = 0; q < kDiscPoints; ++q) {
     const glm::dvec2 place = disc_points()[q].place;
     const glm::dvec3 arm = contact.axis_1 * place.x + contact.axis_2 * place.y;
     const auto terms = support_terms(coordinates_in(footing, contact.center + arm));
-    for (std::size_t k = 0; k < kSupportTerms; ++k) {
-      moments[k] += spread[q] * terms[k];
+    for (std::size_t c = 0; c < 6; ++c) {
+      for (std::size_t k = 0; k < kSupportTerms; ++k) {
+        moments[c][k] += spread[c][q] * terms[k];
+      }
     }
   }
   return moments;
@@ -178,11 +177,14 @@ bool still_fits(const Footing& footing, const ContactEllipse& contact) {
          glm::dot(footing.normal, contact.normal) > kTurned;
 }
 
-glm::dvec2 coordinates_in(const Footing& footing, const glm::dvec3& point) {
+glm::dvec2 plain_coordinates_in(const Footing& footing, const glm::dvec3& point) {
   const glm::dvec3 from = point - footing.origin;
-  return support_coordinates(
-      glm::dvec2(glm::dot(footing.tangent_x, from), glm::dot(footing.tangent_y, from)) /
-      footing.reach);
+  return glm::dvec2(glm::dot(footing.tangent_x, from), glm::dot(footing.tangent_y, from)) /
+         footing.reach;
+}
+
+glm::dvec2 coordinates_in(const Footing& footing, const glm::dvec3& point) {
+  return support_coordinates(plain_coordinates_in(footing, point));
 }
 
 void lay_footing(const PortCompliance& body, const ContactEllipse& contact, Footing& footing) {
@@ -200,12 +202,9 @@ void lay_footing(const PortCompliance& body, const ContactEllipse& contact, Foot
   const double size = std::max(kBeyond * longer / footing.reach, 0.05);
   find_ports(body, contact, size, footing, weights);
   fit_terms(body, weights, size, footing);
+  const std::array<SupportMoments, 6> moments = moments_of_wrenches(footing, contact);
   for (std::size_t c = 0; c < 6; ++c) {
-    glm::dvec3 force(0.0);
-    glm::dvec3 couple(0.0);
-    (c < 3 ? force : couple)[static_cast<int>(c % 3)] = 1.0;
-    forces_at_ports(footing, moments_of_wrench(footing, contact, force, couple),
-                    footing.unit_forces[c]);
+    forces_at_ports(footing, moments[c], footing.unit_forces[c]);
   }
 }
 

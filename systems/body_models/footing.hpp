@@ -60,7 +60,10 @@ bool still_fits(const Footing& footing, const ContactEllipse& contact);
 /// higher terms are kept small; rigid motions are reproduced exactly.
 void lay_footing(const PortCompliance& body, const ContactEllipse& contact, Footing& footing);
 
-/// Coordinates in a footing's SupportField of a point of the body.
+/// Coordinates along the surface of a point of the body, over the footing's reach.
+glm::dvec2 plain_coordinates_in(const Footing& footing, const glm::dvec3& point);
+
+/// The same in its SupportField, at most 1 (support_coordinates).
 glm::dvec2 coordinates_in(const Footing& footing, const glm::dvec3& point);
 
 /// Forces at the ports that do the same work as the moments in any SupportField that is fitted to

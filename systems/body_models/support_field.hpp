@@ -35,6 +35,10 @@ inline std::array<double, kSupportTerms> support_terms(const glm::dvec2& at) {
           yy * x, yy * y, xx * xx, xx * xy, xx * yy, xy * yy, yy * yy};
 }
 
+/// How far the field moves a point, m, body.
+/// @param point  m, body
+glm::dvec3 displacement_at(const SupportField& field, const glm::dvec3& point);
+
 /// Where the field moves the centres of a grid's cells, in the grid's frame.
 void find_support(const SupportField& field, const RegionFrame& frame, std::uint32_t side,
                   const SupportColumns& columns);

@@ -181,6 +181,75 @@ TEST(ComplianceTest, StaysCalmOnALayerAndOnASoftColumn) {
   }
 }
 
+/// How many footings have been laid, and couplings found, in the last step.
+struct Laid {
+  std::vector<std::uint64_t> footings;
+  std::vector<std::uint64_t> couplings;
+
+  explicit Laid(const World& world) {
+    for (const Footing& footing : world.footings.column<Footing>()) {
+      footings.push_back(footing.serial);
+    }
+    for (const RegionCoupling& coupling : world.couplings.column<RegionCoupling>()) {
+      couplings.push_back(
+          coupling.serial_to == 0 ? 0 : coupling.serial_to * 100003 + coupling.serial_from);
+    }
+  }
+  /// Of what is there now, how much was not so before; what has been let go does not count.
+  static std::size_t newer(const std::vector<std::uint64_t>& now,
+                           const std::vector<std::uint64_t>& before) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      count += now[i] != 0 && now[i] != before[i] ? 1U : 0U;
+    }
+    return count;
+  }
+};
+
+// Nine feet slide over a cube's top, so that all of their footings wear out at once: a step lays
+// one anew and finds the couplings of one, whatever the speed, and the force does not jump when it
+// does. When the feet touch down, each footing is laid at once.
+TEST(ComplianceTest, AStepLaysOneFootingAndTheForceDoesNotJump) {
+  std::vector<PartDescription> feet;
+  for (int i = 0; i < 9; ++i) {
+    feet.push_back(test::make_part(
+        ShapeKind::kSphere, glm::dvec3(0.01),
+        {glm::dvec3(0.03 * (i % 3 - 1), 0.0, 0.03 * (i / 3 - 1)), glm::dquat(1.0, 0.0, 0.0, 0.0)}));
+  }
+  SceneDescription scene =
+      box_scene(glm::dvec3(0.06), std::move(feet), ContactModel::kMdr, BodyModel::kCompliance);
+  scene.bodies[0].friction = {0.3, 0.3};
+  Hand hand(scene);
+  hand.step_to({{glm::dvec3(0.0, 0.13, 0.0), glm::dquat(1.0, 0.0, 0.0, 0.0)}});
+  Laid before(hand.world());
+  std::size_t most_footings = 0;
+  std::size_t most_couplings = 0;
+  std::size_t laid = 0;
+  double jump = 0.0;
+  glm::dvec3 force(0.0);
+  for (int step = 0; step < 700; ++step) {
+    const bool presses = step < 100;
+    const std::uint32_t regions = hand.world().regions.size();
+    hand.move(presses ? glm::dvec3(0.0, -1e-5, 0.0) : glm::dvec3(2e-5, 0.0, 1e-5),
+              glm::dvec3(0.0, 1.0, 0.0), 0.0, 1);
+    const Laid now(hand.world());
+    const std::size_t footings = Laid::newer(now.footings, before.footings);
+    most_footings = std::max(most_footings, footings - (hand.world().regions.size() - regions));
+    most_couplings = std::max(most_couplings, Laid::newer(now.couplings, before.couplings));
+    if (step > 300) {
+      laid += footings;
+      jump = std::max(jump, glm::distance(hand.wrench().force, force) / glm::length(force));
+    }
+    force = hand.wrench().force;
+    before = now;
+  }
+  EXPECT_EQ(hand.world().regions.size(), 9U);
+  EXPECT_EQ(most_footings, 1U);
+  EXPECT_LE(most_couplings, 16U);
+  EXPECT_GT(laid, 9U);
+  EXPECT_LT(jump, 0.003);
+}
+
 TEST(ComplianceTest, SaysHowFarItIsWhileItIsFound) {
   SceneDescription scene =
       box_scene(glm::dvec3(0.03), {ball_at(0.0)}, ContactModel::kMdr, BodyModel::kCompliance);

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/body_models/compliance.hpp"
+#include "systems/body_models/anchor_motions.hpp"
 #include "systems/surface_field.hpp"
 #include "tests/support/contact_scenes.hpp"
 

@@ -1,0 +1,265 @@
+#include "systems/body_models/region_stands.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <glm/geometric.hpp>
+
+#include "systems/body_models/half_space_fields.hpp"
+#include "systems/body_models/layer_motion.hpp"
+#include "systems/body_models/smooth_compliance.hpp"
+#include "systems/contact_models/layer_coupling.hpp"
+#include "systems/contact_models/layer_thickness.hpp"
+#include "systems/patch_grid.hpp"
+#include "systems/scratch.hpp"
+
+namespace torsion {
+namespace {
+
+Eigen::Vector3d eigen(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+/// The smallest eigenvalue that K^(1/2) C K^(1/2) may have: -1 would leave no compliance at all,
+/// and interpolation between ports could bring it below.
+constexpr double kStiffest = -0.75;
+
+/// Stiffness of a contact that sticks, about its point, along tangents and normal. Source: Johnson,
+/// 1985; Reissner & Sagoci, 1944.
+Vector6 contact_stiffness(double radius, const Elasticity& elasticity) {
+  const double g = elasticity.shear_modulus();
+  const double nu = elasticity.poisson_ratio;
+  const double a = radius;
+  const double drag = 8.0 * g * a / (2.0 - nu);
+  const double tilt = 8.0 * g * a * a * a / (3.0 * (1.0 - nu));
+  Vector6 stiffness;
+  stiffness << drag, drag, 4.0 * g * a / (1.0 - nu), tilt, tilt, 16.0 / 3.0 * g * a * a * a;
+  return stiffness;
+}
+
+/// From the body's axes to tangents and normal.
+Matrix6 to_contact(const Footing& footing) {
+  Eigen::Matrix3d rotation;
+  rotation << eigen(footing.tangent_x).transpose(), eigen(footing.tangent_y).transpose(),
+      eigen(footing.normal).transpose();
+  Matrix6 both = Matrix6::Zero();
+  both.topLeftCorner<3, 3>() = rotation;
+  both.bottomRightCorner<3, 3>() = rotation;
+  return both;
+}
+
+/// A symmetric compliance over the contact's own: eigenvalues and what makes them a compliance
+/// again.
+struct RelativeCompliance {
+  Eigen::SelfAdjointEigenSolver<Matrix6> solver;
+  Matrix6 back;
+
+  RelativeCompliance(const CompliantBody& body, const Footing& footing, const Matrix6& motion) {
+    const Vector6 root =
+        contact_stiffness(footing.radius, body.world.bodies.at<Elasticity>(body.row)).cwiseSqrt();
+    const Matrix6 axes = to_contact(footing);
+    const Matrix6 scaled =
+        root.asDiagonal() * (axes * motion * axes.transpose()) * root.asDiagonal();
+    solver.compute(0.5 * (scaled + scaled.transpose()));
+    back = axes.transpose() * root.cwiseInverse().asDiagonal() * solver.eigenvectors();
+  }
+  [[nodiscard]] Matrix6 at_least(double least) const {
+    return back * solver.eigenvalues().cwiseMax(least).asDiagonal() * back.transpose();
+  }
+};
+
+/// What a region's own wrench does to it: the part that yields goes to Newton's matrix. Where the
+/// rest of the body stiffens the half-space (a layer) Newton's method would overshoot as soon as
+/// the contact slips, and plain iteration converges.
+void find_own_motion(const CompliantBody& body, Footing& footing) {
+  const RelativeCompliance relative(body, footing, motion_between(body.ports, footing, footing));
+  const double least = relative.solver.eigenvalues()[0];
+  footing.share = std::min(1.0, kStiffest / std::min(least, -1e-300));
+  footing.on_layer = 0;
+  Eigen::Map<Matrix6>(footing.own.data()) = relative.at_least(0.0);
+}
+
+/// On a layer the ports do not count: patch has what the half-space lacks in its own tables
+/// (layer_kernel.hpp), mdr is moved as one.
+void find_motion_on_layer(const CompliantBody& body, const ContactEllipse& contact,
+                          double thickness, bool has_tables, Footing& footing) {
+  footing.share = 0.0;
+  footing.on_layer = 1;
+  footing.own = {};
+  if (!has_tables && has_layer_kernel(body.world, body.row)) {
+    const Matrix6 motion = layer_motion(body.world, body.row, contact, thickness);
+    Eigen::Map<Matrix6>(footing.own.data()) =
+        RelativeCompliance(body, footing, motion).at_least(kStiffest);
+  }
+}
+
+/// The same on a layer, forces and displacements alone: there a contact moves nothing farther away
+/// than some thicknesses.
+Matrix6 on_layer(const CompliantBody& body, const Matrix6& half_space, const Footing& to,
+                 const Footing& from, double thickness) {
+  Matrix6 motion = Matrix6::Zero();
+  if (has_layer_kernel(body.world, body.row)) {
+    const glm::dmat3 layer =
+        layer_coupling(body.world, body.row, from.normal, to.center - from.center, thickness);
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        motion(row, column) = half_space(row, column) + layer[column][row];
+      }
+    }
+  }
+  return motion;
+}
+
+/// Row of the coupling between two blocks' regions.
+std::uint32_t coupling_row(std::uint32_t one, std::uint32_t other) {
+  const std::uint32_t high = std::max(one, other);
+  return high * (high - 1) / 2 + std::min(one, other);
+}
+
+/// A new region knows nothing of what the last one with its footing did to others.
+void forget_couplings(World& world, std::uint32_t block) {
+  for (std::uint32_t other = 0; other < world.footings.size(); ++other) {
+    if (other != block) {
+      world.couplings.at<RegionCoupling>(coupling_row(block, other)) = RegionCoupling{};
+    }
+  }
+}
+
+void lay(const CompliantBody& body, const Stand& stand, const ContactEllipse& contact) {
+  World& world = body.world;
+  Footing& footing = footing_of(body, stand);
+  lay_footing(body.ports, contact, footing);
+  footing.serial = world.clock.at<Clock>(0).step * world.footings.size() + stand.block + 1;
+  const double thickness = layer_thickness(world, body.row, contact.normal, contact.center);
+  if (thickness > 0.0) {
+    const RegionIdentity& identity = world.regions.at<RegionIdentity>(stand.region);
+    find_motion_on_layer(body, contact, thickness, has_patch(world, identity), footing);
+  } else {
+    find_own_motion(body, footing);
+  }
+}
+
+void lay_footings(const CompliantBody& body) {
+  const Stand* first_laid = nullptr;
+  ContactEllipse contact_of_first;
+  for (std::size_t i = 0; i < body.count; ++i) {
+    const Stand& stand = body.stands[i];
+    const Footing& footing = footing_of(body, stand);
+    const ContactEllipse contact = contact_ellipse(body.world, stand.region);
+    if (footing.reach == 0.0) {
+      forget_couplings(body.world, stand.block);
+      lay(body, stand, contact);
+    } else if (!still_fits(footing, contact) &&
+               (first_laid == nullptr || footing.serial < footing_of(body, *first_laid).serial)) {
+      first_laid = &stand;
+      contact_of_first = contact;
+    }
+  }
+  if (first_laid != nullptr) {
+    lay(body, *first_laid, contact_of_first);
+  }
+}
+
+/// The region's own motion and bending by its own load.
+void move_by_own_load(const CompliantBody& body, Stand& stand) {
+  const Footing& footing = footing_of(body, stand);
+  SupportField& field = body.world.regions.at<SupportField>(stand.region);
+  stand.load = contact_load(body.world, stand.region, footing);
+  if (footing.on_layer != 0) {
+    stand.motion = Eigen::Map<const Matrix6>(footing.own.data()) * stand.load.wrench;
+    field = SupportField{};
+    return;
+  }
+  PortVectors forces;
+  PortVectors displacements;
+  forces_at_ports(footing, stand.load.moments, forces);
+  displacements_at_ports(body.ports, footing, forces, displacements);
+  for (std::size_t p = 0; p < footing.count; ++p) {
+    displacements[p] *= footing.share;
+  }
+  stand.motion = rigid_motion(footing, displacements);
+  field = bending(footing, displacements, stand.motion);
+}
+
+bool is_found(const RegionCoupling& coupling, const Footing& to, const Footing& from) {
+  return coupling.serial_to == to.serial && coupling.serial_from == from.serial;
+}
+
+void find_coupling(const CompliantBody& body, const Footing& there, const Footing& here,
+                   RegionCoupling& coupling) {
+  coupling.serial_to = there.serial;
+  coupling.serial_from = here.serial;
+  Eigen::Map<Matrix6> motion(coupling.motion.data());
+  motion = there.share * here.share * motion_between(body.ports, there, here);
+  if (there.center != here.center) {
+    motion += half_space_coupling({there.center, there.normal}, {here.center, here.normal},
+                                  body.world.bodies.at<Elasticity>(body.row));
+  }
+  const double thickness = layer_thickness(body.world, body.row, here.normal, here.center);
+  if (thickness > 0.0) {
+    motion = on_layer(body, motion, there, here, thickness);
+  }
+}
+
+/// @param found_before  take those that were, or those that never were
+/// @return how many more may be found
+std::size_t find_some_couplings(const CompliantBody& body, bool found_before, std::size_t most) {
+  for (std::size_t i = 0; i < body.count; ++i) {
+    for (std::size_t j = 0; j < i && most > 0; ++j) {
+      const bool ordered = body.stands[i].block > body.stands[j].block;
+      const Stand& to = body.stands[ordered ? i : j];
+      const Stand& from = body.stands[ordered ? j : i];
+      RegionCoupling& coupling = coupling_between(body, to, from);
+      const Footing& there = footing_of(body, to);
+      const Footing& here = footing_of(body, from);
+      if ((coupling.serial_to != 0) == found_before && !is_found(coupling, there, here)) {
+        find_coupling(body, there, here, coupling);
+        --most;
+      }
+    }
+  }
+  return most;
+}
+
+}  // namespace
+
+Footing& footing_of(const CompliantBody& body, const Stand& stand) {
+  return body.world.footings.at<Footing>(stand.block);
+}
+
+StiffnessRoot stiffness_root(const CompliantBody& body, const Footing& footing) {
+  const Vector6 root =
+      contact_stiffness(footing.radius, body.world.bodies.at<Elasticity>(body.row)).cwiseSqrt();
+  const Matrix6 axes = to_contact(footing);
+  return {axes.transpose() * root.asDiagonal() * axes,
+          axes.transpose() * root.cwiseInverse().asDiagonal() * axes};
+}
+
+void find_stands(CompliantBody& body) {
+  World& world = body.world;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+    if (identity.body == body.row) {
+      Stand& stand = body.stands[body.count++];
+      stand.region = region;
+      stand.block = block_of(identity);
+    }
+  }
+  lay_footings(body);
+  for (std::size_t i = 0; i < body.count; ++i) {
+    move_by_own_load(body, body.stands[i]);
+  }
+}
+
+void find_couplings(const CompliantBody& body) {
+  find_some_couplings(body, true, find_some_couplings(body, false, kCouplingsAStep));
+}
+
+RegionCoupling& coupling_between(const CompliantBody& body, const Stand& to, const Stand& from) {
+  return body.world.couplings.at<RegionCoupling>(coupling_row(to.block, from.block));
+}
+
+}  // namespace torsion

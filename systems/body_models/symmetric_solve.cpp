@@ -1,0 +1,44 @@
+#include "systems/body_models/symmetric_solve.hpp"
+
+#include <algorithm>
+
+#include "systems/widest.hpp"
+
+namespace torsion {
+namespace {
+
+/// to -= factor * from.
+inline void subtract(std::size_t count, double factor, const double* __restrict from,
+                     double* __restrict to) {
+  for (std::size_t i = 0; i < count; ++i) {
+    to[i] -= factor * from[i];
+  }
+}
+
+}  // namespace
+
+TORSION_WIDEST
+void solve_symmetric(std::size_t n, std::size_t stride, double* upper, std::size_t width,
+                     double* right, double least_pivot) {
+  for (std::size_t k = 0; k < n; ++k) {
+    double* const row = upper + k * stride;
+    row[k] = 1.0 / std::max(row[k], least_pivot);
+    for (std::size_t i = k + 1; i < n; ++i) {
+      const double factor = row[i] * row[k];
+      subtract(n - i, factor, row + i, upper + i * stride + i);
+      subtract(width, factor, right + k * width, right + i * width);
+    }
+  }
+  for (std::size_t k = n; k-- > 0;) {
+    const double* const row = upper + k * stride;
+    double* const found = right + k * width;
+    for (std::size_t j = k + 1; j < n; ++j) {
+      subtract(width, row[j], right + j * width, found);
+    }
+    for (std::size_t c = 0; c < width; ++c) {
+      found[c] *= row[k];
+    }
+  }
+}
+
+}  // namespace torsion

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -133,13 +134,33 @@ void fill_turns(const Snapshot& snapshot, std::span<const InterpolationRow> inve
   }
 }
 
-/// The material under a contact has turned as the step says, which is what the tool was seen from;
-/// the interpolation is off by some percent of it.
+/// How far a ring about a turn's axis goes round it by the interpolated displacements alone, rad.
+double ring_turn(const BodyField& field, const BodyTurn& turn, double radius) {
+  constexpr int kPlaces = 8;
+  const glm::dvec3 other =
+      std::abs(turn.direction.x) < 0.6 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+  const glm::dvec3 first = glm::normalize(glm::cross(turn.direction, other));
+  const glm::dvec3 second = glm::cross(turn.direction, first);
+  double sum = 0.0;
+  for (int place = 0; place < kPlaces; ++place) {
+    const double angle = 2.0 * std::numbers::pi * place / kPlaces;
+    const glm::dvec3 way = std::cos(angle) * first + std::sin(angle) * second;
+    sum += glm::dot(glm::cross(turn.direction, way),
+                    interpolate(field.weights, turn.point + radius * way));
+  }
+  return sum / (kPlaces * radius);
+}
+
+/// The material under a contact has turned as the step says, from which the tool was seen; the
+/// interpolation is off by some percent of it, and knows nothing of what is finer than the anchors.
+/// What the displacements left to interpolate go round counts: an anchor's angle is its material's,
+/// which is more than it has gone round the axis where turns grow outwards.
 void meet_supports(const Snapshot& snapshot, std::span<const glm::dvec3> centers,
                    BodyField& field) {
   for (Slot& slot : field.slots) {
     BodyTurn& turn = slot.turn;
-    double missing = snapshot.regions.at<AnchorTurns>(slot.region).support;
+    const AnchorTurns& turns = snapshot.regions.at<AnchorTurns>(slot.region);
+    double missing = turns.support;
     for (const Slot& other : field.slots) {
       if (other.turn.share > 0.0) {
         const double by_region = &other == &slot ? 0.0 : other.twist.angle(turn.point);
@@ -150,7 +171,15 @@ void meet_supports(const Snapshot& snapshot, std::span<const glm::dvec3> centers
     turn.under_contact = turn.share > 0.0
                              ? interpolate(turn.angle, centers, turn.point) + turn.share * missing
                              : 0.0;
+    turn.growth = turn.share * turns.support_growth;
     turn.radius = slot.twist.discs.radius;
+    if (turn.share > 0.0) {
+      const double inner = ring_turn(field, turn, 0.5 * turn.radius);
+      const double growth =
+          (ring_turn(field, turn, turn.radius) - inner) / (0.75 * turn.radius * turn.radius);
+      turn.growth -= turn.share * growth;
+      turn.under_contact -= turn.share * (inner - 0.25 * turn.radius * turn.radius * growth);
+    }
   }
 }
 
@@ -207,8 +236,8 @@ BodyField body_field(const World& world, const Snapshot& snapshot, const FrameWo
                                        ? center_values(snapshot, data, field.slots, centers)
                                        : center_values(snapshot, data, {}, centers);
   fill_turns(snapshot, inverse, data.anchors.count, centers, field, values);
-  meet_supports(snapshot, centers, field);
   solve_interpolation(inverse, centers, values, field.weights);
+  meet_supports(snapshot, centers, field);
   fill_middles(field);
   return field;
 }
@@ -230,8 +259,12 @@ double freedom(const BodyField& field, const glm::dvec3& point) {
   return share;
 }
 
-double share_under_contact(const BodyTurn& turn, const glm::dvec3& point) {
-  return 1.0 - smooth_step(glm::distance(point, turn.point) / turn.radius - 1.0);
+double angle_at(const BodyTurn& turn, const glm::dvec3& point, double interpolated) {
+  constexpr double kReach = 1.3;  // of the polynomial that grows, in radii (footing.cpp)
+  const double distance = glm::distance(point, turn.point);
+  const double share = 1.0 - smooth_step(distance / turn.radius - 1.0);
+  const double grown = std::min(distance, kReach * turn.radius);
+  return interpolated + share * (turn.under_contact + turn.growth * grown * grown - interpolated);
 }
 
 glm::dvec3 middle_at(const BodyField& field, const glm::dvec3& point) {

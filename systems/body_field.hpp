@@ -25,7 +25,8 @@ struct BodyTurn {
   glm::dvec3 point{0.0};       // m, body: on the axis
   glm::dvec3 direction{0.0};   // body, unit
   ScalarWeights angle;         // rad
-  double under_contact = 0.0;  // rad: within the contact, where the step has one rigid motion
+  double under_contact = 0.0;  // rad: at `point`, where the step says it
+  double growth = 0.0;         // rad/m^2: times the distance from there squared, what it is more
   double radius = 0.0;         // m: of the contact
   double lowest = 0.0;         // m: along the axis from `point` to the first of `middle`
   double spacing = 1.0;        // m
@@ -70,8 +71,9 @@ BodyField body_field(const World& world, const Snapshot& snapshot, const FrameWo
 /// How freely a point moves: 0 on the fixed region, 1 a little away from it.
 double freedom(const BodyField& field, const glm::dvec3& point);
 
-/// Share of `under_contact` in a point's angle: 1 within the contact, 0 from two radii on.
-double share_under_contact(const BodyTurn& turn, const glm::dvec3& point);
+/// Angle by which the body turns a point: within the contact what the step says, from two radii on
+/// what is interpolated between anchors.
+double angle_at(const BodyTurn& turn, const glm::dvec3& point, double interpolated);
 
 /// Displacement of the axes about which the body turns, at the height of a point [m, body].
 glm::dvec3 middle_at(const BodyField& field, const glm::dvec3& point);

@@ -166,10 +166,8 @@ void interpolate_block(const BodyField& field, VertexBlock& block) {
   for (std::size_t slot = 0; slot < field.slots.size(); ++slot) {
     const BodyTurn& turn = field.slots[slot].turn;
     for (std::size_t i = 0; i < (turn.share > 0.0 ? block.count : 0); ++i) {
-      const auto under = static_cast<float>(share_under_contact(turn, block.rest.at(i)));
       float& angle = block.turn[slot][i];
-      angle += under * (static_cast<float>(turn.under_contact) - angle);
-      angle *= static_cast<float>(block.free[i]);
+      angle = static_cast<float>(angle_at(turn, block.rest.at(i), angle) * block.free[i]);
     }
   }
 }

@@ -80,15 +80,16 @@ constexpr Bounds kBounds[] = {
     {"ball_on_cube_nu49 mdr none 256", 0.0014, 0.0065, 0.0105},
     {"ball_on_cube_nu49 patch none 144", 0.01, 0.018, 0.025},
     {"mallet_on_ellipsoid mdr none 256", 0.022, 0.045, -1.0},
-    // Finite bodies: at most the goal of 3 % of force and torque, but for the mallet (cells along
-    // a contact four times as long as wide) and the compass (its tips' pressure leans).
-    {"ball_on_cube_nu30 patch compliance 144", 0.009, 0.016, 0.02},
-    {"ball_on_cube_nu49 patch compliance 144", 0.011, 0.018, 0.016},
-    {"thin_layer patch compliance 144", 0.008, 0.019, 0.015},
-    {"soft_column patch compliance 144", 0.008, 0.025, 0.095},
-    {"large_strain_linear patch compliance 144", 0.013, 0.018, 0.045},
-    {"mallet_on_ellipsoid patch compliance 144", 0.012, 0.06, -1.0},
-    {"compass_on_ellipsoid patch compliance 144", 0.024, 0.046, -1.0},
+    // Finite bodies: the goal of 3 % of force and torque, but for the mallet's and the compass's
+    // torque. Of the drawn twist 2 % within a half-space; where the whole body turns, what the
+    // discs of 12 cells make of a rim that sticks is off by 3 %.
+    {"ball_on_cube_nu30 patch compliance 144", 0.03, 0.03, 0.02},
+    {"ball_on_cube_nu49 patch compliance 144", 0.03, 0.03, 0.02},
+    {"thin_layer patch compliance 144", 0.03, 0.03, 0.02},
+    {"soft_column patch compliance 144", 0.03, 0.03, 0.04},
+    {"large_strain_linear patch compliance 144", 0.03, 0.03, 0.04},
+    {"mallet_on_ellipsoid patch compliance 144", 0.03, 0.06, -1.0},
+    {"compass_on_ellipsoid patch compliance 144", 0.03, 0.046, -1.0},
 };
 
 void expect_within(const std::string& field, double bound, const std::string& what) {

@@ -261,6 +261,16 @@ void with_driver(DeviceLoop& loop, std::size_t row, double now, UsbRequests& req
   std::visit([&](auto& driver) { f(driver, call); }, device.driver);
 }
 
+void occupy(DeviceLoop& loop, std::size_t row, const UsbIdentity& identity, DeviceKind kind) {
+  DeviceRow& device = loop.rows[row];
+  TORSION_ASSERT(!device.used);
+  device = {};
+  device.used = true;
+  device.kind = kind;
+  device.identity = identity;
+  device.driver = driver_for(kind);
+}
+
 }  // namespace
 
 std::size_t free_row(const DeviceLoop& loop) {
@@ -270,14 +280,19 @@ std::size_t free_row(const DeviceLoop& loop) {
 
 void attach(DeviceLoop& loop, std::size_t row, const UsbIdentity& identity, DeviceKind kind,
             double now, UsbRequests& requests) {
-  TORSION_ASSERT(!loop.rows[row].used);
-  loop.rows[row] = {};
-  loop.rows[row].used = true;
-  loop.rows[row].kind = kind;
-  loop.rows[row].identity = identity;
-  loop.rows[row].driver = driver_for(kind);
+  occupy(loop, row, identity, kind);
   with_driver(loop, row, now, requests,
               [](auto& driver, DriverCall& call) { begin(driver, call); });
+}
+
+void refuse(DeviceLoop& loop, std::size_t row, const UsbIdentity& identity, DeviceKind kind,
+            DeviceTrouble trouble) {
+  occupy(loop, row, identity, kind);
+  DeviceSample& sample = loop.rows[row].report.sample;
+  sample.state = DeviceState::kStarting;
+  sample.trouble = trouble;
+  RowContext context{loop, row};
+  on_sample(&context, sample);
 }
 
 void take(DeviceLoop& loop, std::size_t row, const UsbEvent& event, double now,

@@ -56,6 +56,10 @@ std::size_t free_row(const DeviceLoop& loop);
 void attach(DeviceLoop& loop, std::size_t row, const UsbIdentity& identity, DeviceKind kind,
             double now, UsbRequests& requests);
 
+/// A device of this kind is there, at `row`, and cannot be opened. @pre the row is free
+void refuse(DeviceLoop& loop, std::size_t row, const UsbIdentity& identity, DeviceKind kind,
+            DeviceTrouble trouble);
+
 /// A request of the device has ended.
 void take(DeviceLoop& loop, std::size_t row, const UsbEvent& event, double now,
           UsbRequests& requests);

@@ -1,0 +1,310 @@
+#include "tests/device/mock_usb.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+// usbdevice_fs.h uses what ioctl.h defines.
+#include <linux/ioctl.h>
+#include <linux/usbdevice_fs.h>
+
+namespace torsion::test {
+namespace {
+
+constexpr std::size_t kSetupSize = 8;
+
+gboolean complete(UMockdevIoctlClient* client, int result, int error) {
+  umockdev_ioctl_client_complete(client, result, error);
+  return TRUE;
+}
+
+gboolean granted(UMockdevIoctlClient* client) {
+  return complete(client, 0, 0);
+}
+
+gboolean refused(UMockdevIoctlClient* client, int error) {
+  return complete(client, -1, error);
+}
+
+UsbSetup setup_of(const std::uint8_t* bytes) {
+  const auto word = [bytes](std::size_t at) {
+    return static_cast<std::uint16_t>(bytes[at] | bytes[at + 1] << 8);
+  };
+  return {bytes[0], bytes[1], word(2), word(4), word(6)};
+}
+
+}  // namespace
+
+MockDevice::MockDevice(UMockdevTestbed* bed, int number, EmulatedDevice device, std::string driver)
+    : bed_(bed),
+      handler_(umockdev_ioctl_base_new()),
+      number_(number),
+      node_(fmt::format("/dev/bus/usb/001/{:03}", number)),
+      sysfs_(fmt::format("/sys/devices/usb1/1-{}", number)),
+      device_(std::move(device)),
+      own_driver_(std::move(driver)) {
+  g_signal_connect(handler_, "handle-ioctl", G_CALLBACK(&MockDevice::on_ioctl), this);
+  g_signal_connect(handler_, "client-vanished", G_CALLBACK(&MockDevice::on_vanished), this);
+}
+
+MockDevice::~MockDevice() {
+  {
+    const std::lock_guard lock(mutex_);
+    reads_.clear();
+    done_.clear();
+  }
+  g_object_unref(handler_);
+}
+
+void MockDevice::plug() {
+  {
+    const std::lock_guard lock(mutex_);
+    driver_ = own_driver_;
+    gone_ = false;
+    packets_.clear();
+  }
+  if (!bound_) {
+    // Before the device shows: its uevent may have it opened at once.
+    umockdev_testbed_attach_ioctl(bed_, node_.c_str(), handler_, nullptr);
+    bound_ = true;
+  }
+  std::string hex;
+  for (const std::uint8_t byte : descriptors_of(device_)) {
+    hex += fmt::format("{:02x}", byte);
+  }
+  const std::string description = fmt::format(
+      "P: {0}\nN: bus/usb/001/{1:03}\nE: SUBSYSTEM=usb\nE: DRIVER=usb\nE: BUSNUM=001\n"
+      "E: DEVNUM={1:03}\nE: DEVNAME=/dev/bus/usb/001/{1:03}\nE: DEVTYPE=usb_device\n"
+      "A: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum={1}\\n\nA: speed=12\\n\n"
+      "H: descriptors={2}\n",
+      sysfs_.substr(4), number_, hex);
+  umockdev_testbed_add_from_string(bed_, description.c_str(), nullptr);
+}
+
+void MockDevice::unplug() {
+  {
+    const std::lock_guard lock(mutex_);
+    gone_ = true;
+    while (!reads_.empty()) {  // the kernel gives all back; POLLERR does not come here
+      finish(std::move(reads_.front()), -ESHUTDOWN);
+      reads_.pop_front();
+    }
+  }
+  umockdev_testbed_uevent(bed_, sysfs_.c_str(), "remove");
+  umockdev_testbed_remove_device(bed_, sysfs_.c_str());
+}
+
+void MockDevice::send(const Buffer& packet) {
+  const std::lock_guard lock(mutex_);
+  packets_.push_back(packet);
+  match();
+}
+
+void MockDevice::fail_next_read(int status) {
+  const std::lock_guard lock(mutex_);
+  fault_ = status;
+  match();
+}
+
+void MockDevice::refuse_claims(int error) {
+  const std::lock_guard lock(mutex_);
+  refused_ = error;
+}
+
+bool MockDevice::without_force() {
+  const std::lock_guard lock(mutex_);
+  return test::without_force(device_);
+}
+
+bool MockDevice::kernel_has_it() {
+  const std::lock_guard lock(mutex_);
+  return driver_ == own_driver_;
+}
+
+int MockDevice::clears() {
+  const std::lock_guard lock(mutex_);
+  return clears_;
+}
+
+gboolean MockDevice::on_ioctl(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* client,
+                              gpointer self) {
+  return static_cast<MockDevice*>(self)->answer(client);
+}
+
+void MockDevice::on_vanished(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* client,
+                             gpointer self) {
+  auto& device = *static_cast<MockDevice*>(self);
+  const std::lock_guard lock(device.mutex_);
+  device.done_.erase(client);
+  std::erase_if(device.reads_, [client](const Urb& urb) { return urb.client == client; });
+}
+
+gboolean MockDevice::answer(UMockdevIoctlClient* client) {
+  const gulong request = umockdev_ioctl_client_get_request(client);
+  UMockdevIoctlData* argument = umockdev_ioctl_client_get_arg(client);
+  const std::lock_guard lock(mutex_);
+  const bool reaps = request == USBDEVFS_REAPURBNDELAY || request == USBDEVFS_REAPURB ||
+                     request == USBDEVFS_DISCARDURB;
+  if (gone_ && !reaps) {
+    return refused(client, ENODEV);
+  }
+  switch (request) {
+    case USBDEVFS_GET_CAPABILITIES: {
+      const Data data(umockdev_ioctl_data_resolve(argument, 0, sizeof(guint32), nullptr));
+      const guint32 capabilities = USBDEVFS_CAP_BULK_CONTINUATION |
+                                   USBDEVFS_CAP_NO_PACKET_SIZE_LIM | USBDEVFS_CAP_ZERO_PACKET |
+                                   USBDEVFS_CAP_BULK_SCATTER_GATHER |
+                                   USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
+      std::memcpy(data->data, &capabilities, sizeof capabilities);
+      return granted(client);
+    }
+    case USBDEVFS_GETDRIVER: {
+      if (driver_.empty()) {
+        return refused(client, ENODATA);
+      }
+      const Data data(
+          umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_getdriver), nullptr));
+      auto* out = reinterpret_cast<usbdevfs_getdriver*>(data->data);
+      std::snprintf(out->driver, sizeof out->driver, "%s", driver_.c_str());
+      return granted(client);
+    }
+    case USBDEVFS_IOCTL: {
+      const Data data(umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_ioctl), nullptr));
+      const auto* in = reinterpret_cast<const usbdevfs_ioctl*>(data->data);
+      const bool detaches = in->ioctl_code == static_cast<int>(USBDEVFS_DISCONNECT);
+      if (detaches && driver_.empty()) {
+        return refused(client, ENODATA);
+      }
+      driver_ = detaches ? "" : own_driver_;
+      return granted(client);
+    }
+    case USBDEVFS_DISCONNECT_CLAIM:
+      return claim(client, true);
+    case USBDEVFS_CLAIMINTERFACE:
+      return claim(client, false);
+    case USBDEVFS_RELEASEINTERFACE:
+      driver_ = driver_ == "usbfs" ? "" : driver_;
+      return granted(client);
+    case USBDEVFS_CLEAR_HALT:
+      clears_ += 1;
+      return granted(client);
+    case USBDEVFS_SUBMITURB:
+      return submit(client, argument);
+    case USBDEVFS_REAPURB:
+    case USBDEVFS_REAPURBNDELAY:
+      return reap(client, argument);
+    case USBDEVFS_DISCARDURB:
+      return discard(client, argument);
+    default:
+      return granted(client);
+  }
+}
+
+gboolean MockDevice::claim(UMockdevIoctlClient* client, bool disconnect) {
+  if (refused_ != 0) {
+    return refused(client, refused_);
+  }
+  if (!disconnect && !driver_.empty() && driver_ != "usbfs") {
+    return refused(client, EBUSY);
+  }
+  driver_ = "usbfs";
+  return granted(client);
+}
+
+void MockDevice::finish(Urb urb, int status, Buffer bytes) {
+  done_[urb.client].push_back({std::move(urb.data), status, std::move(bytes)});
+}
+
+void MockDevice::match() {
+  while (!reads_.empty() && (fault_ || !packets_.empty())) {
+    Urb urb = std::move(reads_.front());
+    reads_.pop_front();
+    if (fault_) {
+      finish(std::move(urb), *std::exchange(fault_, std::nullopt));
+    } else {
+      finish(std::move(urb), 0, std::move(packets_.front()));
+      packets_.pop_front();
+    }
+  }
+}
+
+gboolean MockDevice::submit(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
+  Data data(umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_urb), nullptr));
+  const auto* urb = reinterpret_cast<const usbdevfs_urb*>(data->data);
+  const auto size = static_cast<std::size_t>(urb->buffer_length);
+  // What is resolved belongs to `data`, which keeps it until it is reaped.
+  const Data buffer(
+      umockdev_ioctl_data_resolve(data.get(), offsetof(usbdevfs_urb, buffer), size, nullptr));
+  const auto* bytes = buffer ? reinterpret_cast<const std::uint8_t*>(buffer->data) : nullptr;
+  if (urb->type == USBDEVFS_URB_TYPE_CONTROL) {
+    const UsbSetup setup = setup_of(bytes);
+    const Bytes out((setup.type & kUsbIn) != 0 ? Bytes{}
+                                               : Bytes(bytes + kSetupSize, size - kSetupSize));
+    const auto in = controlled(device_, setup, out);
+    finish({client, std::move(data)}, in ? 0 : -EPIPE, in.value_or(Buffer{}));
+  } else if ((urb->endpoint & kUsbIn) != 0) {
+    reads_.push_back({client, std::move(data)});
+    match();
+  } else {
+    Buffer in = told(device_, Bytes(bytes, size));
+    finish({client, std::move(data)}, 0);
+    if (!in.empty()) {
+      packets_.push_back(std::move(in));
+      match();
+    }
+  }
+  return granted(client);
+}
+
+gboolean MockDevice::reap(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
+  auto& queue = done_[client];
+  if (queue.empty()) {
+    return refused(client, gone_ ? ENODEV : EAGAIN);
+  }
+  const Done done = std::move(queue.front());
+  queue.pop_front();
+  auto* urb = reinterpret_cast<usbdevfs_urb*>(done.data->data);
+  auto* buffer = static_cast<std::uint8_t*>(urb->buffer);
+  const bool control = urb->type == USBDEVFS_URB_TYPE_CONTROL;
+  const bool in = ((control ? buffer[0] : urb->endpoint) & kUsbIn) != 0;
+  const std::size_t head = control ? kSetupSize : 0;
+  const std::size_t room = static_cast<std::size_t>(urb->buffer_length) - head;
+  const std::size_t size = in ? std::min(room, done.bytes.size()) : room;
+  urb->status = done.status;
+  if (in && !control && done.bytes.size() > room) {
+    urb->status = -EOVERFLOW;
+  }
+  if (in) {
+    std::copy_n(done.bytes.begin(), size, buffer + head);
+  }
+  urb->actual_length = done.status == 0 ? static_cast<int>(size) : 0;
+  const Data pointer(umockdev_ioctl_data_resolve(argument, 0, sizeof(gpointer), nullptr));
+  umockdev_ioctl_data_set_ptr(pointer.get(), 0, done.data.get());
+  return granted(client);
+}
+
+gboolean MockDevice::discard(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
+  gulong address = 0;  // the argument is the client's own pointer to the transfer
+  std::memcpy(&address, argument->data, sizeof address);
+  const auto found = std::ranges::find_if(reads_, [&](const Urb& urb) {
+    return urb.client == client && urb.data->client_addr == address;
+  });
+  if (found == reads_.end()) {
+    return refused(client, EINVAL);
+  }
+  finish(std::move(*found), -ENOENT);
+  reads_.erase(found);
+  return granted(client);
+}
+
+MockDevice& MockUsb::plug(EmulatedDevice device, std::string driver) {
+  const int number = 2 + static_cast<int>(devices_.size());
+  devices_.push_back(
+      std::make_unique<MockDevice>(bed_, number, std::move(device), std::move(driver)));
+  devices_.back()->plug();
+  return *devices_.back();
+}
+
+}  // namespace torsion::test

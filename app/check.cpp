@@ -106,8 +106,8 @@ void print_tool(const ToolDescription& tool, std::uint32_t samples) {
              tool.node, parts_text(tool.parts), tool.mass.mass, tool.device, tool.script.end_time,
              samples);
   if (tool.device != "animation") {
-    fmt::print("  this version does not read the device \"{}\": only an animation moves the tool\n",
-               tool.device);
+    fmt::print("  \"{}\" holds it in a session ({}); elsewhere only an animation moves it\n",
+               tool.device, tool.device == "usb" ? "simulate --realtime" : "view");
   }
 }
 

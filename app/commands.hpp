@@ -24,6 +24,7 @@ void add_render(CLI::App& app, Command& command);
 void add_view(CLI::App& app, Command& command);
 void add_export(CLI::App& app, Command& command);
 void add_check(CLI::App& app, Command& command);
+void add_devices(CLI::App& app, Command& command);
 
 /// The scene's path and what may be chosen over what it says.
 struct SceneOptions {

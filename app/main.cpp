@@ -20,6 +20,7 @@ int run(int argc, char** argv) {
 #endif
   torsion::add_export(app, command);
   torsion::add_check(app, command);
+  torsion::add_devices(app, command);
   torsion::add_report(app, command);
   try {
     app.parse(argc, argv);

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include "app/commands.hpp"
+#include "app/device_options.hpp"
 #include "app/simulate_loop.hpp"
 #include "app/summary.hpp"
+#include "device/scripted_motion.hpp"
 
 namespace torsion {
 namespace {
@@ -16,6 +18,7 @@ struct SimulateOptions {
   std::string record;
   std::string replay;
   double seconds = -1.0;  // s; negative: to the end of the longest animation
+  DeviceChoice device;
   bool realtime = false;
   bool json = false;
   bool quiet = false;
@@ -54,6 +57,26 @@ std::uint64_t steps_of_run(const SimulateOptions& options, const Session& sessio
   return options.seconds < 0.0 ? recorded : std::min(recorded, steps_in(session, seconds));
 }
 
+/// The devices that the options or the scene ask for; null where neither does.
+Result<std::unique_ptr<DeviceLink>> open_device(const SimulateOptions& options,
+                                                const Session& session, RunDevice& device) {
+  DeviceChoice choice = options.device;
+  const auto& tools = session.scene.tools;
+  const auto held = std::ranges::find(tools, "usb", &ToolDescription::device);
+  device.tool = held != tools.end() ? static_cast<std::uint32_t>(held - tools.begin()) : 0U;
+  if (choice.what.empty() && held != tools.end()) {
+    choice.what = "usb";
+  }
+  if (!options.realtime || choice.what.empty()) {
+    return std::unique_ptr<DeviceLink>();
+  }
+  // Where the tool is when a hand takes it.
+  const Pose home = scripted_pose(tools[device.tool].script, 0.0);
+  auto opened = DeviceLink::open(choice, home);
+  device.link = opened ? opened.value().get() : nullptr;
+  return opened;
+}
+
 /// Runs, and finishes what is written.
 Result<RunStatistics> run(const SimulateOptions& options, Session& session, std::uint64_t steps,
                           const RunFiles& files, RunFacts& facts) {
@@ -62,8 +85,18 @@ Result<RunStatistics> run(const SimulateOptions& options, Session& session, std:
     Progress progress("simulating", options.quiet);
     if (options.realtime) {
       RealtimeMode mode;
-      statistics = run_realtime(session, steps, files, progress, mode);
+      RunDevice device;
+      const Interrupt interrupt;  // before any thread
+      const auto link = open_device(options, session, device);
+      if (!link) {
+        return link.error();
+      }
+      device.interrupt = device.link != nullptr ? &interrupt : nullptr;
+      statistics = run_realtime(session, steps, files, device, progress, mode);
       facts.mode = describe(mode);
+      if (device.link != nullptr) {
+        facts.device = device.link->view();
+      }
     } else {
       const Result<RunStatistics> ran = run_fast(session, steps, files, progress);
       if (!ran) {
@@ -154,6 +187,11 @@ void add_simulate(CLI::App& app, Command& command) {
   CLI::Option* replay =
       subcommand->add_option("--replay", options->replay,
                              "Recording to run again: the same bits, its models and its rate");
+  subcommand
+      ->add_option("--device", options->device.what,
+                   "What holds the tool: usb, or usb:falcon+odrive and the like")
+      ->needs(realtime);
+  add_device_options(*subcommand, options->device);
   replay->excludes(record)->excludes(realtime);
   for (const char* chosen : {"--contact-model", "--body-model", "--rate", "--cells", "--sweeps"}) {
     replay->excludes(chosen);

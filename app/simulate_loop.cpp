@@ -83,16 +83,25 @@ Result<RunStatistics> run_fast(Session& session, std::uint64_t steps, const RunF
 }
 
 RunStatistics run_realtime(Session& session, std::uint64_t steps, const RunFiles& files,
-                           Progress& progress, RealtimeMode& mode) {
+                           const RunDevice& device, Progress& progress, RealtimeMode& mode) {
   LiveLoop loop;
   loop.wants_rows = files.trace != nullptr;
   loop.wants_inputs = files.record != nullptr;
   reserve(loop, session, session.simulation);
   loop.steps_left = steps;
   std::vector<TraceRow> rows(session.scene.tools.size());
+  if (device.link != nullptr) {
+    loop.tools[device.tool].from = PoseFrom::kHandle;
+    loop.tools[device.tool].slot = &device.link->slot();
+  }
   std::thread physics(run_live, std::ref(loop));
   while (!loop.over.load(std::memory_order_acquire)) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    constexpr long kPause = 5;  // ms
+    if (device.interrupt == nullptr) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(kPause));
+    } else if (device.interrupt->within(kPause)) {
+      loop.stop.store(true, std::memory_order_release);
+    }
     drain(loop, files, rows);
     if (loop.frames.refresh()) {
       progress.show(static_cast<double>(loop.frames.front().statistics.steps) /

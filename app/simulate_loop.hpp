@@ -1,5 +1,7 @@
 #pragma once
 
+#include "app/live/device_link.hpp"
+#include "app/live/interrupt.hpp"
 #include "app/live/realtime_mode.hpp"
 #include "app/live/recording.hpp"
 #include "app/progress.hpp"
@@ -17,6 +19,13 @@ struct RunFiles {
   bool quiet = false;
 };
 
+/// Devices that hold a tool in a run on the clock; both null without.
+struct RunDevice {
+  DeviceLink* link = nullptr;
+  const Interrupt* interrupt = nullptr;  // ends the run early
+  std::uint32_t tool = 0;
+};
+
 /// Steps as fast as they go. Fails only where a replay switches to models that cannot be prepared.
 Result<RunStatistics> run_fast(Session& session, std::uint64_t steps, const RunFiles& files,
                                Progress& progress);
@@ -25,6 +34,6 @@ Result<RunStatistics> run_fast(Session& session, std::uint64_t steps, const RunF
 /// through rings to this thread, which writes them. No replay.
 /// @param mode  out: what the system granted that thread
 RunStatistics run_realtime(Session& session, std::uint64_t steps, const RunFiles& files,
-                           Progress& progress, RealtimeMode& mode);
+                           const RunDevice& device, Progress& progress, RealtimeMode& mode);
 
 }  // namespace torsion

@@ -23,6 +23,29 @@ nlohmann::ordered_json histogram_json(const TimeHistogram& histogram) {
   return rows;
 }
 
+std::string device_lines(const DeviceView& view) {
+  std::string text = fmt::format("device   {}\n", describe(view));
+  if (view.answer_us.count() > 0) {
+    text += fmt::format(
+        "         {} samples; lost {} times; from a sample to the force that is sent median "
+        "{:.0f} us, 99 % {:.0f} us; the physics' result in it {:.0f} us, {:.0f} us old\n",
+        view.sample.number, view.losses, view.answer_us.quantile(0.5),
+        view.answer_us.quantile(0.99), view.result_us.quantile(0.5), view.result_us.quantile(0.99));
+  }
+  return text;
+}
+
+nlohmann::ordered_json device_json(const DeviceView& view) {
+  return {{"state", describe(view)},
+          {"rate_Hz", view.sample.rate},
+          {"samples", view.sample.number},
+          {"losses", view.losses},
+          {"sample_to_force_us",
+           {{"median", view.answer_us.quantile(0.5)}, {"p99", view.answer_us.quantile(0.99)}}},
+          {"result_age_us",
+           {{"median", view.result_us.quantile(0.5)}, {"p99", view.result_us.quantile(0.99)}}}};
+}
+
 }  // namespace
 
 std::string summary_text(const Session& session, const RunStatistics& statistics,
@@ -53,6 +76,9 @@ std::string summary_text(const Session& session, const RunStatistics& statistics
         facts.mode, static_cast<double>(statistics.steps) / statistics.wall_time,
         statistics.missed_deadlines, statistics.steps, statistics.overruns,
         statistics.lateness.text(), statistics.step_times.text());
+  }
+  if (facts.device) {
+    text += device_lines(*facts.device);
   }
   text += fmt::format("world    hash {:016x}\n", hash(world));
   if (!facts.trace.empty()) {
@@ -109,6 +135,9 @@ std::string summary_json(const Session& session, const RunStatistics& statistics
                            {"largest", statistics.lateness.largest()},
                            {"histogram", histogram_json(statistics.lateness)}};
     json["step_us"]["histogram"] = histogram_json(statistics.step_times);
+  }
+  if (facts.device) {
+    json["device"] = device_json(*facts.device);
   }
   if (!facts.trace.empty()) {
     json["trace"] = facts.trace;

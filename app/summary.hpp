@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "app/live/device_link.hpp"
 #include "app/run_statistics.hpp"
 #include "app/session.hpp"
 
@@ -9,9 +11,10 @@ namespace torsion {
 
 /// What a run wrote, and how it ran.
 struct RunFacts {
-  std::string trace;      // where the trace is; empty: there is none
-  std::string recording;  // likewise
-  std::string mode;       // what the system granted a run on the clock; empty: it was not on it
+  std::string trace;                 // where the trace is; empty: there is none
+  std::string recording;             // likewise
+  std::optional<DeviceView> device;  // of what held the tool at the end
+  std::string mode;  // what the system granted a run on the clock; empty: it was not on it
 };
 
 /// What a run came to, for a person.

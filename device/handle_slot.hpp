@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "ecs/components.hpp"
+#include "ecs/device_sample.hpp"
 #include "ecs/triple_buffer.hpp"
 
 namespace torsion {
@@ -13,7 +14,8 @@ struct HandleSample {
   std::uint64_t number = 0;   // counts the samples, from 1; 0: nothing was said yet
   std::int64_t time_ns = 0;   // CLOCK_MONOTONIC, when it was measured; 0: not known
   std::uint32_t buttons = 0;  // bits
-  std::uint32_t padding = 0;
+  std::uint32_t epoch = 0;    // of a device: another one has another coupling; 0: a mouse
+  DeviceTraits traits;        // of a device
 };
 
 /// What the physics thread answers after each step.

@@ -7,6 +7,7 @@
 
 #include "app/live/rebuild.hpp"
 #include "device/scripted_motion.hpp"
+#include "systems/held_tool/coupling_choice.hpp"
 #include "systems/held_tool/tool_equilibrium.hpp"
 #include "systems/rotation_vector.hpp"
 
@@ -26,6 +27,11 @@ void take_sample(LiveTool& tool) {
   }
   const HandleSample& sample = tool.slot->sample.front();
   if (tool.sample == 0) {
+    tool.last_handle = sample.pose;
+  }
+  if (sample.epoch != tool.epoch) {
+    tool.epoch = sample.epoch;
+    tool.coupling = choose_coupling(sample.traits).coupling;
     tool.last_handle = sample.pose;
   }
   tool.handle = sample.pose;

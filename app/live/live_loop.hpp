@@ -36,6 +36,7 @@ struct LiveTool {
   Pose handle;                    // of the last sample
   Pose last_handle;               // at the step before
   std::uint64_t sample = 0;       // its number; 0: there was none
+  std::uint32_t epoch = 0;        // of the device that it is from
   std::uint32_t still_steps = 0;  // for which a held tool stays where it is
 };
 

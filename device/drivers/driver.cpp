@@ -63,7 +63,7 @@ bool let_go_through(WriteGate& gate, DriverCall& call, Bytes packet) {
 
 bool take_write(WriteGate& gate, DriverCall& call, const UsbEvent& event) {
   gate.under_way = false;
-  call.report.counts.failures += event.status == UsbStatus::kDone ? 0U : 1U;
+  call.report.counts.failures += event.status == UsbStatus::kCompleted ? 0U : 1U;
   return std::exchange(gate.let_go_after, false) && event.status != UsbStatus::kGone;
 }
 
@@ -79,7 +79,7 @@ ReadOutcome take_read(ReadQueue& queue, DriverCall& call, const UsbEvent& event)
     return ReadOutcome::kNothing;
   }
   if (event.job == UsbJob::kClearHalt) {
-    if (event.status != UsbStatus::kDone) {
+    if (event.status != UsbStatus::kCompleted) {
       return ReadOutcome::kBroken;
     }
     keep_reading(queue, call);
@@ -90,7 +90,7 @@ ReadOutcome take_read(ReadQueue& queue, DriverCall& call, const UsbEvent& event)
   }
   queue.under_way -= std::min(queue.under_way, 1U);
   switch (event.status) {
-    case UsbStatus::kDone:
+    case UsbStatus::kCompleted:
       queue.failures = 0;
       return ReadOutcome::kData;
     case UsbStatus::kStall:

@@ -13,6 +13,8 @@ namespace torsion {
 
 enum class DeviceKind : std::uint8_t { kSpaceMouse, kFalcon, kWoodenHaptics, kOdrive };
 
+inline constexpr std::uint32_t kDeviceKinds = 4;
+
 /// For a person, and as a word in options.
 std::string_view name_of(DeviceKind kind);
 std::string_view word_of(DeviceKind kind);

@@ -202,7 +202,7 @@ void take_bytes(FalconDriver& driver, DriverCall& call, Bytes bytes) {
 }
 
 void take_claim(FalconDriver& driver, DriverCall& call, const UsbEvent& event) {
-  if (event.status == UsbStatus::kDone) {
+  if (event.status == UsbStatus::kCompleted) {
     start_controls(driver, call, FalconPhase::kNormalSetUp);
     return;
   }
@@ -264,7 +264,7 @@ void take(FalconDriver& driver, DriverCall& call, const UsbEvent& event) {
     if (controls_of(driver.phase).empty()) {
       return;
     }
-    if (event.status != UsbStatus::kDone) {
+    if (event.status != UsbStatus::kCompleted) {
       again_later(driver, call, DeviceTrouble::kSilent);
       return;
     }
@@ -283,7 +283,7 @@ void take(FalconDriver& driver, DriverCall& call, const UsbEvent& event) {
       again_later(driver, call, DeviceTrouble::kSilent);
       break;
     case ReadOutcome::kNothing:
-      if (event.status != UsbStatus::kDone && driver.phase == FalconPhase::kLive) {
+      if (event.status != UsbStatus::kCompleted && driver.phase == FalconPhase::kLive) {
         let_go(driver, call);  // nothing is known of where it is: let go
       }
       break;

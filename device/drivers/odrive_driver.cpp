@@ -69,7 +69,7 @@ void take_feedback(OdriveDriver& driver, DriverCall& call, const OdriveFeedback&
 }
 
 void take_claim(OdriveDriver& driver, DriverCall& call, const UsbEvent& event) {
-  if (event.status != UsbStatus::kDone) {
+  if (event.status != UsbStatus::kCompleted) {
     set_state(call, DeviceState::kStarting,
               event.status == UsbStatus::kNoAccess ? DeviceTrouble::kNoAccess
                                                    : DeviceTrouble::kHeldElsewhere);
@@ -163,7 +163,7 @@ void take(OdriveDriver& driver, DriverCall& call, const UsbEvent& event) {
       again_later(driver, call, DeviceTrouble::kSilent);
       break;
     case ReadOutcome::kNothing:
-      if (event.status != UsbStatus::kDone && driver.phase == OdrivePhase::kLive) {
+      if (event.status != UsbStatus::kCompleted && driver.phase == OdrivePhase::kLive) {
         let_go(driver, call);  // nothing is known of where it is: let go
       }
       break;

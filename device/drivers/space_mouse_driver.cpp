@@ -75,7 +75,7 @@ void start_reading(SpaceMouseDriver& driver, DriverCall& call, const SpaceMouseL
 }
 
 void take_descriptor(SpaceMouseDriver& driver, DriverCall& call, const UsbEvent& event) {
-  const auto inputs = event.status == UsbStatus::kDone && !event.bytes.empty()
+  const auto inputs = event.status == UsbStatus::kCompleted && !event.bytes.empty()
                           ? parse_hid_descriptor(event.bytes)
                           : std::nullopt;
   if (const auto layout = inputs ? space_mouse_layout(*inputs) : std::nullopt) {
@@ -91,7 +91,7 @@ void take_descriptor(SpaceMouseDriver& driver, DriverCall& call, const UsbEvent&
 }
 
 void take_claim(SpaceMouseDriver& driver, DriverCall& call, const UsbEvent& event) {
-  if (event.status != UsbStatus::kDone) {
+  if (event.status != UsbStatus::kCompleted) {
     set_state(call, DeviceState::kStarting,
               event.status == UsbStatus::kNoAccess ? DeviceTrouble::kNoAccess
                                                    : DeviceTrouble::kHeldElsewhere);

@@ -108,7 +108,7 @@ void take(WoodenDriver& driver, DriverCall& call, const UsbEvent& event) {
     return;
   }
   if (event.job == UsbJob::kClaim) {
-    if (event.status != UsbStatus::kDone) {
+    if (event.status != UsbStatus::kCompleted) {
       set_state(call, DeviceState::kStarting,
                 event.status == UsbStatus::kNoAccess ? DeviceTrouble::kNoAccess
                                                      : DeviceTrouble::kHeldElsewhere);
@@ -136,7 +136,7 @@ void take(WoodenDriver& driver, DriverCall& call, const UsbEvent& event) {
       again_later(driver, call, DeviceTrouble::kSilent);
       break;
     case ReadOutcome::kNothing:
-      if (event.status != UsbStatus::kDone) {
+      if (event.status != UsbStatus::kCompleted) {
         let_go(driver, call);  // nothing is known of where it is
       }
       break;

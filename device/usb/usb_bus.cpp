@@ -43,7 +43,7 @@ struct UsbBus::State {
 
   void ask(UsbPort& port, KeeperTask task, const UsbRequest& request = {}) {
     port.jobs += 1;
-    keeper->ask({task, &port, request, UsbStatus::kDone});
+    keeper->ask({task, &port, request, UsbStatus::kCompleted});
   }
 
   /// The device is not used any more: the loop forgets it, its transfers end.
@@ -119,6 +119,7 @@ struct UsbBus::State {
     for (libusb_device* device : left) {
       for (UsbPort& port : ports) {
         if (port.state != UsbPortState::kFree && port.device == device) {
+          port.left = true;
           lose(port);
         }
       }
@@ -139,7 +140,8 @@ struct UsbBus::State {
   }
 
   void opened(UsbPort& port, UsbStatus status) {
-    if (status == UsbStatus::kCancelled || status == UsbStatus::kGone || stop) {
+    const bool useless = status == UsbStatus::kCancelled || status == UsbStatus::kGone;
+    if (useless || port.left || stop) {
       port.state = UsbPortState::kClosing;
       return;
     }
@@ -152,7 +154,7 @@ struct UsbBus::State {
     port.row = row;
     port.attached = true;
     const DeviceKind kind = kind_of(port.identity).value_or(DeviceKind::kSpaceMouse);
-    if (status != UsbStatus::kDone) {
+    if (status != UsbStatus::kCompleted) {
       port.state = UsbPortState::kRefused;
       port.retry_at = steady_now() + kReopen;
       torsion::refuse(loop, row, port.identity, kind,
@@ -173,6 +175,7 @@ struct UsbBus::State {
     port.device = nullptr;
     port.state = UsbPortState::kFree;
     port.cancelled = false;
+    port.left = false;
     port.refused.clear();
   }
 

@@ -44,10 +44,10 @@ struct UsbIdentity {
 enum class UsbJob : std::uint8_t { kRead, kWrite, kControl, kClaim, kRelease, kClearHalt };
 
 enum class UsbStatus : std::uint8_t {
-  kDone,
+  kCompleted,
   kStall,     // the endpoint is halted until it is cleared
   kOverflow,  // more than was asked for
-  kFailed,
+  kBroken,    // an error on the wire
   kTimedOut,
   kCancelled,
   kBusy,      // a claim: another program or driver has it
@@ -86,7 +86,7 @@ struct UsbEvent {
   std::uint8_t endpoint = 0;
   std::uint8_t interface = 0;
   UsbSetup setup;
-  UsbStatus status = UsbStatus::kDone;
+  UsbStatus status = UsbStatus::kCompleted;
   Bytes bytes;  // read, control in; only while the event is taken
 };
 

@@ -20,15 +20,15 @@ UsbStatus open(UsbPort& port, const std::function<bool(const UsbIdentity&)>& wan
   }
   port.identity = *identity;
   int error = 0;
-  for (int i = 0; i < kOpenTries; ++i) {
+  for (int i = 0; i < kOpenTries && !port.left; ++i) {
     error = libusb_open(port.device, &port.handle);
     if (error == 0) {
-      return UsbStatus::kDone;
+      return UsbStatus::kCompleted;
     }
     port.handle = nullptr;
     std::this_thread::sleep_for(kOpenPause);
   }
-  return status_of_error(error);
+  return port.left ? UsbStatus::kGone : status_of_error(error);
 }
 
 /// Takes the interface from the kernel's driver, which gets it back when it is released.
@@ -57,7 +57,7 @@ UsbStatus do_job(const KeeperJob& job, const std::function<bool(const UsbIdentit
         libusb_close(port.handle);
         port.handle = nullptr;
       }
-      return UsbStatus::kDone;
+      return UsbStatus::kCompleted;
     case KeeperTask::kClaim:
       return claim(port.handle, job.request.interface);
     case KeeperTask::kRelease:
@@ -65,7 +65,7 @@ UsbStatus do_job(const KeeperJob& job, const std::function<bool(const UsbIdentit
     case KeeperTask::kClearHalt:
       return status_of_error(libusb_clear_halt(port.handle, job.request.endpoint));
   }
-  return UsbStatus::kFailed;
+  return UsbStatus::kBroken;
 }
 
 }  // namespace

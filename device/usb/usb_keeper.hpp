@@ -19,8 +19,8 @@ enum class KeeperTask : std::uint8_t { kOpen, kClose, kClaim, kRelease, kClearHa
 struct KeeperJob {
   KeeperTask task = KeeperTask::kOpen;
   UsbPort* port = nullptr;
-  UsbRequest request;                   // of kClaim, kRelease, kClearHalt
-  UsbStatus status = UsbStatus::kDone;  // once it is done
+  UsbRequest request;                        // of kClaim, kRelease, kClearHalt
+  UsbStatus status = UsbStatus::kCompleted;  // once it is done
 };
 
 class UsbKeeper {

@@ -13,7 +13,7 @@ constexpr std::size_t kSetupSize = 8;
 UsbStatus status_of(libusb_transfer_status status) {
   switch (status) {
     case LIBUSB_TRANSFER_COMPLETED:
-      return UsbStatus::kDone;
+      return UsbStatus::kCompleted;
     case LIBUSB_TRANSFER_STALL:
       return UsbStatus::kStall;
     case LIBUSB_TRANSFER_OVERFLOW:
@@ -25,7 +25,7 @@ UsbStatus status_of(libusb_transfer_status status) {
     case LIBUSB_TRANSFER_NO_DEVICE:
       return UsbStatus::kGone;
     default:
-      return UsbStatus::kFailed;
+      return UsbStatus::kBroken;
   }
 }
 
@@ -73,7 +73,7 @@ UsbEvent end_of(const UsbRequest& request) {
 
 void refuse(UsbPort& port, const UsbRequest& request) {
   UsbEvent event = end_of(request);
-  event.status = UsbStatus::kFailed;
+  event.status = UsbStatus::kBroken;
   port.refused.push_back(event);
 }
 
@@ -134,7 +134,7 @@ UsbEvent event_of(const UsbTransfer& transfer) {
   event.status = status_of(transfer.usb->status);
   const bool control = event.job == UsbJob::kControl;
   const bool in = control ? (event.setup.type & kUsbIn) != 0 : event.job == UsbJob::kRead;
-  if (in && event.status == UsbStatus::kDone) {
+  if (in && event.status == UsbStatus::kCompleted) {
     event.bytes = Bytes(transfer.buffer)
                       .subspan(control ? kSetupSize : 0,
                                static_cast<std::size_t>(transfer.usb->actual_length));
@@ -145,7 +145,7 @@ UsbEvent event_of(const UsbTransfer& transfer) {
 UsbStatus status_of_error(int error) {
   switch (error) {
     case 0:
-      return UsbStatus::kDone;
+      return UsbStatus::kCompleted;
     case LIBUSB_ERROR_ACCESS:
       return UsbStatus::kNoAccess;
     case LIBUSB_ERROR_BUSY:
@@ -154,7 +154,7 @@ UsbStatus status_of_error(int error) {
     case LIBUSB_ERROR_NOT_FOUND:
       return UsbStatus::kGone;
     default:
-      return UsbStatus::kFailed;
+      return UsbStatus::kBroken;
   }
 }
 

@@ -3,6 +3,7 @@
 // One open device of libusb: transfers under way in a pool of its own.
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -45,6 +46,7 @@ struct UsbPort {
   UsbPortState state = UsbPortState::kFree;
   bool attached = false;  // the device loop knows it
   bool cancelled = false;
+  std::atomic<bool> left = false;          // the device has gone, perhaps while it is being opened
   libusb_device* device = nullptr;         // with a reference
   libusb_device_handle* handle = nullptr;  // written while nobody else looks at the port
   UsbIdentity identity;                    // likewise
@@ -56,7 +58,8 @@ struct UsbPort {
   std::array<UsbTransfer, 8> pool;
 };
 
-/// Makes the transfers of the pool. @param on_end  of libusb: its transfer's user_data is the UsbTransfer
+/// Makes the transfers of the pool. @param on_end  of libusb: its transfer's user_data is the
+/// UsbTransfer
 void prepare_port(UsbPort& port, void (*on_end)(libusb_transfer*));
 
 /// Before the device is let go of: libusb looks at it once more. @pre none is under way

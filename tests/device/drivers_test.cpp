@@ -248,7 +248,7 @@ INSTANTIATE_TEST_SUITE_P(
     All, WireFaultTest,
     testing::Values(WireFault{"stall", UsbStatus::kStall, {}},
                     WireFault{"overflow", UsbStatus::kOverflow, {}},
-                    WireFault{"failed", UsbStatus::kFailed, {}},
+                    WireFault{"failed", UsbStatus::kBroken, {}},
                     WireFault{"nothing", std::nullopt, {0x01, 0x60}},
                     WireFault{"short", std::nullopt, {0x01, 0x60, '<', 'A', 'B'}},
                     WireFault{"garbage", std::nullopt, {0xFF, 0x00, 0x13, 0x37, 0x0A, 0x41, '>'}}),
@@ -309,7 +309,7 @@ TEST(DriversTest, SaysWhoKeepsItFromTheDeviceAndTriesAgain) {
       EXPECT_EQ(client.last.state, DeviceState::kStarting);
       EXPECT_EQ(client.last.trouble, status == UsbStatus::kBusy ? DeviceTrouble::kHeldElsewhere
                                                                 : DeviceTrouble::kNoAccess);
-      bus.claims(row, UsbStatus::kDone);
+      bus.claims(row, UsbStatus::kCompleted);
       bus.run(1.0);
       EXPECT_EQ(client.last.state, DeviceState::kLive);
       EXPECT_EQ(client.last.trouble, DeviceTrouble::kNone);

@@ -110,7 +110,7 @@ void FakeBus::execute_one(std::size_t row, const UsbRequest& request) {
     case UsbJob::kControl: {
       const auto answer = controlled(plugged.device, request.setup,
                                      (request.setup.type & kUsbIn) != 0 ? Bytes{} : request.data());
-      due.event.status = answer ? UsbStatus::kDone : UsbStatus::kStall;
+      due.event.status = answer ? UsbStatus::kCompleted : UsbStatus::kStall;
       due.bytes = answer.value_or(Buffer{});
       schedule(row, kControl, due);
       return;
@@ -156,7 +156,7 @@ void FakeBus::happen(const Due& due) {
   }
   UsbEvent event = due.event;
   event.bytes = due.bytes;
-  if (event.job == UsbJob::kClaim && event.status == UsbStatus::kDone) {
+  if (event.job == UsbJob::kClaim && event.status == UsbStatus::kCompleted) {
     event.status = devices_[due.row].claim;
   }
   UsbRequests requests;

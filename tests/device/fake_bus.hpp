@@ -59,7 +59,7 @@ class FakeBus {
     std::vector<Buffer> waiting;  // packets that no read has fetched
     std::optional<UsbStatus> fault;
     bool silent = false;
-    UsbStatus claim = UsbStatus::kDone;
+    UsbStatus claim = UsbStatus::kCompleted;
     double let_go_at = 0.0;  // s: since when the motors hold nothing
     std::uint64_t writes = 0;
   };

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "app/live/device_link.hpp"
+
+namespace torsion {
+
+/// --falcon-firmware and --knob-torque.
+void add_device_options(CLI::App& subcommand, DeviceChoice& choice);
+
+}  // namespace torsion

@@ -1,0 +1,147 @@
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.hpp"
+#include "app/device_options.hpp"
+#include "device/device_text.hpp"
+#include "device/usb/usb_list.hpp"
+
+namespace torsion {
+namespace {
+
+struct DevicesOptions {
+  DeviceChoice choice;
+  bool json = false;
+};
+
+/// What stands between a device and its use, one line each.
+std::vector<std::string> problems_of(const ListedDevice& device, const DevicesOptions& options) {
+  std::vector<std::string> problems;
+  if (device.access == DeviceTrouble::kNoAccess) {
+    problems.push_back(
+        fmt::format("this user may not open it. The udev rule\n    {}\n  is in "
+                    "device/60-torsion.rules; to install it:\n    {}",
+                    udev_rule(device.identity), udev_advice()));
+  }
+  if (device.access == DeviceTrouble::kHeldElsewhere) {
+    problems.push_back(fmt::format("another program holds it: {}", device.holder));
+  }
+  if (device.access == DeviceTrouble::kSilent) {
+    problems.push_back("it cannot be opened; unplug it and plug it in again");
+  }
+  if (device.kind == DeviceKind::kFalcon) {
+    const auto path = options.choice.falcon_firmware.empty() ? usual_falcon_firmware()
+                                                             : options.choice.falcon_firmware;
+    if (!std::filesystem::exists(path)) {
+      problems.push_back(
+          fmt::format("after it was switched on it needs its maker's firmware, which may not be "
+                      "shipped: {} is not there; put it there or say --falcon-firmware FILE",
+                      path.string()));
+    }
+  }
+  return problems;
+}
+
+/// What a user should know, though nothing has to be done about it.
+std::vector<std::string> notes_of(const ListedDevice& device) {
+  std::vector<std::string> notes;
+  for (const std::string& driver : device.kernel_drivers) {
+    notes.push_back(fmt::format("the kernel's {} has it, and gets it back afterwards", driver));
+  }
+  switch (device.kind) {
+    case DeviceKind::kSpaceMouse:
+      notes.emplace_back("measures six axes; force and torque are not displayed");
+      break;
+    case DeviceKind::kFalcon:
+      notes.emplace_back(
+          "measures and displays translation; torque is not displayed, but by two or three "
+          "together, or with an ODrive knob");
+      break;
+    case DeviceKind::kWoodenHaptics:
+      notes.emplace_back("measures six axes, displays force; torque is not displayed");
+      break;
+    case DeviceKind::kOdrive:
+      notes.emplace_back("measures and displays torque about the twist axis");
+      break;
+  }
+  return notes;
+}
+
+void print(const ListedDevice& device, const DevicesOptions& options) {
+  const std::vector<std::string> problems = problems_of(device, options);
+  fmt::print("{} ({:04x}:{:04x}, bus {} address {}): {}\n", name_of(device.kind),
+             device.identity.vendor, device.identity.product, device.identity.bus,
+             device.identity.address,
+             device.access == DeviceTrouble::kNone ? "usable" : "NOT usable");
+  for (const std::string& problem : problems) {
+    fmt::print("  missing: {}\n", problem);
+  }
+  for (const std::string& note : notes_of(device)) {
+    fmt::print("  {}\n", note);
+  }
+}
+
+nlohmann::ordered_json to_json(const ListedDevice& device, const DevicesOptions& options) {
+  return {{"kind", word_of(device.kind)},
+          {"vendor", fmt::format("{:04x}", device.identity.vendor)},
+          {"product", fmt::format("{:04x}", device.identity.product)},
+          {"bus", device.identity.bus},
+          {"address", device.identity.address},
+          {"usable", device.access == DeviceTrouble::kNone},
+          {"kernel_drivers", device.kernel_drivers},
+          {"holder", device.holder},
+          {"missing", problems_of(device, options)},
+          {"notes", notes_of(device)}};
+}
+
+int devices(const DevicesOptions& options) {
+  const Result<std::vector<ListedDevice>> listed = list_usb_devices();
+  if (!listed) {
+    return fail(listed.error().text);
+  }
+  if (options.json) {
+    auto list = nlohmann::ordered_json::array();
+    for (const ListedDevice& device : listed.value()) {
+      list.push_back(to_json(device, options));
+    }
+    fmt::print("{}\n", nlohmann::ordered_json{{"devices", list}}.dump(2));
+    return kDone;
+  }
+  if (listed.value().empty()) {
+    fmt::print(
+        "no device is plugged in that Torsion knows: SpaceMouse, Novint Falcon, WoodenHaptics, "
+        "ODrive v3\na mouse does, too: torsion view SCENE\n");
+  }
+  for (const ListedDevice& device : listed.value()) {
+    print(device, options);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_device_options(CLI::App& subcommand, DeviceChoice& choice) {
+  subcommand.add_option("--falcon-firmware", choice.falcon_firmware,
+                        "The maker's file, where the usual place has none");
+  subcommand.add_option("--knob-torque", choice.largest_knob_torque, "Largest, N m, of an ODrive")
+      ->check(CLI::Range(0.0, 5.0))
+      ->capture_default_str();
+}
+
+void add_devices(CLI::App& app, Command& command) {
+  CLI::App* subcommand = app.add_subcommand(
+      "devices", "List what is plugged in and usable to hold a tool, and what is missing");
+  auto options = std::make_shared<DevicesOptions>();
+  subcommand->add_flag("--json", options->json, "Print as JSON");
+  subcommand->add_option("--falcon-firmware", options->choice.falcon_firmware,
+                         "The maker's file, where the usual place has none");
+  subcommand->callback([options, &command] {
+    command = [options] {
+      return devices(*options);
+    };
+  });
+}
+
+}  // namespace torsion

@@ -1,0 +1,177 @@
+#include "app/live/device_link.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "app/live/periodic_clock.hpp"
+#include "app/live/realtime_mode.hpp"
+#include "device/device_text.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr std::string_view kUsb = "usb";
+
+double seconds(Nanoseconds time) {
+  return 1e-9 * static_cast<double>(time);
+}
+
+/// Empty where no option names one and none is at the usual place: it may be loaded already.
+Result<std::vector<std::uint8_t>> load_firmware(const std::filesystem::path& chosen) {
+  const std::filesystem::path path = chosen.empty() ? usual_falcon_firmware() : chosen;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    if (chosen.empty()) {
+      return std::vector<std::uint8_t>{};
+    }
+    return Error{path.string() + ": cannot be read; --falcon-firmware wants the maker's file"};
+  }
+  std::vector<std::uint8_t> bytes((std::istreambuf_iterator<char>(file)),
+                                  std::istreambuf_iterator<char>());
+  if (bytes.size() < kSmallestFirmware || bytes.size() > kLargestFirmware) {
+    return Error{fmt::format("{}: {} bytes are no Falcon firmware, which has {} to {}",
+                             path.string(), bytes.size(), kSmallestFirmware, kLargestFirmware)};
+  }
+  return bytes;
+}
+
+}  // namespace
+
+Result<std::uint32_t> kinds_of(const std::string& what) {
+  if (what == kUsb) {
+    return ~std::uint32_t{0};
+  }
+  const Error wrong{fmt::format(
+      "--device {}: expected usb, or usb: and some of spacemouse, falcon, woodenhaptics, odrive "
+      "with + between",
+      what)};
+  if (what.rfind("usb:", 0) != 0) {
+    return wrong;
+  }
+  std::uint32_t kinds = 0;
+  std::string_view rest = std::string_view(what).substr(4);
+  while (!rest.empty()) {
+    const std::string_view word = rest.substr(0, rest.find('+'));
+    rest.remove_prefix(std::min(word.size() + 1, rest.size()));
+    const std::uint32_t before = kinds;
+    for (std::uint32_t kind = 0; kind < kDeviceKinds; ++kind) {
+      kinds |= word == word_of(static_cast<DeviceKind>(kind)) ? 1U << kind : 0U;
+    }
+    if (kinds == before) {
+      return wrong;
+    }
+  }
+  return kinds != 0 ? Result<std::uint32_t>(kinds) : wrong;
+}
+
+std::filesystem::path usual_falcon_firmware() {
+  const char* const data = std::getenv("XDG_DATA_HOME");  // NOLINT(concurrency-mt-unsafe): at start
+  const char* const home = std::getenv("HOME");           // NOLINT(concurrency-mt-unsafe): at start
+  const std::filesystem::path folder =
+      data != nullptr && *data != 0
+          ? std::filesystem::path(data)
+          : std::filesystem::path(home != nullptr ? home : "/") / ".local/share";
+  return folder / "torsion" / "falcon_firmware.bin";
+}
+
+DeviceLink::DeviceLink(const Pose& tool) {
+  side_.home = tool;
+}
+
+DeviceLink::~DeviceLink() = default;
+
+Result<std::unique_ptr<DeviceLink>> DeviceLink::open(const DeviceChoice& choice, const Pose& tool) {
+  const Result<std::uint32_t> kinds = kinds_of(choice.what);
+  if (!kinds) {
+    return kinds.error();
+  }
+  Result<std::vector<std::uint8_t>> firmware = load_firmware(choice.falcon_firmware);
+  if (!firmware) {
+    return firmware.error();
+  }
+  auto link = std::make_unique<DeviceLink>(tool);
+  link->firmware_ = std::move(firmware).value();
+  UsbBusOptions options;
+  options.loop.kinds = kinds.value();
+  options.loop.twist_axis = tool.rotation * glm::dvec3(0.0, 1.0, 0.0);
+  options.loop.drivers.falcon_firmware = link->firmware_;
+  options.loop.drivers.largest_knob_torque = choice.largest_knob_torque;
+  options.on_start = [] {
+    become_realtime();
+  };
+  auto bus = UsbBus::start(options, {link.get(), on_sample});
+  if (!bus) {
+    return bus.error();
+  }
+  link->bus_ = std::move(bus).value();
+  return link;
+}
+
+Wrench DeviceLink::on_sample(void* link, const DeviceSample& sample) {
+  return static_cast<DeviceLink*>(link)->take(sample);
+}
+
+Wrench DeviceLink::take(const DeviceSample& sample) {
+  slot_.answer.refresh();
+  const HandleAnswer& answer = slot_.answer.front();
+  PhysicsResult result;
+  result.any = answer.time_ns != 0;
+  result.tool = answer.tool;
+  result.time = seconds(answer.time_ns);
+  result.faulty = answer.faults != 0;
+  const double now = seconds(monotonic_now());
+  const HandleOutcome outcome = take_handle_sample(side_, sample, result, now);
+  if (outcome.holds) {
+    HandleSample& handle = slot_.sample.back();
+    handle.pose = outcome.handle;
+    handle.number = ++number_;
+    handle.time_ns = static_cast<Nanoseconds>(1e9 * sample.time);
+    handle.buttons = sample.buttons;
+    handle.epoch = sample.epoch;
+    handle.traits = sample.traits;
+    slot_.sample.publish();
+    now_.result_us.add(1e6 * (now - result.time));
+    now_.answer_us.add(1e6 * (seconds(monotonic_now()) - sample.time));
+  }
+  const bool was_live = now_.sample.state == DeviceState::kLive;
+  now_.losses += was_live && sample.state != DeviceState::kLive ? 1U : 0U;
+  now_.sample = sample;
+  now_.outcome = outcome;
+  now_.coupling = side_.coupling;
+  now_.guard = side_.guard.state;
+  views_.back() = now_;
+  views_.publish();
+  return outcome.wrench;
+}
+
+const DeviceView& DeviceLink::view() {
+  views_.refresh();
+  return views_.front();
+}
+
+std::string describe(const DeviceView& view) {
+  const DeviceSample& sample = view.sample;
+  const std::string trouble = trouble_text(sample.trouble);
+  if (sample.state == DeviceState::kAbsent) {
+    return "no device is plugged in";
+  }
+  if (sample.state != DeviceState::kLive) {
+    return "not ready: " + (trouble.empty() ? "it is being set up" : trouble);
+  }
+  std::string text = fmt::format(
+      "{:.0f} Hz; measures {}; displays {}; coupling {:.4g} N/m up to {:.3g} N, {:.4g} N m/rad up "
+      "to {:.3g} N m",
+      sample.rate, sensed_text(sample.sensed), actuated_text(sample.actuated),
+      view.coupling.stiffness, view.coupling.largest_force, view.coupling.turn_stiffness,
+      view.coupling.largest_torque);
+  if (!view.outcome.holds) {
+    text += fmt::format("; bring it to the tool: {:.0f} mm to go", 1e3 * view.outcome.distance);
+  }
+  return trouble.empty() ? text : text + "; another one: " + trouble;
+}
+
+}  // namespace torsion

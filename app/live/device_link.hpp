@@ -1,0 +1,78 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/run_statistics.hpp"
+#include "device/handle_slot.hpp"
+#include "device/usb/usb_bus.hpp"
+#include "ecs/result.hpp"
+#include "ecs/triple_buffer.hpp"
+#include "systems/held_tool/handle_side.hpp"
+
+namespace torsion {
+
+/// Which devices are to hold a tool, as the command line says it.
+struct DeviceChoice {
+  std::string what;                       // "usb", or "usb:falcon+odrive"; empty: none
+  std::filesystem::path falcon_firmware;  // empty: in the user's data folder, if there
+  double largest_knob_torque = 0.2;       // N m
+};
+
+/// What the device's thread shows of itself.
+struct DeviceView {
+  DeviceSample sample;
+  HandleOutcome outcome;
+  VirtualCoupling coupling;
+  GuardState guard = GuardState::kWaiting;
+  TimeHistogram answer_us;   // from a sample's arrival to the wrench that goes out with it
+  TimeHistogram result_us;   // how old the physics' result in that wrench was
+  std::uint64_t losses = 0;  // times that the device was live and then not
+};
+
+/// The devices of one tool: the USB threads, and what they say to the physics thread.
+class DeviceLink {
+ public:
+  /// @param tool  the tool's frame at the start, world: the centre of the device's workspace
+  static Result<std::unique_ptr<DeviceLink>> open(const DeviceChoice& choice, const Pose& tool);
+  ~DeviceLink();
+  DeviceLink(const DeviceLink&) = delete;
+  DeviceLink& operator=(const DeviceLink&) = delete;
+  DeviceLink(DeviceLink&&) = delete;
+  DeviceLink& operator=(DeviceLink&&) = delete;
+
+  /// For the physics thread.
+  [[nodiscard]] HandleSlot& slot() { return slot_; }
+  /// For one thread that shows it: the newest.
+  [[nodiscard]] const DeviceView& view();
+
+  /// One sample, in the device's thread: tells the physics, and answers with the wrench to display.
+  static Wrench on_sample(void* link, const DeviceSample& sample);
+
+  /// Without USB: a test feeds on_sample itself.
+  explicit DeviceLink(const Pose& tool);
+
+ private:
+  Wrench take(const DeviceSample& sample);
+
+  HandleSlot slot_;
+  HandleSide side_;
+  DeviceView now_;  // the device thread's
+  TripleBuffer<DeviceView> views_;
+  std::uint64_t number_ = 0;
+  std::vector<std::uint8_t> firmware_;
+  std::unique_ptr<UsbBus> bus_;  // last: it ends before what its thread uses
+};
+
+/// Bits of DeviceKind that a choice allows, or what is wrong with it.
+Result<std::uint32_t> kinds_of(const std::string& what);
+
+/// Where firmware is looked for that no option names.
+std::filesystem::path usual_falcon_firmware();
+
+/// One line for a person on what the device is and does, and what it lacks.
+std::string describe(const DeviceView& view);
+
+}  // namespace torsion

@@ -1,0 +1,62 @@
+#include "device/device_text.hpp"
+
+#include <fmt/format.h>
+
+namespace torsion {
+
+std::string trouble_text(DeviceTrouble trouble) {
+  switch (trouble) {
+    case DeviceTrouble::kNone:
+      return "";
+    case DeviceTrouble::kNoAccess:
+      return "this user may not open it; `torsion devices` has the udev rule that lets them";
+    case DeviceTrouble::kHeldElsewhere:
+      return "another program holds it; end that program (`torsion devices` names it)";
+    case DeviceTrouble::kNoFirmware:
+      return "it has no firmware; give the file of its maker with --falcon-firmware FILE";
+    case DeviceTrouble::kBadFirmware:
+      return "it did not take the firmware file; is it the right one? Unplug it and plug it in";
+    case DeviceTrouble::kNotHomed:
+      return "it does not know its zero yet; move it through its whole range (a WoodenHaptics: let "
+             "go of its calibration button)";
+    case DeviceTrouble::kSilent:
+      return "it does not answer; is its power on?";
+    case DeviceTrouble::kNotUnderstood:
+      return "it does not speak as such a device should";
+  }
+  return "";
+}
+
+std::string sensed_text(std::uint8_t sensed) {
+  const bool moves = (sensed & kTranslationAxes) != 0;
+  const char* const turns = (sensed & kRotationAxes) != 0 ? "turning"
+                            : (sensed & kTwistAxis) != 0  ? "twist"
+                                                          : "";
+  return fmt::format("{}{}{}", moves ? "translation" : "", moves && *turns != 0 ? " and " : "",
+                     turns);
+}
+
+std::string actuated_text(std::uint8_t actuated) {
+  const bool force = (actuated & kTranslationAxes) != 0;
+  const char* const torque = (actuated & kRotationAxes) != 0 ? "torque"
+                             : (actuated & kTwistAxis) != 0  ? "torque about the twist axis"
+                                                             : "";
+  if (!force && *torque == 0) {
+    return "nothing: force and torque are not displayed";
+  }
+  return fmt::format("{}{}{}{}", force ? "force" : "", force && *torque != 0 ? " and " : "", torque,
+                     *torque == 0 ? "; torque is not displayed" : "");
+}
+
+std::string udev_rule(const UsbIdentity& identity) {
+  return fmt::format(
+      R"(SUBSYSTEM=="usb", ATTR{{idVendor}}=="{:04x}", ATTR{{idProduct}}=="{:04x}", TAG+="uaccess")",
+      identity.vendor, identity.product);
+}
+
+std::string_view udev_advice() {
+  return "sudo install -m 644 device/60-torsion.rules /etc/udev/rules.d/ && sudo udevadm control "
+         "--reload && sudo udevadm trigger --subsystem-match=usb --action=add";
+}
+
+}  // namespace torsion

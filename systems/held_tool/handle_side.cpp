@@ -1,0 +1,77 @@
+#include "systems/held_tool/handle_side.hpp"
+
+#include <algorithm>
+
+#include <glm/geometric.hpp>
+
+#include "systems/held_tool/coupling_choice.hpp"
+#include "systems/rotation_vector.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kNear = 0.01;            // m: a hand finds that without a guide
+constexpr double kRiseTime = 0.01;        // s: from nothing to the largest force, at the fastest
+constexpr double kUsualPeriod = 1e-3;     // s
+constexpr double kLongestPeriod = 20e-3;  // s: a gap, not a period
+
+void begin_epoch(HandleSide& side, const DeviceSample& sample, const Pose& tool) {
+  side.epoch = sample.epoch;
+  side.coupling = choose_coupling(sample.traits).coupling;
+  side.passivity = choose_passivity(sample.traits);
+  side.books = {};
+  side.guard = {};
+  side.limits.largest_force = side.coupling.largest_force;
+  side.limits.largest_torque = side.coupling.largest_torque;
+  side.limits.largest_force_rate = side.coupling.largest_force / kRiseTime;
+  side.limits.largest_torque_rate = side.coupling.largest_torque / kRiseTime;
+  side.limits.near = kNear;
+  side.map.origin = sample.steers_rate ? tool.position - sample.pose.position : side.home.position;
+}
+
+}  // namespace
+
+Pose handle_pose(const HandleMap& map, const Pose& device) {
+  return {map.origin + device.position,
+          glm::normalize(device.rotation * glm::conjugate(map.turned) * map.rotation)};
+}
+
+HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
+                                 const PhysicsResult& result, double now) {
+  HandleOutcome outcome;
+  const Pose tool = result.any ? result.tool : side.home;
+  const bool live = sample.state == DeviceState::kLive;
+  const bool begins = live && sample.epoch != side.epoch;
+  if (begins) {
+    begin_epoch(side, sample, tool);
+  }
+  if (side.guard.state == GuardState::kWaiting && live) {
+    // Until it takes hold the handle is turned as the tool is, however it is held.
+    side.map.turned = sample.pose.rotation;
+    side.map.rotation = tool.rotation;
+    if (sample.steers_rate) {
+      side.map.origin = tool.position - sample.pose.position;
+    }
+    side.books = {};
+    side.last = handle_pose(side.map, sample.pose);
+    side.last_time = now - kUsualPeriod;
+  }
+  outcome.handle = live ? handle_pose(side.map, sample.pose) : side.last;
+  const double period = std::clamp(now - side.last_time, 1e-5, kLongestPeriod);
+  const Wrench pull = coupling_wrench(side.coupling, {outcome.handle}, {tool});
+  GuardInput input;
+  input.wanted = keep_passive(side.books, side.passivity, {-pull.force, -pull.torque},
+                              outcome.handle.position - side.last.position,
+                              turn_between(side.last.rotation, outcome.handle.rotation), period);
+  input.result_age = result.any ? now - result.time : 1.0;
+  input.faulty = !live || result.faulty;
+  outcome.distance = glm::length(outcome.handle.position - tool.position);
+  input.distance = outcome.distance;
+  outcome.wrench = guard_output(side.guard, side.limits, input, period);
+  outcome.holds = live && side.guard.state != GuardState::kWaiting;
+  side.last = outcome.handle;
+  side.last_time = now;
+  return outcome;
+}
+
+}  // namespace torsion

@@ -27,7 +27,7 @@ class ValidationTest : public ::testing::Test {
   }
 
   ValidationLog log_;
-  Gpu gpu_ = must(open_gpu({&log_, false, ""}));
+  Gpu gpu_ = must(open_gpu({&log_, false, "", {}}));
 };
 
 class ThreeBuffers {

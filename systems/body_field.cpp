@@ -153,8 +153,9 @@ double ring_turn(const BodyField& field, const BodyTurn& turn, double radius) {
 
 /// The material under a contact has turned as the step says, from which the tool was seen; the
 /// interpolation is off by some percent of it, and knows nothing of what is finer than the anchors.
-/// What the displacements left to interpolate go round counts: an anchor's angle is its material's,
-/// which is more than it has gone round the axis where turns grow outwards.
+/// What the displacements left to interpolate go round there is in it, and is taken out of them: an
+/// anchor's angle is its material's, more than it has gone round the axis where turns grow
+/// outwards.
 void meet_supports(const Snapshot& snapshot, std::span<const glm::dvec3> centers,
                    BodyField& field) {
   for (Slot& slot : field.slots) {
@@ -174,11 +175,10 @@ void meet_supports(const Snapshot& snapshot, std::span<const glm::dvec3> centers
     turn.growth = turn.share * turns.support_growth;
     turn.radius = slot.twist.discs.radius;
     if (turn.share > 0.0) {
-      const double inner = ring_turn(field, turn, 0.5 * turn.radius);
-      const double growth =
-          (ring_turn(field, turn, turn.radius) - inner) / (0.75 * turn.radius * turn.radius);
-      turn.growth -= turn.share * growth;
-      turn.under_contact -= turn.share * (inner - 0.25 * turn.radius * turn.radius * growth);
+      const double inner = turn.share * ring_turn(field, turn, 0.5 * turn.radius);
+      const double outer = turn.share * ring_turn(field, turn, turn.radius);
+      turn.left_growth = (outer - inner) / (0.75 * turn.radius * turn.radius);
+      turn.left = inner - 0.25 * turn.radius * turn.radius * turn.left_growth;
     }
   }
 }
@@ -259,12 +259,13 @@ double freedom(const BodyField& field, const glm::dvec3& point) {
   return share;
 }
 
-double angle_at(const BodyTurn& turn, const glm::dvec3& point, double interpolated) {
+ContactShare share_of_contact(const BodyTurn& turn, const glm::dvec3& point) {
   constexpr double kReach = 1.3;  // of the polynomial that grows, in radii (footing.cpp)
   const double distance = glm::distance(point, turn.point);
-  const double share = 1.0 - smooth_step(distance / turn.radius - 1.0);
   const double grown = std::min(distance, kReach * turn.radius);
-  return interpolated + share * (turn.under_contact + turn.growth * grown * grown - interpolated);
+  return {1.0 - smooth_step(distance / turn.radius - 1.0),
+          turn.under_contact + turn.growth * grown * grown,
+          turn.left + turn.left_growth * grown * grown};
 }
 
 glm::dvec3 middle_at(const BodyField& field, const glm::dvec3& point) {

@@ -27,10 +27,12 @@ struct BodyTurn {
   ScalarWeights angle;         // rad
   double under_contact = 0.0;  // rad: at `point`, where the step says it
   double growth = 0.0;         // rad/m^2: times the distance from there squared, what it is more
-  double radius = 0.0;         // m: of the contact
-  double lowest = 0.0;         // m: along the axis from `point` to the first of `middle`
-  double spacing = 1.0;        // m
-  double weight = 0.0;         // of this axis among the body's; they add to 1
+  double left = 0.0;           // likewise what the interpolated displacements go round besides
+  double left_growth = 0.0;
+  double radius = 0.0;   // m: of the contact
+  double lowest = 0.0;   // m: along the axis from `point` to the first of `middle`
+  double spacing = 1.0;  // m
+  double weight = 0.0;   // of this axis among the body's; they add to 1
   std::array<glm::dvec3, kMiddles> middle{};  // m, body: displacement of points on the axis
 };
 
@@ -71,9 +73,13 @@ BodyField body_field(const World& world, const Snapshot& snapshot, const FrameWo
 /// How freely a point moves: 0 on the fixed region, 1 a little away from it.
 double freedom(const BodyField& field, const glm::dvec3& point);
 
-/// Angle by which the body turns a point: within the contact what the step says, from two radii on
-/// what is interpolated between anchors.
-double angle_at(const BodyTurn& turn, const glm::dvec3& point, double interpolated);
+/// How a turn's contact has a point.
+struct ContactShare {
+  double share = 0.0;  // 1 within the contact, 0 from two radii on: there anchors alone have it
+  double angle = 0.0;  // rad: by which the body turns it
+  double left = 0.0;   // rad: that the interpolated displacements go round, which is in it
+};
+ContactShare share_of_contact(const BodyTurn& turn, const glm::dvec3& point);
 
 /// Displacement of the axes about which the body turns, at the height of a point [m, body].
 glm::dvec3 middle_at(const BodyField& field, const glm::dvec3& point);

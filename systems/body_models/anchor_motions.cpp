@@ -12,6 +12,7 @@
 #include "systems/body_models/footing.hpp"
 #include "systems/body_models/support_field.hpp"
 #include "systems/frames.hpp"
+#include "systems/patch_grid.hpp"
 #include "systems/scratch.hpp"
 #include "systems/widest.hpp"
 
@@ -71,13 +72,14 @@ double mean_turn(const World& world, std::uint32_t region, double radius) {
   return sum / (kPlaces * radius);
 }
 
-/// Of a polynomial of the fourth degree the mean turn of a ring is c + g r^2: two rings tell both.
+/// As the region's contact sees it: mdr knows the rigid part only. Of a polynomial of the fourth
+/// degree the mean turn of a ring is c + g r^2: two rings tell both.
 void find_support_turn(const World& world, std::uint32_t region, AnchorTurns& turns) {
   const RegionSupport& support = world.regions.at<RegionSupport>(region);
   turns.support = glm::dot(support.rotation - support.rotation_step,
                            world.regions.at<RegionFrame>(region).normal);
   const double radius = world.regions.at<RegionGeometry>(region).radius;
-  if (radius > 0.0) {
+  if (radius > 0.0 && has_patch(world, world.regions.at<RegionIdentity>(region))) {
     const double outer = mean_turn(world, region, radius);
     const double inner = mean_turn(world, region, 0.5 * radius);
     turns.support_growth = (outer - inner) / (0.75 * radius * radius);

@@ -17,9 +17,13 @@
 namespace torsion {
 namespace {
 
-// Largest errors of the torque over its largest value (docs/models.md, "Which model").
-constexpr double kMdrRoundError = 0.003;      // one round contact that slides or turns
-constexpr double kMdrCombinedError = 0.05;    // one round contact that does both at once
+// Largest errors of the torque over its largest value as `torsion report` measures them
+// (docs/models.md, "Which model"; tests/app/report_test.cpp holds the report to them).
+constexpr double kMdrRoundError = 0.003;      // a round contact that slides or turns
+constexpr double kMdrLongError = 0.025;       // a long one
+constexpr double kMdrCombinedError = 0.05;    // one that does both at once
+constexpr double kMdrCoupling = 0.095;        // times 1 - 2 nu: pressure moves the surface sideways
+constexpr double kMdrWideError = 0.095;       // times contact radius over body depth: shape unknown
 constexpr double kFiniteBodyError = 1.1;      // of the force, times contact radius over body depth
 constexpr double kSlidesWhileTurning = 0.05;  // of the radius, between two expected poses
 constexpr double kTurnsWhileSliding = 1e-3;   // rad between two expected poses: less is no turn
@@ -30,13 +34,27 @@ struct Touch {
   double depth = 0.0;              // m
   glm::dvec3 normal{0.0};          // body, at the deepest
   glm::dvec3 center{0.0};          // m, body: mean of the points
+  bool smooth = true;              // as in ExpectedContact
   bool round = true;
 };
 
-bool is_round(const World& world, Range parts) {
-  return std::ranges::all_of(world.parts.rows<ShapePart>(parts), [](const ShapePart& part) {
-    return part.kind == ShapeKind::kSphere || part.kind == ShapeKind::kEllipsoid;
-  });
+/// The kind of that part of a tool on whose surface a point lies.
+ShapeKind kind_at(const World& world, Range parts, const glm::dvec3& point) {
+  ShapeKind kind = ShapeKind::kMesh;
+  double nearest = 1e300;
+  for (std::uint32_t row = parts.first; row < parts.first + parts.count; ++row) {
+    const double distance = std::abs(signed_distance(world, {row, 1}, point).value);
+    if (distance < nearest) {
+      nearest = distance;
+      kind = world.parts.at<ShapePart>(row).kind;
+    }
+  }
+  return kind;
+}
+
+bool makes_long_contacts(ShapeKind kind) {
+  return kind == ShapeKind::kEllipsoid || kind == ShapeKind::kCylinder ||
+         kind == ShapeKind::kCapsule;
 }
 
 void touch_with_tool(const World& world, std::uint32_t body, std::uint32_t tool, const Pose& pose,
@@ -44,7 +62,6 @@ void touch_with_tool(const World& world, std::uint32_t body, std::uint32_t tool,
   const Pose& body_pose = world.bodies.at<Pose>(body);
   const Range parts = world.bodies.at<OwnedRows>(body).parts;
   const OwnedRows& owned = world.tools.at<OwnedRows>(tool);
-  const std::size_t before = touch.points.size();
   for (const SurfaceSample& sample : world.samples.rows<SurfaceSample>(owned.samples)) {
     const glm::dvec3 point = to_inner(body_pose, to_outer(pose, sample.position));
     const Distance distance = signed_distance(world, parts, point);
@@ -54,9 +71,12 @@ void touch_with_tool(const World& world, std::uint32_t body, std::uint32_t tool,
         touch.depth = -distance.value;
         touch.normal = distance.gradient;
       }
+      const ShapeKind kind = kind_at(world, owned.parts, sample.position);
+      touch.smooth = touch.smooth && (kind == ShapeKind::kSphere || kind == ShapeKind::kEllipsoid ||
+                                      kind == ShapeKind::kCapsule);
+      touch.round = touch.round && kind == ShapeKind::kSphere;
     }
   }
-  touch.round = touch.round && (touch.points.size() == before || is_round(world, owned.parts));
 }
 
 Touch touch_with_tools(const World& world, std::uint32_t body, std::span<const Pose> poses) {
@@ -126,8 +146,8 @@ std::string percent(double share) {
 }
 
 /// Cheapest contact model within the tolerance.
-std::pair<ContactModel, std::string> auto_contact(const ExpectedContact& contact,
-                                                  double tolerance) {
+std::pair<ContactModel, std::string> auto_contact(const ExpectedContact& contact, double tolerance,
+                                                  double poisson_ratio) {
   const std::string within = ", tolerance " + percent(tolerance);
   if (!contact.known) {
     return {ContactModel::kPatch, "auto: moved by hand, so contacts of any shape" + within};
@@ -135,19 +155,18 @@ std::pair<ContactModel, std::string> auto_contact(const ExpectedContact& contact
   if (!contact.any) {
     return {ContactModel::kMdr, "auto: the expected motion touches it nowhere; the cheapest"};
   }
-  if (!contact.single) {
-    return {ContactModel::kPatch, "auto: several regions" + within};
+  if (!contact.smooth) {
+    return {ContactModel::kPatch, "auto: a contact with edges or of a mesh" + within};
   }
-  if (!contact.round) {
-    return {ContactModel::kPatch, "auto: a contact that is not round" + within};
-  }
-  const double error = contact.slides ? kMdrCombinedError : kMdrRoundError;
-  const std::string kind = contact.slides ? "one round contact that slides while it turns: error "
-                                          : "one round contact: error ";
-  if (error <= tolerance) {
-    return {ContactModel::kMdr, "auto: " + kind + percent(error) + within};
-  }
-  return {ContactModel::kPatch, "auto: " + kind + "of mdr " + percent(error) + within};
+  const double error = mdr_error(contact, poisson_ratio);
+  const std::string kind =
+      std::string(contact.single ? "one " : "several ") +
+      (contact.round ? "round contact" : "smooth contact") + (contact.single ? "" : "s") +
+      (contact.slides
+           ? (contact.single ? " that slides while it turns" : " that slide while they turn")
+           : "");
+  const ContactModel model = error <= tolerance ? ContactModel::kMdr : ContactModel::kPatch;
+  return {model, "auto: " + kind + ", error of mdr " + percent(error) + within};
 }
 
 std::pair<BodyModel, std::string> auto_body(const ExpectedContact& contact, double tolerance) {
@@ -169,6 +188,9 @@ ExpectedContact expect_contact(const World& world, std::uint32_t body,
   contact.known = !poses.empty();
   contact.body_depth = 1e300;
   const double threshold = world.bodies.at<BodyModels>(body).region_threshold;
+  const bool body_is_long =
+      std::ranges::any_of(world.parts.rows<ShapePart>(world.bodies.at<OwnedRows>(body).parts),
+                          [](const ShapePart& part) { return makes_long_contacts(part.kind); });
   Touch last;
   for (std::size_t time = 0; time < poses.size(); ++time) {
     Touch touch = touch_with_tools(world, body, poses[time]);
@@ -176,7 +198,8 @@ ExpectedContact expect_contact(const World& world, std::uint32_t body,
       const auto [radius, regions] = extent_of_groups(touch.points, threshold);
       contact.any = true;
       contact.single = contact.single && regions == 1;
-      contact.round = contact.round && touch.round;
+      contact.smooth = contact.smooth && touch.smooth;
+      contact.round = contact.round && touch.round && !body_is_long;
       contact.depth = std::max(contact.depth, touch.depth);
       contact.radius = std::max(contact.radius, radius);
       contact.body_depth =
@@ -190,8 +213,16 @@ ExpectedContact expect_contact(const World& world, std::uint32_t body,
   return contact;
 }
 
+double mdr_error(const ExpectedContact& contact, double poisson_ratio) {
+  const double kind = contact.slides  ? kMdrCombinedError
+                      : contact.round ? kMdrRoundError
+                                      : kMdrLongError;
+  return std::max({kind, kMdrCoupling * (1.0 - 2.0 * poisson_ratio),
+                   kMdrWideError * contact.radius / std::max(contact.body_depth, 1e-300)});
+}
+
 ModelChoice choose_models(const BodyModels& scene, const PrepareOptions& options,
-                          const ExpectedContact& contact) {
+                          const ExpectedContact& contact, double poisson_ratio) {
   ModelChoice choice{scene, "the scene says so", "the scene says so", false};
   if (options.contact_model != ContactModel::kAuto) {
     choice.models.contact = options.contact_model;
@@ -202,7 +233,8 @@ ModelChoice choose_models(const BodyModels& scene, const PrepareOptions& options
     choice.body_why = "the command line says so";
   }
   if (choice.models.contact == ContactModel::kAuto) {
-    std::tie(choice.models.contact, choice.contact_why) = auto_contact(contact, scene.tolerance);
+    std::tie(choice.models.contact, choice.contact_why) =
+        auto_contact(contact, scene.tolerance, poisson_ratio);
   }
   choice.body_is_auto = choice.models.body == BodyModel::kAuto;
   if (choice.body_is_auto) {

@@ -13,7 +13,8 @@ struct ExpectedContact {
   bool known = false;       // false: the tools are moved by hand, so everything is possible
   bool any = false;         // a tool touches the body at all
   bool single = true;       // one region at a time
-  bool round = true;        // touched by a sphere or an ellipsoid only
+  bool smooth = true;       // touched by exact shapes without edges only: mdr knows their curvature
+  bool round = true;        // by spheres only, and the body is no ellipsoid, cylinder or capsule
   bool slides = false;      // while it turns about the normal
   double depth = 0.0;       // m, largest
   double radius = 0.0;      // m: largest of the overlap
@@ -26,10 +27,14 @@ struct ExpectedContact {
 ExpectedContact expect_contact(const World& world, std::uint32_t body,
                                std::span<const std::vector<Pose>> poses);
 
+/// What contact model mdr misses of the torque, over its largest, on such a contact of a body with
+/// body model compliance, as measured. @pre known, any and smooth
+double mdr_error(const ExpectedContact& contact, double poisson_ratio);
+
 /// What runs for a body: what `options` insist on, else what the scene says, else the cheapest
 /// models whose known errors (docs/models.md) are within the body's tolerance.
 ModelChoice choose_models(const BodyModels& scene, const PrepareOptions& options,
-                          const ExpectedContact& contact);
+                          const ExpectedContact& contact, double poisson_ratio);
 
 /// Cells along a side of a region's grid for models of this tolerance where the user leaves it
 /// open: as few as keep the error of `patch` within it, and 16 for `paper`.

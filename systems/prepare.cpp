@@ -202,7 +202,8 @@ std::vector<ModelChoice> choose_all(const World& world, const PrepareOptions& op
   std::vector<ModelChoice> choices;
   for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
     choices.push_back(choose_models(world.bodies.at<BodyModels>(row), options,
-                                    expect_contact(world, row, options.expected_poses)));
+                                    expect_contact(world, row, options.expected_poses),
+                                    world.bodies.at<Elasticity>(row).poisson_ratio));
   }
   return choices;
 }

@@ -80,6 +80,14 @@ constexpr Bounds kBounds[] = {
     {"ball_on_cube_nu49 mdr none 256", 0.0014, 0.0065, 0.0105},
     {"ball_on_cube_nu49 patch none 144", 0.01, 0.018, 0.025},
     {"mallet_on_ellipsoid mdr none 256", 0.022, 0.045, -1.0},
+    // What auto takes mdr to miss of the torque (mdr_error): of these the overlap's radius over the
+    // body's height is 0.06, 0.06, 0.7 and 0.62; the last two are long and slide while they turn.
+    {"ball_on_cube_nu30 mdr compliance 256", 0.03, 0.038, 0.02},
+    {"ball_on_cube_nu49 mdr compliance 256", 0.03, 0.006, 0.02},
+    {"thin_layer mdr compliance 256", 0.04, 0.067, 0.02},
+    {"soft_column mdr compliance 256", 0.03, 0.059, 0.045},
+    {"mallet_on_ellipsoid mdr compliance 256", 0.03, 0.025, -1.0},
+    {"compass_on_ellipsoid mdr compliance 256", 0.03, 0.05, -1.0},
     // Finite bodies: the goal of 3 % of force and torque, but for the mallet's and the compass's
     // torque. Of the drawn twist 2 % within a half-space; where the whole body turns, what the
     // discs of 12 cells make of a rim that sticks is off by 3 %.

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/frames.hpp"
+#include "systems/rotation_vector.hpp"
 
 namespace torsion {
 namespace {
@@ -60,6 +61,29 @@ Matrix6 contact_stiffness(const World& world, std::uint32_t region, const glm::d
                       8.0 / 3.0 * g * a * a * a / (1.0 - nu));
 }
 
+/// How much of a step to take that follows `last`, 1/4 to 1. A contact that is stiffer than its
+/// region's stiffness says (several regions on one body, meshes) throws each step past the balance
+/// and the next one back: with steps that shrink by -g the balance is at the share 1 / (1 + g).
+/// Source: Aitken's extrapolation, for the component along the last step in the metric of the
+/// stiffness.
+double share_of_step(const Matrix6& stiffness, const Vector6& last, const Vector6& step) {
+  const Vector6 weighted = stiffness * last;
+  const double square = last.dot(weighted);
+  const double back = square > 0.0 ? -step.dot(weighted) / square : 0.0;
+  constexpr double kMostBack = 3.0;
+  return 1.0 / (1.0 + std::clamp(back, 0.0, kMostBack));
+}
+
+/// Shift of the mass centre and turn over the last step.
+Vector6 last_step(const World& world, std::uint32_t tool) {
+  const ToolPose& pose = world.tools.at<ToolPose>(tool);
+  const glm::dvec3& center = world.tools.at<MassProperties>(tool).center;
+  Vector6 last;
+  last << eigen(to_outer(pose.now, center) - to_outer(pose.before, center)),
+      eigen(turn_between(pose.before.rotation, pose.now.rotation));
+  return last;
+}
+
 }  // namespace
 
 Pose next_tool_pose(const World& world, std::uint32_t tool, const VirtualCoupling& coupling,
@@ -80,7 +104,8 @@ Pose next_tool_pose(const World& world, std::uint32_t tool, const VirtualCouplin
   Vector6 wrench;
   wrench << eigen(pull.force + contact.force),
       eigen(pull.torque + glm::cross(arm, pull.force) + contact.torque);
-  const Vector6 step = stiffness.ldlt().solve(wrench);
+  Vector6 step = stiffness.ldlt().solve(wrench);
+  step *= share_of_step(stiffness, last_step(world, tool), step);
   glm::dvec3 shift(step[0], step[1], step[2]);
   glm::dvec3 turn(step[3], step[4], step[5]);
   const double length = glm::length(shift);

@@ -103,7 +103,7 @@ TEST(DeviceLoopTest, OneThatIsHeldElsewhereDoesNotKeepTheOthersFromWorking) {
 
 TEST(DeviceLoopTest, AThousandTimesPulledOutAtRandomMoments) {
   std::mt19937 random(7);
-  std::uniform_real_distribution<double> moment(0.0, 0.15);
+  std::uniform_real_distribution<double> moment(0.0, 0.06);
   DeviceClient client;
   FakeBus bus({}, client.sink());
   std::size_t falcon = bus.plug(EmulatedFalcon{});

@@ -25,6 +25,21 @@ glm::dquat quaternion(const glm::dvec3& turn) {
 
 }  // namespace
 
+DeviceTraits device_of(const HandTraits& hand, double period) {
+  DeviceTraits device;
+  device.damping = hand.device_damping;
+  device.turn_damping = hand.device_turn_damping;
+  device.mass = hand.mass;
+  device.inertia = hand.inertia;
+  device.encoder_step = hand.encoder_step;
+  device.encoder_turn_step = hand.encoder_turn_step;
+  device.period = period;
+  device.delay = (hand.delay + hand.jitter) * period;
+  device.largest_force = hand.largest_force;
+  device.largest_torque = hand.largest_torque;
+  return device;
+}
+
 EmulatedHand::EmulatedHand(const HandTraits& traits, const Pose& start, std::uint32_t seed)
     : traits_(traits), state_{start, glm::dvec3(0.0), glm::dvec3(0.0)}, random_(seed) {}
 
@@ -36,7 +51,10 @@ Pose EmulatedHand::measured() const {
 
 void EmulatedHand::move(const Wrench& wrench, const Pose& wanted, double period) {
   late_[at_ % kLongestDelay] = wrench;
-  const Wrench& due = late_[(at_ + kLongestDelay - traits_.delay) % kLongestDelay];
+  const std::uint32_t later =
+      traits_.jitter > 0 ? std::uniform_int_distribution<std::uint32_t>(0, traits_.jitter)(random_)
+                         : 0U;
+  const Wrench& due = late_[(at_ + kLongestDelay - traits_.delay - later) % kLongestDelay];
   at_ += 1;
   if (std::uniform_real_distribution<double>()(random_) >= traits_.dropped) {
     felt_ = {at_most(due.force, traits_.largest_force),

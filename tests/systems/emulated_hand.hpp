@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <random>
 
+#include "ecs/device_sample.hpp"
 #include "systems/held_tool/virtual_coupling.hpp"
 
 namespace torsion::test {
@@ -26,8 +27,13 @@ struct HandTraits {
   double largest_force = 10.0;        // N
   double largest_torque = 0.3;        // N m
   std::uint32_t delay = 0;            // samples between a force computed and sent
+  std::uint32_t jitter = 0;           // samples: up to this many later, at random
   double dropped = 0.0;               // share of samples that arrive too late to be sent
 };
+
+/// What stability may know of it.
+/// @param period  s
+DeviceTraits device_of(const HandTraits& hand, double period);
 
 class EmulatedHand {
  public:

@@ -31,20 +31,6 @@ struct LoopOutcome {
   std::uint32_t faults = 0;
 };
 
-DeviceTraits device_of(const HandTraits& hand) {
-  DeviceTraits device;
-  device.damping = hand.device_damping;
-  device.turn_damping = hand.device_turn_damping;
-  device.mass = hand.mass;
-  device.inertia = hand.inertia;
-  device.encoder_step = hand.encoder_step;
-  device.encoder_turn_step = hand.encoder_turn_step;
-  device.delay = hand.delay * kPeriod;
-  device.largest_force = hand.largest_force;
-  device.largest_torque = hand.largest_torque;
-  return device;
-}
-
 /// The hand lowers the ball onto the cube by 1.5 mm in 0.3 s, turns it by `turn` in 0.3 s, holds
 /// it.
 LoopOutcome run_loop(const HandTraits& traits, ContactModel model, double turn, int steps) {
@@ -55,9 +41,9 @@ LoopOutcome run_loop(const HandTraits& traits, ContactModel model, double turn, 
   Pose wanted{{0.0, 0.1505, 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)};
   physics.step_to({wanted});
   EmulatedHand hand(traits, wanted);
-  const VirtualCoupling coupling = choose_coupling(device_of(traits)).coupling;
+  const VirtualCoupling coupling = choose_coupling(test::device_of(traits, kPeriod)).coupling;
   PassivityState books;
-  const PassivityLimits limits = choose_passivity(device_of(traits));
+  const PassivityLimits limits = choose_passivity(test::device_of(traits, kPeriod));
   GuardLimits guard_limits;
   guard_limits.largest_force = traits.largest_force;
   guard_limits.largest_torque = traits.largest_torque;
@@ -132,7 +118,8 @@ TEST(HeldToolLoopTest, StaysStableWithDelayLostSamplesAndCoarseEncoders) {
   EXPECT_GT(outcome.mean_force, 0.02);
   // Encoders of 0.4 mm let the force toggle by a count of the coupling, and the controller answers
   // a count with a fiftieth of the device's force either way: no more than two of each.
-  const double count = choose_coupling(device_of(traits)).coupling.stiffness * traits.encoder_step;
+  const double count =
+      choose_coupling(test::device_of(traits, kPeriod)).coupling.stiffness * traits.encoder_step;
   EXPECT_LT(outcome.ripple, 2.0 * count + 2.0 * 0.02 * traits.largest_force);
 }
 

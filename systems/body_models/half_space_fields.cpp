@@ -138,6 +138,13 @@ double half_space_mean_stress(const Port& load, const Elasticity& elasticity, co
 glm::dmat3 half_space_stress(const Port& load, const Elasticity& elasticity, const Wrench& wrench,
                              const glm::dvec3& point) {
   const double k = 1.0 - 2.0 * elasticity.poisson_ratio;
+  if (k == 0.0 && wrench.torque == glm::dvec3(0.0)) {
+    // Boussinesq's and Cerruti's stress of an incompressible material: all along the ray.
+    const glm::dvec3 ray = point - load.position;
+    const double square = glm::dot(ray, ray);
+    return glm::outerProduct(ray, ray) *
+           (-1.5 / kPi * glm::dot(wrench.force, ray) / (square * square * std::sqrt(square)));
+  }
   const glm::dmat3 gradient = scaled_gradient(load, wrench, point, k);
   glm::dmat3 stress = (gradient + glm::transpose(gradient)) * (1.0 / (4.0 * kPi));
   const double excess = half_space_mean_stress(load, elasticity, wrench, point) -

@@ -273,6 +273,12 @@ MotionFit fit_motion(const SolidGrid& grid, const glm::dvec3& point) {
   });
   std::vector<std::uint32_t> rows(grid.nodes.size());
   std::iota(rows.begin(), rows.end(), 0U);
+  // All that can be wanted, if there are enough of them: then there is little to sort.
+  const auto far = std::stable_partition(
+      rows.begin(), rows.end(), [&](std::uint32_t row) { return reach[row] <= 2.0 * kReach; });
+  if (static_cast<std::size_t>(far - rows.begin()) >= kFewest) {
+    rows.erase(far, rows.end());
+  }
   std::sort(rows.begin(), rows.end(), [&](std::uint32_t a, std::uint32_t b) {
     return reach[a] != reach[b] ? reach[a] < reach[b] : a < b;
   });

@@ -168,7 +168,7 @@ inline void color_target_to_blit_source(const vk::raii::CommandBuffer& commands,
                 {
                     .srcStageMask = Stage::eColorAttachmentOutput,
                     .srcAccessMask = Access::eColorAttachmentWrite,
-                    .dstStageMask = Stage::eBlit,
+                    .dstStageMask = Stage::eBlit | Stage::eCopy,
                     .dstAccessMask = Access::eTransferRead,
                     .oldLayout = vk::ImageLayout::eColorAttachmentOptimal,
                     .newLayout = vk::ImageLayout::eTransferSrcOptimal,
@@ -181,8 +181,8 @@ inline void acquired_to_blit_target(const vk::raii::CommandBuffer& commands, vk:
   using namespace detail;
   image_barrier(commands, image, vk::ImageAspectFlagBits::eColor,
                 {
-                    .srcStageMask = Stage::eBlit,
-                    .dstStageMask = Stage::eBlit,
+                    .srcStageMask = Stage::eBlit | Stage::eCopy,
+                    .dstStageMask = Stage::eBlit | Stage::eCopy,
                     .dstAccessMask = Access::eTransferWrite,
                     .oldLayout = vk::ImageLayout::eUndefined,
                     .newLayout = vk::ImageLayout::eTransferDstOptimal,
@@ -190,11 +190,11 @@ inline void acquired_to_blit_target(const vk::raii::CommandBuffer& commands, vk:
 }
 
 /// The window's image with the scene on it, before the overlay is drawn over that.
-inline void blit_target_to_color_target(const vk::raii::CommandBuffer& commands, vk::Image image) {
+inline void copy_target_to_color_target(const vk::raii::CommandBuffer& commands, vk::Image image) {
   using namespace detail;
   image_barrier(commands, image, vk::ImageAspectFlagBits::eColor,
                 {
-                    .srcStageMask = Stage::eBlit,
+                    .srcStageMask = Stage::eBlit | Stage::eCopy,
                     .srcAccessMask = Access::eTransferWrite,
                     .dstStageMask = Stage::eColorAttachmentOutput,
                     .dstAccessMask = Access::eColorAttachmentRead | Access::eColorAttachmentWrite,

@@ -65,11 +65,17 @@ Buffer make_buffer(const Gpu& gpu, vk::DeviceSize size, vk::BufferUsageFlags usa
   return buffer;
 }
 
-Image2d make_image(const Gpu& gpu, vk::Extent2D extent, vk::Format format,
-                   vk::SampleCountFlagBits samples, vk::ImageUsageFlags usage) {
+namespace {
+
+Image2d make_viewed_image(const Gpu& gpu, vk::Extent2D extent, vk::Format format,
+                          vk::Format view_format, vk::SampleCountFlagBits samples,
+                          vk::ImageUsageFlags usage) {
+  const vk::ImageCreateFlags flags =
+      format == view_format ? vk::ImageCreateFlags{} : vk::ImageCreateFlagBits::eMutableFormat;
   Image2d image;
   image.extent = extent;
   image.handle = {gpu.device, vk::ImageCreateInfo{
+                                  .flags = flags,
                                   .imageType = vk::ImageType::e2D,
                                   .format = format,
                                   .extent = {extent.width, extent.height, 1},
@@ -83,10 +89,22 @@ Image2d make_image(const Gpu& gpu, vk::Extent2D extent, vk::Format format,
   image.view = {gpu.device, vk::ImageViewCreateInfo{
                                 .image = *image.handle,
                                 .viewType = vk::ImageViewType::e2D,
-                                .format = format,
+                                .format = view_format,
                                 .subresourceRange = {aspect_of(format), 0, 1, 0, 1},
                             }};
   return image;
+}
+
+}  // namespace
+
+Image2d make_image(const Gpu& gpu, vk::Extent2D extent, vk::Format format,
+                   vk::SampleCountFlagBits samples, vk::ImageUsageFlags usage) {
+  return make_viewed_image(gpu, extent, format, format, samples, usage);
+}
+
+Image2d make_encoded_image(const Gpu& gpu, vk::Extent2D extent, vk::Format format,
+                           vk::Format view_format, vk::ImageUsageFlags usage) {
+  return make_viewed_image(gpu, extent, format, view_format, vk::SampleCountFlagBits::e1, usage);
 }
 
 Buffer make_constant_buffer(const Gpu& gpu, std::span<const std::byte> bytes,

@@ -39,6 +39,11 @@ Buffer make_buffer(const Gpu& gpu, vk::DeviceSize size, vk::BufferUsageFlags usa
 Image2d make_image(const Gpu& gpu, vk::Extent2D extent, vk::Format format,
                    vk::SampleCountFlagBits samples, vk::ImageUsageFlags usage);
 
+/// An image of one sample whose bytes have one format and whose view, for drawing, has its encoded
+/// sibling. Throws vk::SystemError.
+Image2d make_encoded_image(const Gpu& gpu, vk::Extent2D extent, vk::Format format,
+                           vk::Format view_format, vk::ImageUsageFlags usage);
+
 /// Records commands into a buffer of their own and waits until the device has done them. Load time
 /// only.
 template <class Record>

@@ -56,7 +56,8 @@ void record_shadow(const vk::raii::CommandBuffer& commands, const FrameInputs& i
 /// Ground, bodies and arrows, the tools over them, the overlay over all unless `inputs` has none.
 void record_draw(const Frame& target, const FrameInputs& inputs);
 
-/// The overlay alone over what is on the image.
+/// The overlay alone over what is on the image, whose format keeps encoded colours as they are:
+/// blending them so is what Dear ImGui is made for, and a third of the time on a processor.
 /// @param pipeline  for that image's format, one sample a pixel
 void record_overlay(const vk::raii::CommandBuffer& commands, vk::ImageView view,
                     vk::Extent2D extent, const vk::raii::Pipeline& pipeline,

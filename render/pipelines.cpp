@@ -47,6 +47,8 @@ struct Recipe {
   bool test_depth = true;
   bool blend = false;
   bool depth_bias = false;
+  bool quick =
+      false;  // constant 0 of the shaders: the overlay's whole pixels, the light's few taps
 };
 
 vk::PipelineColorBlendAttachmentState blend_state(const Recipe& recipe) {
@@ -84,12 +86,21 @@ vk::raii::Pipeline make_graphics_pipeline(const Gpu& gpu, vk::PipelineLayout lay
                                           const Recipe& recipe) {
   const vk::raii::ShaderModule vertex = make_module(gpu, recipe.vertex);
   vk::raii::ShaderModule fragment = nullptr;
+  const vk::Bool32 quick = recipe.quick ? VK_TRUE : VK_FALSE;
+  const vk::SpecializationMapEntry entry{.constantID = 0, .offset = 0, .size = sizeof quick};
+  const vk::SpecializationInfo constants{
+      .mapEntryCount = 1, .pMapEntries = &entry, .dataSize = sizeof quick, .pData = &quick};
   std::vector<vk::PipelineShaderStageCreateInfo> stages = {
-      {.stage = vk::ShaderStageFlagBits::eVertex, .module = *vertex, .pName = "main"}};
+      {.stage = vk::ShaderStageFlagBits::eVertex,
+       .module = *vertex,
+       .pName = "main",
+       .pSpecializationInfo = &constants}};
   if (!recipe.fragment.empty()) {
     fragment = make_module(gpu, recipe.fragment);
-    stages.push_back(
-        {.stage = vk::ShaderStageFlagBits::eFragment, .module = *fragment, .pName = "main"});
+    stages.push_back({.stage = vk::ShaderStageFlagBits::eFragment,
+                      .module = *fragment,
+                      .pName = "main",
+                      .pSpecializationInfo = &constants});
   }
   const vk::PipelineVertexInputStateCreateInfo input{
       .vertexBindingDescriptionCount = static_cast<std::uint32_t>(recipe.bindings.size()),
@@ -206,7 +217,7 @@ struct RowInput {
 
 vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, vk::PipelineLayout layout,
                                          vk::Format color_format, vk::Format depth_format,
-                                         vk::SampleCountFlagBits samples) {
+                                         vk::SampleCountFlagBits samples, bool quick) {
   const std::array<vk::VertexInputBindingDescription, 1> bindings = {
       {{0, sizeof(OverlayVertex), vk::VertexInputRate::eVertex}}};
   const std::array<vk::VertexInputAttributeDescription, 3> attributes = {{
@@ -225,7 +236,8 @@ vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, vk::PipelineLayout layo
                                  .cull = vk::CullModeFlagBits::eNone,
                                  .write_depth = false,
                                  .test_depth = false,
-                                 .blend = true});
+                                 .blend = true,
+                                 .quick = quick});
 }
 
 }  // namespace
@@ -233,10 +245,11 @@ vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, vk::PipelineLayout layo
 vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, const Pipelines& pipelines,
                                          vk::Format color_format) {
   return make_overlay_pipeline(gpu, *pipelines.draw_layout, color_format, vk::Format::eUndefined,
-                               vk::SampleCountFlagBits::e1);
+                               vk::SampleCountFlagBits::e1, true);
 }
 
-Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCountFlagBits samples) {
+Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCountFlagBits samples,
+                         bool quick) {
   Pipelines pipelines;
   make_layouts(gpu, pipelines);
   pipelines.deform = make_compute_pipeline(gpu, *pipelines.compute_layout, k_deform_comp);
@@ -254,7 +267,8 @@ Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCoun
   Recipe recipe{.vertex = k_ground_vert,
                 .fragment = k_ground_frag,
                 .color_format = color_format,
-                .samples = samples};
+                .samples = samples,
+                .quick = quick};
   pipelines.ground = make_graphics_pipeline(gpu, layout, recipe);
 
   recipe.bindings = three_rows.bindings;
@@ -276,7 +290,8 @@ Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCoun
   recipe.write_color = false;
   pipelines.tool_depth = make_graphics_pipeline(gpu, layout, recipe);
 
-  pipelines.overlay = make_overlay_pipeline(gpu, layout, color_format, kDepthFormat, samples);
+  pipelines.overlay =
+      make_overlay_pipeline(gpu, layout, color_format, kDepthFormat, samples, false);
   return pipelines;
 }
 

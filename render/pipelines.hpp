@@ -35,11 +35,13 @@ struct Pipelines {
   vk::raii::Pipeline overlay = nullptr;
 };
 
-/// A pipeline that draws the overlay alone over an image of that format, one sample a pixel.
+/// A pipeline that draws the overlay alone over an image of that format, which keeps encoded
+/// colours, one sample a pixel; glyphs must lie on whole pixels.
 vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, const Pipelines& pipelines,
                                          vk::Format color_format);
 
-/// Throws vk::SystemError.
-Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCountFlagBits samples);
+/// @param quick  harder shadows, for a third of their time. Throws vk::SystemError.
+Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCountFlagBits samples,
+                         bool quick);
 
 }  // namespace torsion

@@ -304,7 +304,8 @@ Result<Renderer> Renderer::create(const RendererOptions& options, const FrameWor
     impl->pictures.emplace(impl->gpu, size, kSlots);
     fit_surfaces(impl->gpu, size, impl->pictures->format(), impl->samples, impl->surfaces);
   }
-  impl->pipelines = make_pipelines(impl->gpu, impl->target().format(), impl->samples);
+  impl->pipelines = make_pipelines(impl->gpu, impl->target().format(), impl->samples,
+                                   impl->window.has_value() && on_processor);
   if (impl->window) {
     impl->window_overlay =
         make_overlay_pipeline(impl->gpu, impl->pipelines, impl->window->window_format());

@@ -21,9 +21,10 @@ constexpr std::uint64_t kLongestWait = 2'000'000'000;  // ns: for an image of th
   throw vk::SystemError(vk::make_error_code(result), doing);
 }
 
-/// Eight bits that the hardware encodes to sRGB, as everything that is drawn expects.
+/// Eight bits of encoded sRGB, kept as they are written: the scene is encoded when it is drawn into
+/// its own image, and stretching and blending encoded bytes costs a processor a third.
 vk::SurfaceFormatKHR choose_format(const std::vector<vk::SurfaceFormatKHR>& formats) {
-  for (const vk::Format wanted : {vk::Format::eB8G8R8A8Srgb, vk::Format::eR8G8B8A8Srgb}) {
+  for (const vk::Format wanted : {vk::Format::eB8G8R8A8Unorm, vk::Format::eR8G8B8A8Unorm}) {
     for (const vk::SurfaceFormatKHR& format : formats) {
       if (format.format == wanted && format.colorSpace == vk::ColorSpaceKHR::eSrgbNonlinear) {
         return format;
@@ -138,8 +139,8 @@ void WindowTarget::make_inner(double share) {
   gpu_->device.waitIdle();
   inner_ = wanted;
   for (Slot& slot : slots_) {
-    slot.image = make_image(*gpu_, inner_, format(), vk::SampleCountFlagBits::e1,
-                            Usage::eColorAttachment | Usage::eTransferSrc);
+    slot.image = make_encoded_image(*gpu_, inner_, window_format(), format(),
+                                    Usage::eColorAttachment | Usage::eTransferSrc);
   }
 }
 
@@ -205,6 +206,15 @@ void WindowTarget::stretch(const Frame& frame) {
                         static_cast<std::int32_t>(extent.height), 1};
   };
   const vk::ImageSubresourceLayers layers{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
+  if (inner_ == outer_) {
+    frame.commands->copyImage(frame.image, vk::ImageLayout::eTransferSrcOptimal, window_image,
+                              vk::ImageLayout::eTransferDstOptimal,
+                              vk::ImageCopy{.srcSubresource = layers,
+                                            .dstSubresource = layers,
+                                            .extent = {inner_.width, inner_.height, 1}});
+    copy_target_to_color_target(*frame.commands, window_image);
+    return;
+  }
   const vk::ImageBlit region{
       .srcSubresource = layers,
       .srcOffsets = std::array{vk::Offset3D{}, corner(inner_)},
@@ -212,9 +222,8 @@ void WindowTarget::stretch(const Frame& frame) {
       .dstOffsets = std::array{vk::Offset3D{}, corner(outer_)},
   };
   frame.commands->blitImage(frame.image, vk::ImageLayout::eTransferSrcOptimal, window_image,
-                            vk::ImageLayout::eTransferDstOptimal, region,
-                            inner_ == outer_ ? vk::Filter::eNearest : vk::Filter::eLinear);
-  blit_target_to_color_target(*frame.commands, window_image);
+                            vk::ImageLayout::eTransferDstOptimal, region, vk::Filter::eLinear);
+  copy_target_to_color_target(*frame.commands, window_image);
 }
 
 void WindowTarget::finish(const Frame& frame) {
@@ -242,8 +251,9 @@ void WindowTarget::submit(const Frame& frame) try {
   gpu_->device.resetFences(*slot.done);
   const vk::Semaphore drawn = *shown_[current_].drawn;
   const vk::CommandBufferSubmitInfo commands{.commandBuffer = **frame.commands};
-  const vk::SemaphoreSubmitInfo wait{.semaphore = *slot.acquired,
-                                     .stageMask = vk::PipelineStageFlagBits2::eBlit};
+  const vk::SemaphoreSubmitInfo wait{
+      .semaphore = *slot.acquired,
+      .stageMask = vk::PipelineStageFlagBits2::eBlit | vk::PipelineStageFlagBits2::eCopy};
   const vk::SemaphoreSubmitInfo signal{.semaphore = drawn,
                                        .stageMask = vk::PipelineStageFlagBits2::eAllCommands};
   gpu_->queue.submit2(vk::SubmitInfo2{.waitSemaphoreInfoCount = 1,
@@ -274,7 +284,7 @@ Image WindowTarget::screenshot() {
   wait(*kept_slot_);
   image.rgba.resize(std::size_t{4} * outer_.width * outer_.height);
   std::memcpy(image.rgba.data(), kept_.mapped, image.rgba.size());
-  const bool swapped = surface_format_.format == vk::Format::eB8G8R8A8Srgb;
+  const bool swapped = surface_format_.format == vk::Format::eB8G8R8A8Unorm;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
     if (swapped) {
       std::swap(image.rgba[i], image.rgba[i + 2]);

@@ -35,7 +35,11 @@ class WindowTarget final : public Target {
   /// Also shows the picture.
   void submit(const Frame& frame) override;
 
-  [[nodiscard]] vk::Format format() const override { return vk::Format::eR8G8B8A8Srgb; }
+  /// Of the scene's picture: as the window's bytes, and encoded when it is drawn.
+  [[nodiscard]] vk::Format format() const override {
+    return surface_format_.format == vk::Format::eB8G8R8A8Unorm ? vk::Format::eB8G8R8A8Srgb
+                                                                : vk::Format::eR8G8B8A8Srgb;
+  }
   [[nodiscard]] vk::Extent2D extent() const override { return inner_; }
 
   [[nodiscard]] vk::Format window_format() const { return surface_format_.format; }

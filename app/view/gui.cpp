@@ -35,10 +35,13 @@ OverlayAtlas make_atlas() {
 void set_style() {
   ImGui::StyleColorsLight();
   ImGuiStyle& style = ImGui::GetStyle();
+  style.AntiAliasedLinesUseTex = false;  // the overlay takes texels as they are
   style.WindowRounding = 4.0F;
   style.FrameRounding = 3.0F;
   style.WindowBorderSize = 0.0F;
   style.Colors[ImGuiCol_WindowBg] = ImVec4(1.0F, 1.0F, 1.0F, 0.88F);
+  style.Colors[ImGuiCol_FrameBg] = ImVec4(0.87F, 0.89F, 0.92F, 1.0F);
+  style.Colors[ImGuiCol_TextDisabled] = ImVec4(0.36F, 0.38F, 0.42F, 1.0F);
   style.Colors[ImGuiCol_Text] = ImVec4(0.10F, 0.11F, 0.13F, 1.0F);
 }
 

@@ -100,9 +100,10 @@ void state_lines(const ViewState& state, const LiveSession& session) {
   }
   dim(fmt::format("time {:.3f} s, {} contact region{}", clock.time, frame.snapshot.regions.size(),
                   frame.snapshot.regions.size() == 1 ? "" : "s"));
-  dim(fmt::format("step {:.0f} us, late {:.1f} us (99 %: {:.0f}), missed {} of {}",
-                  statistics.step_times.quantile(0.5), statistics.lateness.quantile(0.5),
-                  statistics.lateness.quantile(0.99), statistics.missed_deadlines,
+  dim(fmt::format("step {:.0f} us, 99 % {:.0f} us; late 99 % {:.0f} us",
+                  statistics.step_times.quantile(0.5), statistics.step_times.quantile(0.99),
+                  statistics.lateness.quantile(0.99)));
+  dim(fmt::format("over 1 ms late: {} of {}", statistics.missed_deadlines,
                   statistics.lateness.count()));
   dim(fmt::format("{:.0f} pictures a second at {:.0f} % size", state.frames_per_second,
                   100.0 * state.share));

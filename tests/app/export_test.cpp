@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <sstream>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -123,6 +124,66 @@ TEST(ExportTest, BeforeContactTheBodyIsAtRest) {
   const tinygltf::Model model = exported("compass_on_ellipsoid", "0", "d.glb");
   EXPECT_EQ(rows_of<glm::vec3>(model, attribute(model, 0, "POSITION")),
             rows_of<glm::vec3>(model, attribute(model, 0, "_REST_POSITION")));
+}
+
+std::vector<double> column_of(const std::string& csv, const std::string& name) {
+  std::istringstream stream(csv);
+  std::string line;
+  std::getline(stream, line);
+  std::vector<std::string> names;
+  std::istringstream header(line);
+  for (std::string word; std::getline(header, word, ',');) {
+    names.push_back(word);
+  }
+  const auto column = std::ranges::find(names, name) - names.begin();
+  std::vector<double> values;
+  while (std::getline(stream, line)) {
+    std::istringstream row(line);
+    std::string word;
+    for (std::ptrdiff_t i = 0; i <= column; ++i) {
+      std::getline(row, word, ',');
+    }
+    values.push_back(std::stod(word));
+  }
+  return values;
+}
+
+TEST(ExportTest, ARecordingBecomesAnAnimationThatPlaysBack) {
+  const Folder folder;
+  for (const std::string ending : {".gltf", ".glb"}) {
+    // The compass' tool stands below other nodes, and is scaled.
+    ASSERT_EQ(run_torsion({"simulate", scene("compass_on_ellipsoid"), "--seconds", "1.2",
+                           "--record", folder / "a.rec", "--trace", folder / "a.csv"})
+                  .exit_code,
+              0);
+    const std::string out = folder / ("played" + ending);
+    const Ran ran = run_torsion(
+        {"export", scene("compass_on_ellipsoid"), "--replay", folder / "a.rec", "--out", out});
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    const Ran played = run_torsion({"simulate", out, "--trace", folder / "b.csv"});
+    ASSERT_EQ(played.exit_code, 0) << played.err;
+    const std::string first = test::read_text(folder / "a.csv");
+    const std::string second = test::read_text(folder / "b.csv");
+    for (const char* column : {"tool_x_m", "tool_y_m", "tool_qx", "force_y_N", "torque_y_Nm"}) {
+      const std::vector<double> a = column_of(first, column);
+      const std::vector<double> b = column_of(second, column);
+      ASSERT_NEAR(static_cast<double>(a.size()), static_cast<double>(b.size()), 1.0);
+      double largest = 0.0;
+      for (const double value : a) {
+        largest = std::max(largest, std::abs(value));
+      }
+      // Keys are floats, 6e-8 of a tenth of a metre: against depths of 1e-3 m, 1e-5 of the force.
+      // What sticks and slips may differ by a cell, a hundredth.
+      for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+        ASSERT_NEAR(a[i], b[i], 0.01 * largest + 1e-9) << column << " row " << i;
+      }
+    }
+  }
+}
+
+TEST(ExportTest, WantsAMomentOrARecording) {
+  const Folder folder;
+  EXPECT_EQ(run_torsion({"export", scene("ball_on_cube"), "--out", folder / "a.glb"}).exit_code, 2);
 }
 
 }  // namespace

@@ -17,9 +17,11 @@ Session ball_session() {
   session.scene = ball_on_cube();
   session.scene.path = "ball";
   session.scene.bodies[0].models = {};
+  MotionLink place;
+  place.translation = {0.0, kTouching + 1e-3, 0.0};
+  session.scene.tools[0].script.links = {place};
   session.simulation = prepare(session.scene, ball_options()).value();
   session.tool_poses.resize(1);
-  session.simulation.world.tools.at<ToolPose>(0).now.position.y = kTouching + 1e-3;
   return session;
 }
 

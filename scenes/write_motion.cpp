@@ -1,0 +1,124 @@
+#include "scenes/write_motion.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+#include <sstream>
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "scenes/gltf_file.hpp"
+
+namespace torsion {
+namespace {
+
+/// Appends rows to the buffer and makes an accessor of them.
+template <class Row>
+int add_rows(tinygltf::Model& model, int buffer, std::span<const Row> rows, int type) {
+  std::vector<unsigned char>& data = model.buffers[static_cast<std::size_t>(buffer)].data;
+  tinygltf::BufferView view;
+  view.buffer = buffer;
+  view.byteOffset = data.size();
+  view.byteLength = rows.size_bytes();
+  data.resize(data.size() + rows.size_bytes());
+  std::memcpy(data.data() + view.byteOffset, rows.data(), rows.size_bytes());
+  model.bufferViews.push_back(view);
+  tinygltf::Accessor accessor;
+  accessor.bufferView = static_cast<int>(model.bufferViews.size()) - 1;
+  accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
+  accessor.type = type;
+  accessor.count = rows.size();
+  model.accessors.push_back(accessor);
+  return static_cast<int>(model.accessors.size()) - 1;
+}
+
+void add_channel(tinygltf::Animation& animation, int node, const char* path, int times,
+                 int values) {
+  tinygltf::AnimationSampler sampler;
+  sampler.input = times;
+  sampler.output = values;
+  sampler.interpolation = "LINEAR";
+  animation.samplers.push_back(sampler);
+  tinygltf::AnimationChannel channel;
+  channel.sampler = static_cast<int>(animation.samplers.size()) - 1;
+  channel.target_node = node;
+  channel.target_path = path;
+  animation.channels.push_back(channel);
+}
+
+/// What moved the node before goes, and an animation of which nothing is left.
+void remove_motion(tinygltf::Model& model, int node) {
+  for (tinygltf::Animation& animation : model.animations) {
+    std::erase_if(animation.channels, [node](const tinygltf::AnimationChannel& channel) {
+      return channel.target_node == node &&
+             (channel.target_path == "translation" || channel.target_path == "rotation");
+    });
+  }
+  std::erase_if(model.animations,
+                [](const tinygltf::Animation& animation) { return animation.channels.empty(); });
+}
+
+void add_motion(tinygltf::Model& model, tinygltf::Animation& animation, int buffer, int node,
+                const NodeMotion& motion) {
+  std::vector<glm::vec3> translations;
+  std::vector<glm::vec4> rotations;
+  for (const Pose& pose : motion.poses) {
+    const glm::dquat& q = pose.rotation;
+    translations.emplace_back(pose.position);
+    rotations.emplace_back(glm::dvec4(q.x, q.y, q.z, q.w));
+  }
+  const int times = add_rows<float>(model, buffer, std::span(motion.times), TINYGLTF_TYPE_SCALAR);
+  tinygltf::Accessor& accessor = model.accessors.back();
+  accessor.minValues = {static_cast<double>(motion.times.front())};
+  accessor.maxValues = {static_cast<double>(motion.times.back())};
+  add_channel(animation, node, "translation", times,
+              add_rows<glm::vec3>(model, buffer, translations, TINYGLTF_TYPE_VEC3));
+  add_channel(animation, node, "rotation", times,
+              add_rows<glm::vec4>(model, buffer, rotations, TINYGLTF_TYPE_VEC4));
+  // An animated node may have no matrix (glTF 2.0, 3.5.3).
+  tinygltf::Node& rest = model.nodes[static_cast<std::size_t>(node)];
+  const Pose& first = motion.poses.front();
+  rest.matrix.clear();
+  rest.translation = {first.position.x, first.position.y, first.position.z};
+  rest.rotation = {first.rotation.x, first.rotation.y, first.rotation.z, first.rotation.w};
+  rest.scale = {motion.scale.x, motion.scale.y, motion.scale.z};
+}
+
+}  // namespace
+
+Result<std::string> with_motions(const std::filesystem::path& path,
+                                 const std::vector<NodeMotion>& motions, bool binary) {
+  std::vector<Problem> problems;
+  std::optional<tinygltf::Model> read = read_gltf_file(path, problems);
+  if (!read) {
+    return Error{to_text(problems)};
+  }
+  tinygltf::Model& model = *read;
+  const int buffer = static_cast<int>(model.buffers.size());
+  model.buffers.emplace_back();
+  tinygltf::Animation animation;
+  animation.name = "recorded";
+  for (const NodeMotion& motion : motions) {
+    const auto found = std::ranges::find(model.nodes, motion.node, &tinygltf::Node::name);
+    if (found == model.nodes.end() || motion.poses.empty()) {
+      return Error{path.string() + ": no node is named \"" + motion.node +
+                   "\", or nothing moves it"};
+    }
+    const int node = static_cast<int>(found - model.nodes.begin());
+    remove_motion(model, node);
+    add_motion(model, animation, buffer, node, motion);
+  }
+  model.animations.push_back(animation);
+  for (tinygltf::Buffer& each : model.buffers) {
+    each.uri.clear();  // inside, wherever the scene's files are
+  }
+  std::ostringstream stream;
+  tinygltf::TinyGLTF writer;
+  if (!writer.WriteGltfSceneToStream(&model, stream, true, binary) || !stream) {
+    return Error{path.string() + ": cannot be written as glTF"};
+  }
+  return stream.str();
+}
+
+}  // namespace torsion

@@ -1,0 +1,95 @@
+// A session as a window drives it, without one: switching models, restarting, recording.
+
+#include "app/live/live_session.hpp"
+
+#include <chrono>
+#include <thread>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "ecs/hash.hpp"
+#include "tests/app/live_session.hpp"
+
+namespace torsion {
+namespace {
+
+/// Refreshes until it holds, for at most ten seconds.
+template <class F>
+bool comes_true(LiveSession& session, F&& holds) {
+  for (int i = 0; i < 5000; ++i) {
+    session.refresh();
+    if (holds()) {
+      return true;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return false;
+}
+
+const Clock& clock_of(const LiveSession& session) {
+  return session.frame().snapshot.clock.at<Clock>(0);
+}
+
+TEST(LiveSessionTest, SwitchesModelsWhileHeldAndItsRecordingGivesTheSameBits) {
+  constexpr bool kPrivileges = false;
+  LiveSession session(test::ball_session(), test::ball_options());
+  session.start(kPrivileges);
+  ASSERT_TRUE(comes_true(session, [&] { return clock_of(session).step > 10; }));
+  session.hold(0, {{0.0, test::kTouching - 1e-3, 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)});
+  ASSERT_TRUE(comes_true(session, [&] { return !session.frame().snapshot.regions.empty(); }));
+
+  std::vector<BodyPick> picks = session.shown().picks;
+  picks[0].contact = ContactModel::kPaper;
+  picks[0].elasticity.youngs_modulus = 1e6;
+  ASSERT_TRUE(session.choose(picks, false));
+  EXPECT_FALSE(session.choose(picks, false));  // one at a time
+  ASSERT_TRUE(comes_true(session, [&] { return session.frame().generation == 1; }));
+  EXPECT_EQ(session.shown().picks[0].contact, ContactModel::kPaper);
+  EXPECT_EQ(session.preparation_error(), "");
+  const std::uint64_t switched = clock_of(session).step;
+  ASSERT_TRUE(comes_true(session, [&] { return clock_of(session).step > switched + 100; }));
+  session.pause(true);
+  ASSERT_TRUE(comes_true(session, [&] { return session.frame().paused; }));
+  session.refresh();
+
+  Session again = test::ball_session();
+  Replay replay{&session.recording(), 0};
+  const std::uint64_t steps = steps_in(session.recording());
+  ASSERT_EQ(steps, clock_of(session).step);
+  for (std::uint64_t i = 0; i < steps; ++i) {
+    ASSERT_TRUE(replay_inputs(replay, again, true));
+    step(again.simulation, again.tool_poses);
+  }
+  // The live one stands still: paused, and no command is under way.
+  EXPECT_EQ(hash(again.simulation.world), hash(session.shown().simulation.world));
+}
+
+TEST(LiveSessionTest, ARestartBeginsAnewAndSoDoesItsRecording) {
+  constexpr bool kPrivileges = false;
+  LiveSession session(test::ball_session(), test::ball_options());
+  session.start(kPrivileges);
+  session.hold(0, {{0.0, test::kTouching, 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)});
+  ASSERT_TRUE(comes_true(session, [&] { return clock_of(session).step > 300; }));
+  const std::uint64_t before = steps_in(session.recording());
+  ASSERT_TRUE(session.choose(session.shown().picks, true));
+  ASSERT_TRUE(comes_true(session, [&] { return session.frame().generation == 1; }));
+  ASSERT_TRUE(comes_true(session, [&] { return clock_of(session).step > 20; }));
+  EXPECT_FALSE(session.held(0));
+  EXPECT_GE(before, 300U);
+  EXPECT_EQ(session.recording().entries.front().step, 0U);
+}
+
+TEST(LiveSessionTest, AMouseHoldsNoDeeperThanTheModelsGo) {
+  const Session session = test::ball_session();
+  const VirtualCoupling coupling = mouse_coupling(session.scene, 0.05);
+  // Hertz: the depth at which the half-space pushes back with the coupling's largest force.
+  const double modulus = session.scene.bodies[0].elasticity.contact_modulus();
+  const double depth =
+      std::pow(coupling.largest_force / (4.0 / 3.0 * modulus * std::sqrt(0.05)), 2.0 / 3.0);
+  EXPECT_LT(depth, 0.1 * 0.05);
+  EXPECT_GT(depth, 0.05 * 0.05);
+}
+
+}  // namespace
+}  // namespace torsion

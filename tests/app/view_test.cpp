@@ -1,0 +1,173 @@
+// The window's parts that need no window: camera, drag, history, the watch over a scene's files.
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "app/view/history.hpp"
+#include "app/view/orbit_camera.hpp"
+#include "app/view/plots.hpp"
+#include "app/view/scene_watch.hpp"
+#include "app/view/tool_drag.hpp"
+#include "tests/app/program.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr glm::dvec2 kPicture(1280.0, 720.0);
+
+TEST(OrbitCameraTest, StandsWhereTheCameraStoodAndLooksTheSameWay) {
+  Camera camera;
+  camera.pose.position = {0.3, 0.4, 0.5};
+  camera.pose.rotation = glm::angleAxis(0.6, glm::dvec3(0.0, 1.0, 0.0)) *
+                         glm::angleAxis(-0.5, glm::dvec3(1.0, 0.0, 0.0));
+  const Camera again = camera_of(orbit_of(camera, glm::dvec3(0.0)));
+  EXPECT_LT(glm::length(again.pose.position - camera.pose.position), 1e-12);
+  EXPECT_NEAR(std::abs(glm::dot(again.pose.rotation, camera.pose.rotation)), 1.0, 1e-12);
+}
+
+TEST(OrbitCameraTest, TurningKeepsTheDistanceAndUpIsUp) {
+  OrbitCamera camera;
+  camera.target = {0.1, 0.0, 0.0};
+  camera.distance = 0.7;
+  for (int i = 0; i < 50; ++i) {
+    orbit(camera, {0.3, 0.2});
+    const Pose pose = camera_of(camera).pose;
+    EXPECT_NEAR(glm::length(pose.position - camera.target), 0.7, 1e-12);
+    EXPECT_GT((pose.rotation * glm::dvec3(0.0, 1.0, 0.0)).y, 0.0);
+    const glm::dvec3 seen = seen_at(camera_of(camera), camera.target, kPicture);
+    EXPECT_NEAR(seen.x, 640.0, 1e-6);
+    EXPECT_NEAR(seen.y, 360.0, 1e-6);
+  }
+}
+
+TEST(OrbitCameraTest, PanningMovesWhatIsAtTheTargetWithTheMouse) {
+  OrbitCamera camera;
+  camera.azimuth = 0.7;
+  camera.elevation = 0.3;
+  const glm::dvec3 point = camera.target;
+  pan(camera, {25.0, -40.0}, kPicture.y);
+  const glm::dvec3 seen = seen_at(camera_of(camera), point, kPicture);
+  EXPECT_NEAR(seen.x, 640.0 + 25.0, 1e-9);
+  EXPECT_NEAR(seen.y, 360.0 - 40.0, 1e-9);
+}
+
+TEST(OrbitCameraTest, ARayGoesThroughWhatIsSeenAtItsPixel) {
+  OrbitCamera orbiting;
+  orbiting.azimuth = 2.0;
+  const Camera camera = camera_of(orbiting);
+  const PixelRay ray = ray_through(camera, {200.0, 500.0}, kPicture);
+  const glm::dvec3 seen = seen_at(camera, ray.origin + 0.8 * ray.direction, kPicture);
+  EXPECT_NEAR(seen.x, 200.0, 1e-9);
+  EXPECT_NEAR(seen.y, 500.0, 1e-9);
+}
+
+TEST(ToolDragTest, ARayMeetsATurnedBoxWhereItDoes) {
+  const Bounds bounds{{-1.0, -2.0, -3.0}, {1.0, 2.0, 3.0}};
+  // Turned a quarter about y the box is 3 deep towards x.
+  const Pose pose{{10.0, 0.0, 0.0},
+                  glm::angleAxis(std::numbers::pi / 2.0, glm::dvec3(0.0, 1.0, 0.0))};
+  const auto met = meets_box({{0.0, 0.5, 0.0}, {1.0, 0.0, 0.0}, 0.0}, pose, bounds);
+  ASSERT_TRUE(met.has_value());
+  EXPECT_NEAR(*met, 7.0, 1e-12);
+  EXPECT_FALSE(meets_box({{0.0, 2.5, 0.0}, {1.0, 0.0, 0.0}, 0.0}, pose, bounds));
+  EXPECT_FALSE(meets_box({{0.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, 0.0}, pose, bounds));
+}
+
+TEST(ToolDragTest, WhatWasTakenStaysUnderTheMouse) {
+  OrbitCamera orbiting;
+  orbiting.azimuth = 0.4;
+  orbiting.elevation = 0.6;
+  const Camera camera = camera_of(orbiting);
+  Pose handle{{0.05, 0.02, 0.1}, glm::dquat(1.0, 0.0, 0.0, 0.0)};
+  const glm::dvec3 before = seen_at(camera, handle.position, kPicture);
+  ToolDrag taken{0, before.z, {before.x, before.y}};
+  drag(taken, DragKind::kAcross, {before.x + 30.0, before.y - 12.0}, camera, kPicture.y, {}, {},
+       handle);
+  const glm::dvec3 after = seen_at(camera, handle.position, kPicture);
+  EXPECT_NEAR(after.x, before.x + 30.0, 1e-9);
+  EXPECT_NEAR(after.y, before.y - 12.0, 1e-9);
+  EXPECT_NEAR(after.z, before.z, 1e-12);
+}
+
+TEST(ToolDragTest, ATurnKeepsWhatIsOnTheAxis) {
+  Pose handle{{0.1, 0.3, 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)};
+  const glm::dvec3 pivot(0.1, 0.0, 0.0);
+  turn(handle, pivot, {0.0, 1.0, 0.0}, 0.5);
+  EXPECT_LT(glm::length(handle.position - glm::dvec3(0.1, 0.3, 0.0)), 1e-12);
+  EXPECT_NEAR(glm::angle(handle.rotation), 0.5, 1e-12);
+}
+
+LiveRow row_at(double time, double step_us, std::uint64_t generation = 0) {
+  LiveRow row;
+  row.trace.time = time;
+  row.trace.step_us = step_us;
+  row.generation = generation;
+  return row;
+}
+
+TEST(HistoryTest, ThinsButKeepsTheLongestStep) {
+  History history;
+  for (int i = 0; i < 9; ++i) {
+    history.add(row_at(1e-3 * i, i == 2 ? 900.0 : 10.0));
+  }
+  ASSERT_EQ(history.size(), 3U);
+  EXPECT_EQ(history[0].step_us, 10.0);
+  EXPECT_EQ(history[1].step_us, 900.0);
+  EXPECT_EQ(history[2].step_us, 10.0);
+}
+
+TEST(HistoryTest, ForgetsTheOldestAndARestartForgetsAll) {
+  History history;
+  for (std::size_t i = 0; i < History::kPoints + 10; ++i) {
+    history.add(row_at(1e-2 * static_cast<double>(i), 1.0));
+  }
+  EXPECT_EQ(history.size(), History::kPoints);
+  EXPECT_NEAR(history[0].time, 0.1, 1e-12);
+  history.add(row_at(0.0, 1.0));
+  EXPECT_EQ(history.size(), 1U);
+}
+
+TEST(HistoryTest, ContactAxesTurnAWrenchWithoutChangingItsSize) {
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(1.0, 2.0, -1.0));
+  const glm::dvec3 tangent = glm::normalize(glm::cross(normal, glm::dvec3(0.0, 0.0, 1.0)));
+  const Wrench world{3.0 * normal + 0.5 * tangent, -2.0 * normal};
+  const Wrench contact = in_contact_axes(world, normal, tangent);
+  EXPECT_NEAR(contact.force.z, 3.0, 1e-12);
+  EXPECT_NEAR(contact.force.x, 0.5, 1e-12);
+  EXPECT_NEAR(contact.force.y, 0.0, 1e-12);
+  EXPECT_NEAR(contact.torque.z, -2.0, 1e-12);
+}
+
+TEST(PlotsTest, ScalesEndAtRoundNumbers) {
+  EXPECT_DOUBLE_EQ(round_up(0.9), 1.0);
+  EXPECT_DOUBLE_EQ(round_up(1.1), 2.0);
+  EXPECT_DOUBLE_EQ(round_up(0.021), 0.05);
+  EXPECT_DOUBLE_EQ(round_up(50.0), 50.0);
+  EXPECT_DOUBLE_EQ(round_up(0.0), 1.0);
+}
+
+TEST(SceneWatchTest, SaysOnceThatAFileOrItsBufferHasChanged) {
+  const test::Folder folder;
+  const std::string scene = folder / "a.gltf";
+  test::write_text(folder / "a.bin", "1234");
+  test::write_text(scene, R"({"buffers": [{"uri": "a.bin", "byteLength": 4}]})");
+  SceneWatch watch(scene);
+  EXPECT_FALSE(watch.changed());
+  test::write_text(folder / "a.bin", "12345");
+  EXPECT_FALSE(watch.changed());  // may still be written to
+  EXPECT_TRUE(watch.changed());
+  EXPECT_FALSE(watch.changed());
+  test::write_text(scene, "{}  ");
+  EXPECT_FALSE(watch.changed());
+  EXPECT_TRUE(watch.changed());
+  std::filesystem::remove(scene);  // as some editors do before they write anew
+  EXPECT_FALSE(watch.changed());
+  EXPECT_TRUE(watch.changed());
+}
+
+}  // namespace
+}  // namespace torsion

@@ -1,0 +1,117 @@
+// The window under Xvfb with a real swapchain; mouse and keys come from xdotool (window_test.sh).
+
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "render/image_io.hpp"
+#include "tests/app/program.hpp"
+
+namespace torsion {
+namespace {
+
+using test::read_text;
+
+/// Share of the pixels of a rectangle in which a colour differs by more than 8 of 255.
+double changed(const Image& a, const Image& b, std::uint32_t left, std::uint32_t top,
+               std::uint32_t right, std::uint32_t bottom) {
+  std::uint32_t count = 0;
+  for (std::uint32_t y = top; y < bottom; ++y) {
+    for (std::uint32_t x = left; x < right; ++x) {
+      const std::size_t at = 4 * (std::size_t{y} * a.width + x);
+      bool differs = false;
+      for (std::size_t i = at; i < at + 3; ++i) {
+        differs = differs || std::abs(int{a.rgba[i]} - int{b.rgba[i]}) > 8;
+      }
+      count += differs ? 1U : 0U;
+    }
+  }
+  return count / (static_cast<double>(right - left) * (bottom - top));
+}
+
+/// Whether the upper middle has the banner's red on it.
+bool has_red_banner(const Image& image) {
+  std::uint32_t red = 0;
+  for (std::uint32_t y = 8; y < 60; ++y) {
+    for (std::uint32_t x = image.width / 3; x < 2 * image.width / 3; ++x) {
+      const std::size_t at = 4 * (std::size_t{y} * image.width + x);
+      red += image.rgba[at] > 180 && image.rgba[at + 1] < 70 && image.rgba[at + 2] < 70 ? 1U : 0U;
+    }
+  }
+  return red > 1000;
+}
+
+class WindowTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::Folder;
+    const std::string command = "xvfb-run -a -s '-screen 0 1280x720x24' " +
+                                std::string(TORSION_SOURCE_DIR) + "/tests/app/window_test.sh " +
+                                std::string(TORSION_BINARY_DIR) + "/torsion " +
+                                test::scene("ball_on_cube_soft") + " " + (*folder_ / ".") + " > " +
+                                (*folder_ / "log") + " 2>&1";
+    status_ = std::system(command.c_str());  // NOLINT(cert-env33-c,concurrency-mt-unsafe): a script
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  void SetUp() override {
+    ASSERT_EQ(status_, 0) << read_text(*folder_ / "log") << read_text(*folder_ / "session.err");
+  }
+  static Image shot(int number) {
+    const Result<Image> image =
+        read_png(*folder_ / ("ball_on_cube_soft_" + std::to_string(number) + ".png"));
+    EXPECT_TRUE(image.ok());
+    return image.ok() ? image.value() : Image{};
+  }
+
+  static test::Folder* folder_;
+  static int status_;
+};
+test::Folder* WindowTest::folder_ = nullptr;
+int WindowTest::status_ = -1;
+
+TEST_F(WindowTest, ValidationLayersAreSilent) {
+  // The layers write to stdout; the session's JSON is all that may be there.
+  const std::string out = read_text(*folder_ / "session.json");
+  EXPECT_EQ(out.find("VUID"), std::string::npos) << out;
+  EXPECT_EQ(out.find("SYNC-HAZARD"), std::string::npos) << out;
+  EXPECT_EQ(out.find("Validation"), std::string::npos) << out;
+}
+
+TEST_F(WindowTest, TheMousePressesTheToolAndItIsFelt) {
+  const auto session = nlohmann::json::parse(read_text(*folder_ / "session.json"));
+  EXPECT_GT(session["pictures"].get<int>(), 10);
+  // Reloaded at the end, so what was felt is in the pictures: the plots on the right.
+  EXPECT_GT(changed(shot(1), shot(2), 1010, 80, 1260, 280), 0.005);
+  // And the ball and the arrows over the body.
+  EXPECT_GT(changed(shot(1), shot(2), 480, 60, 800, 400), 0.02);
+}
+
+TEST_F(WindowTest, DraggingBesideTheToolTurnsTheView) {
+  EXPECT_GT(changed(shot(2), shot(3), 340, 400, 930, 640), 0.2);
+}
+
+TEST_F(WindowTest, SurvivesBeingTakenAwayAndAnotherSize) {
+  const Image image = shot(4);
+  EXPECT_EQ(image.width, 900U);
+  EXPECT_EQ(image.height, 600U);
+}
+
+TEST_F(WindowTest, ABadSceneFileIsSaidAndTheOldSceneStaysUntilItIsGoodAgain) {
+  EXPECT_FALSE(has_red_banner(shot(4)));
+  EXPECT_TRUE(has_red_banner(shot(5)));
+  EXPECT_FALSE(has_red_banner(shot(6)));
+  // The body in the middle is still drawn.
+  EXPECT_LT(changed(shot(4), shot(5), 350, 300, 550, 400), 0.9);
+}
+
+TEST_F(WindowTest, ItsRecordingPlaysBack) {
+  const test::Ran ran = test::run_torsion({"simulate", *folder_ / "ball_on_cube_soft.gltf",
+                                           "--replay", *folder_ / "session.rec", "--json"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_GT(nlohmann::json::parse(ran.out)["steps"].get<int>(), 100);
+}
+
+}  // namespace
+}  // namespace torsion

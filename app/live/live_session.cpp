@@ -11,14 +11,16 @@
 namespace torsion {
 namespace {
 
-// A ball of radius r pressed a tenth of r deep into a half-space takes 4/3 E* r^2 0.1^(3/2) =
-// 0.042 E* r^2 (Hertz), with a stiffness of 2 E* r 0.1^(1/2) = 0.63 E* r: the largest force is that
-// one, and the coupling is softer than the contact, so that the hand's shaking does not show.
-constexpr double kForceShare = 0.04;      // of E* r^2
-constexpr double kStiffnessShare = 0.15;  // of E* r
-// The friction's torque at that depth, 3 pi / 16 mu F a with a = 0.32 r, is 0.006 E* r^3.
-constexpr double kTorqueShare = 0.01;     // of E* r^3
-constexpr double kTurnStiffShare = 0.05;  // of E* r^3: a fifth of a radian at the largest torque
+// A ball of radius r pressed a quarter of r deep into a half-space takes 4/3 E* r^2 0.25^(3/2) =
+// 0.17 E* r^2 (Hertz), with a stiffness of 2 E* r 0.25^(1/2) = E* r: the largest force is that one,
+// which is as deep as scenes go, and the coupling is half as stiff as the contact, so that the
+// hand's shaking does not show.
+constexpr double kForceShare = 0.17;     // of E* r^2
+constexpr double kStiffnessShare = 0.5;  // of E* r
+// The friction's torque at that depth, 3 pi / 16 mu F a with a = r / 2 and mu = 0.75, is
+// 0.04 E* r^3.
+constexpr double kTorqueShare = 0.04;    // of E* r^3
+constexpr double kTurnStiffShare = 0.1;  // of E* r^3: 0.4 rad at the largest torque
 
 }  // namespace
 

@@ -347,7 +347,7 @@ void banners(const ViewState& state, const LiveSession& session, double now) {
   if (frame.statistics.lost_inputs > 0) {
     banner("##lost", "Inputs were lost: this recording cannot be replayed. Restart.", top, kRed);
   }
-  if (now < state.message_until) {
+  if (now < state.message_until && !state.wants_screenshot) {
     banner("##message", state.message, top, IM_COL32(40, 100, 60, 240));
   }
 }

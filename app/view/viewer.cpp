@@ -234,7 +234,7 @@ Result<Done> Viewer::show(const WindowInput& input, const OverlayDrawList& overl
   widen_scales(snapshot, state_.draw, twist_scale_, pressure_scale_);
   const bool keep = state_.wants_screenshot;
   const Result<bool> drawn = renderer_->show(shown.frame, snapshot, camera(), state_.draw, &overlay,
-                                             {input.width, input.height, state_.share, keep});
+                                             {input.width, input.height, keep ? 1.0 : state_.share, keep});
   if (!drawn) {
     return drawn.error();
   }

@@ -87,8 +87,9 @@ TEST(LiveSessionTest, AMouseHoldsNoDeeperThanTheModelsGo) {
   const double modulus = session.scene.bodies[0].elasticity.contact_modulus();
   const double depth =
       std::pow(coupling.largest_force / (4.0 / 3.0 * modulus * std::sqrt(0.05)), 2.0 / 3.0);
-  EXPECT_LT(depth, 0.1 * 0.05);
-  EXPECT_GT(depth, 0.05 * 0.05);
+  // Deep enough for the shipped scenes' presses, short of half the tool, which is a fault.
+  EXPECT_LT(depth, 0.3 * 0.05);
+  EXPECT_GT(depth, 0.2 * 0.05);
 }
 
 }  // namespace

@@ -233,8 +233,9 @@ Result<Done> Viewer::show(const WindowInput& input, const OverlayDrawList& overl
   surface_field(shown.simulation.world, snapshot, shown.frame);
   widen_scales(snapshot, state_.draw, twist_scale_, pressure_scale_);
   const bool keep = state_.wants_screenshot;
-  const Result<bool> drawn = renderer_->show(shown.frame, snapshot, camera(), state_.draw, &overlay,
-                                             {input.width, input.height, keep ? 1.0 : state_.share, keep});
+  const Result<bool> drawn =
+      renderer_->show(shown.frame, snapshot, camera(), state_.draw, &overlay,
+                      {input.width, input.height, keep ? 1.0 : state_.share, keep});
   if (!drawn) {
     return drawn.error();
   }

@@ -26,10 +26,10 @@ std::vector<std::string> problems_of(const ListedDevice& device, const DevicesOp
                     udev_rule(device.identity), udev_advice()));
   }
   if (device.access == DeviceTrouble::kHeldElsewhere) {
-    problems.push_back(fmt::format("another program holds it: {}", device.holder));
+    problems.emplace_back("another program holds it: " + device.holder);
   }
   if (device.access == DeviceTrouble::kSilent) {
-    problems.push_back("it cannot be opened; unplug it and plug it in again");
+    problems.emplace_back("it cannot be opened; unplug it and plug it in again");
   }
   if (device.kind == DeviceKind::kFalcon) {
     const auto path = options.choice.falcon_firmware.empty() ? usual_falcon_firmware()

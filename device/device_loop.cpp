@@ -40,7 +40,7 @@ bool counts(const DeviceRow& row) {
 }
 
 DeviceRow* first_of(DeviceLoop& loop, DeviceKind kind) {
-  const auto found = std::ranges::find_if(
+  auto* const found = std::ranges::find_if(
       loop.rows, [kind](const DeviceRow& row) { return counts(row) && row.kind == kind; });
   return found != loop.rows.end() ? &*found : nullptr;
 }
@@ -189,7 +189,7 @@ void compose(DeviceLoop& loop) {
 
 /// Whose samples are the samples of the whole: one that translates, or the only one.
 bool leads(const DeviceLoop& loop, std::size_t row) {
-  const auto leader = std::ranges::find_if(loop.rows, [](const DeviceRow& other) {
+  const auto* const leader = std::ranges::find_if(loop.rows, [](const DeviceRow& other) {
     return other.used &&
            (translates(other.role) || (other.role == DeviceRole::kPoint && other.point == 0));
   });
@@ -229,10 +229,8 @@ Wrench on_sample(void* context, const DeviceSample& sample) {
   DeviceRow& device = loop.rows[row];
   const bool was_live = loop.whole.state == DeviceState::kLive;
   const std::uint32_t kept = loop.whole.epoch;
-  if (sample.state != DeviceState::kLive) {
+  if (sample.state != DeviceState::kLive || device.role == DeviceRole::kNone) {
     give_roles(loop);  // a trouble may have taken it out, or brought it back
-  } else if (device.role == DeviceRole::kNone) {
-    give_roles(loop);
   }
   compose(loop);
   const bool live = loop.whole.state == DeviceState::kLive;
@@ -274,7 +272,7 @@ void occupy(DeviceLoop& loop, std::size_t row, const UsbIdentity& identity, Devi
 }  // namespace
 
 std::size_t free_row(const DeviceLoop& loop) {
-  const auto found = std::ranges::find(loop.rows, false, &DeviceRow::used);
+  const auto* const found = std::ranges::find(loop.rows, false, &DeviceRow::used);
   return static_cast<std::size_t>(found - loop.rows.begin());
 }
 

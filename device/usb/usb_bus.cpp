@@ -41,7 +41,7 @@ struct UsbBus::State {
   double give_up_at = kNever;  // s: when the thread ends whatever is still open
   std::thread thread;
 
-  void ask(UsbPort& port, KeeperTask task, const UsbRequest& request = {}) {
+  void ask(UsbPort& port, KeeperTask task, const UsbRequest& request = {}) const {
     port.jobs += 1;
     keeper->ask({task, &port, request, UsbStatus::kCompleted});
   }
@@ -127,7 +127,7 @@ struct UsbBus::State {
     left.clear();
     std::vector<libusb_device*> waiting;
     for (libusb_device* device : came) {
-      const auto free = std::ranges::find(ports, UsbPortState::kFree, &UsbPort::state);
+      auto* const free = std::ranges::find(ports, UsbPortState::kFree, &UsbPort::state);
       if (stop || free == ports.end()) {
         waiting.push_back(device);  // until a port is free
         continue;
@@ -261,7 +261,7 @@ struct UsbBus::State {
            });
   }
 
-  void wait_for_events(double now) {
+  void wait_for_events(double now) const {
     const double until = std::min(next_wake(loop), now + (stop ? 1e-3 : kLongestWait));
     const auto microseconds =
         static_cast<std::int64_t>(1e6 * std::clamp(until - now, 0.0, kLongestWait));

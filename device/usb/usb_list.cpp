@@ -101,8 +101,9 @@ void try_out(libusb_device* device, ListedDevice& listed) {
     listed.holder = listed.holder.empty() ? "one of another user" : listed.holder;
   }
   std::ranges::sort(listed.kernel_drivers);
-  const auto repeated = std::ranges::unique(listed.kernel_drivers);
-  listed.kernel_drivers.erase(repeated.begin(), repeated.end());
+  listed.kernel_drivers.erase(
+      std::unique(listed.kernel_drivers.begin(), listed.kernel_drivers.end()),
+      listed.kernel_drivers.end());
 }
 
 }  // namespace

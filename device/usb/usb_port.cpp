@@ -96,7 +96,7 @@ void free_transfers(UsbPort& port) {
 }
 
 bool submit(UsbPort& port, const UsbRequest& request) {
-  const auto free = std::ranges::find(port.pool, false, &UsbTransfer::under_way);
+  auto* const free = std::ranges::find(port.pool, false, &UsbTransfer::under_way);
   if (free == port.pool.end()) {
     refuse(port, request);
     return true;

@@ -83,18 +83,12 @@ Result<SmoothCompliance> load_or_build_smooth_compliance(const ElasticSolid& sol
                                                          std::span<const Port> ports,
                                                          const SmoothComplianceOptions& options);
 
-/// Where contacts are expected.
-struct Focus {
-  glm::dvec3 center{0.0};  // m, body
-  double radius = 0.0;     // m
-};
-
 /// Up to `count` ports spread over the free surface, each next one farthest from all before it and
-/// from the clamp, in distances that count 2.5 times as much in the focuses as a shortest side away
-/// from them; none at the clamp, none so near a sharp edge that the surface bends away within a
-/// third of the ports' mean spacing.
-/// @param focuses  without any: the end of the body opposite of the clamp
-std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count,
-                               std::span<const Focus> focuses = {});
+/// from the clamp, in distances that count 2.5 times as much at the end of the body opposite of the
+/// clamp as a shortest side away from it; none at the clamp, none so near a sharp edge that the
+/// surface bends away within a third of the ports' mean spacing. Where a scene's contacts are does
+/// not count: on the side of a cube, and of a column twice as high as wide, 128 ports so chosen are
+/// within 0.2 and 0.4 % of 500 that are densest there, and one cache serves all scenes of a body.
+std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count);
 
 }  // namespace torsion

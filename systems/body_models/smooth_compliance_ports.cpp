@@ -116,17 +116,21 @@ std::size_t far_end(const Bounds& bounds, const std::vector<Port>& candidates,
       candidates.begin());
 }
 
-/// How far apart ports are to be at each candidate, over how far in the focuses.
-/// @param reach  m: beyond a focus, until it is the largest
-std::vector<double> wanted_sizes(const std::vector<Port>& candidates,
-                                 std::span<const Focus> focuses, double reach) {
+/// A ball where ports are densest.
+struct Focus {
+  glm::dvec3 center{0.0};  // m, body
+  double radius = 0.0;     // m
+};
+
+/// How far apart ports are to be at each candidate, over how far in the focus.
+/// @param reach  m: beyond the focus, until it is the largest
+std::vector<double> wanted_sizes(const std::vector<Port>& candidates, const Focus& focus,
+                                 double reach) {
   constexpr double kLargest = 2.5;
   std::vector<double> sizes(candidates.size());
   std::transform(candidates.begin(), candidates.end(), sizes.begin(), [&](const Port& port) {
-    double beyond = reach;
-    for (const Focus& focus : focuses) {
-      beyond = std::min(beyond, glm::distance(port.position, focus.center) - focus.radius);
-    }
+    const double beyond =
+        std::min(reach, glm::distance(port.position, focus.center) - focus.radius);
     return 1.0 + (kLargest - 1.0) * std::max(beyond, 0.0) / reach;
   });
   return sizes;
@@ -134,8 +138,7 @@ std::vector<double> wanted_sizes(const std::vector<Port>& candidates,
 
 }  // namespace
 
-std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count,
-                               std::span<const Focus> focuses) {
+std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count) {
   const SurfacePoints points = sample_surface(solid);
   const double spacing = std::sqrt(points.area / std::max(count, 1U));
   std::vector<Port> candidates;
@@ -152,8 +155,7 @@ std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count,
   std::size_t next = far_end(solid.bounds, candidates, points.clamped);
   const glm::dvec3 extent = solid.bounds.highest - solid.bounds.lowest;
   const Focus end{candidates[next].position, 0.5 * std::min({extent.x, extent.y, extent.z})};
-  const std::vector<double> sizes =
-      wanted_sizes(candidates, focuses.empty() ? std::span(&end, 1) : focuses, 2.0 * end.radius);
+  const std::vector<double> sizes = wanted_sizes(candidates, end, 2.0 * end.radius);
   std::vector<double> nearest(candidates.size(), std::numeric_limits<double>::infinity());
   const auto keep_away = [&](const glm::dvec3& from) {
     for (std::size_t i = 0; i < candidates.size(); ++i) {

@@ -253,6 +253,9 @@ struct RegionSupport {
   glm::dvec3 rotation{0.0};          // rad, body: rotation vector
   glm::dvec3 translation_step{0.0};  // m: by the last step
   glm::dvec3 rotation_step{0.0};     // rad
+  // The part of it that the body's other regions have to do with; the rest is by its own load.
+  glm::dvec3 translation_by_others{0.0};  // m, body, likewise
+  glm::dvec3 rotation_by_others{0.0};     // rad
 };
 
 inline constexpr std::uint32_t kSupportTerms = 15;
@@ -491,6 +494,16 @@ struct Footing {
   // Forces at the ports that are a unit wrench about `center`, spread as a rigid disc would.
   std::array<std::array<glm::dvec3, kFootingPorts>, 6> unit_forces{};
   std::array<double, 36> own{};  // 6 x 6: motion at `center` by that unit wrench, what yields of it
+};
+
+inline constexpr std::uint32_t kSupportColumn = 16;  // terms of one axis, with one more of zero
+
+/// What becomes of a region's tractions through its footing's ports: the three axes' terms,
+/// body axes, by the tractions' moments with their terms, m/N. Column by column; in a column and
+/// from one column to the next kSupportColumn an axis. Written by: patch_forces.
+struct FootingResponse {
+  std::uint64_t serial = 0;  // of the footing for which it was found
+  std::array<double, std::size_t{9} * kSupportColumn * kSupportColumn> terms{};
 };
 
 /// 6 x 6, body axes: how a wrench on one region moves the material under another one. Written by:

@@ -100,7 +100,8 @@ struct World {
   PatchCellTable patch_cells;  // the same rows as `cells`; none without contact model patch
   MdrLayerTable mdr_layers;    // kMdrLayers rows a block of cells; none without contact model mdr
   Table<Influence> layer_influences;  // tables of one grid a block of cells; none without layers
-  Table<Footing> footings;            // one a block of cells; none without body model compliance
+  Table<Footing, FootingResponse>
+      footings;  // one a block of cells; none without body model compliance
   Table<RegionCoupling>
       couplings;  // likewise, one for each two blocks: i, j < i at i (i - 1)/2 + j
   AnchorTable anchors;

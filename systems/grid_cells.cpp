@@ -7,6 +7,7 @@
 
 #include "systems/distance_shapes.hpp"
 #include "systems/frames.hpp"
+#include "systems/patch_grid.hpp"
 #include "systems/widest.hpp"
 
 namespace torsion {
@@ -222,8 +223,13 @@ CellBits find_coverage(const Grid& grid) {
   std::size_t cell = 0;
   const double* normal = columns.points.gradient_z.data();
   double* coverage = columns.coverage.data();
+  const bool spares = has_patch(grid.world, grid.identity) && patch_spare(grid.side) > 0;
   for (std::uint32_t j = 0; j < grid.side; ++j) {
     std::uint64_t row = 0;
+    if (spares) {
+      // Takes no part: there are as many columns on either side of a contact's middle.
+      coverage[cell] = 0.0;
+    }
     for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
       if (normal[cell] < kFullyFacing && coverage[cell] > 0.0) {
         take_depth_from_plane(grid, cell, facing_share(normal[cell]));

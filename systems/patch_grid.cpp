@@ -12,8 +12,8 @@
 namespace torsion {
 namespace {
 
-constexpr double kFill = 0.75;          // of a new grid by the cells with pressure
-constexpr double kSmallestFill = 0.55;  // below it the grid is laid anew, smaller
+constexpr double kFill = 0.81;          // of a new grid by the cells with pressure
+constexpr double kSmallestFill = 0.74;  // over that: below it the grid is laid anew, smaller
 constexpr double kSteepest = 0.25;      // smallest cosine that is divided by
 constexpr double kSure = 1.3;           // over the point load's far field: what certainly touches
 
@@ -44,6 +44,20 @@ glm::dvec2 cell_size(const Grid& grid) {
   return 2.0 * cell_half_size(grid);
 }
 
+bool reaches_edge(const Grid& grid, const CellBox& box) {
+  const auto side = static_cast<int>(grid.side);
+  const auto spare = static_cast<int>(patch_spare(grid.side));
+  return box.first.x < 1 + spare || box.first.y < 1 || box.end.x > side - 1 || box.end.y > side - 1;
+}
+
+/// No more than what leaves a free row on either side, or the next step would lay it anew: of a
+/// contact in the middle half a cell more on either side has no cell's centre in it.
+double fill_of_new(std::uint32_t side) {
+  constexpr double kLess = 0.04;  // of a cell
+  const double free = static_cast<double>(patch_spare(side)) + 1.0 + kLess;
+  return std::min(kFill, std::max(1.0 - free / static_cast<double>(side), 0.5));
+}
+
 /// Takes in the contact points outside the grid that lie deeper than the pressure can have pushed
 /// the surface away there.
 void include_lobes(const Grid& grid, std::uint32_t region, const RegionPoints& contact,
@@ -53,6 +67,7 @@ void include_lobes(const Grid& grid, std::uint32_t region, const RegionPoints& c
   const double modulus = world.bodies.at<Elasticity>(grid.identity.body).contact_modulus();
   const glm::dvec3 center =
       body_to_grid(grid.frame, world.regions.at<RegionGeometry>(region).equivalent_point);
+  const RegionSupport& support = world.regions.at<RegionSupport>(region);
   for (const ContactPoint& point : points_of(grid.scratch, contact)) {
     if (point.cluster != contact.cluster) {
       continue;
@@ -62,8 +77,12 @@ void include_lobes(const Grid& grid, std::uint32_t region, const RegionPoints& c
       continue;
     }
     const double distance = glm::length(glm::dvec2(place - center));
+    // Points are found against the rest shape: what the whole body has sunk there is no overlap.
+    const double sunk = -glm::dot(
+        grid.frame.normal,
+        support.translation + glm::cross(support.rotation, point.position - support.about));
     // Far field of a point load, F / (pi E* r): Johnson, Contact Mechanics, 1985, (3.22a).
-    if (point.depth * std::numbers::pi * modulus * distance > kSure * force) {
+    if ((point.depth - sunk) * std::numbers::pi * modulus * distance > kSure * force) {
       const glm::dvec2 at =
           (glm::dvec2(place) / grid.frame.half_size + 1.0) * 0.5 * static_cast<double>(grid.side);
       const glm::ivec2 cell(glm::floor(at));
@@ -84,6 +103,7 @@ struct Before {
   std::span<const PatchCell> cells;
   std::span<const CellTraction> tractions;
   int side;
+  int spare;  // columns that hold nothing
 };
 
 /// Between the old cells around `place` (in cells, from the first one's centre).
@@ -93,10 +113,19 @@ struct Resampled {
 };
 
 bool inside(const Before& before, const glm::ivec2& cell) {
-  return cell.x >= 0 && cell.y >= 0 && cell.x < before.side && cell.y < before.side;
+  return cell.x >= before.spare && cell.y >= 0 && cell.x < before.side && cell.y < before.side;
 }
 
-Resampled resample(const Before& before, const glm::dvec2& place) {
+/// On a cell's centre but for rounding: there, so that mirror images fall on the same side of it.
+glm::dvec2 on_centers(const glm::dvec2& place) {
+  constexpr double kNear = 1e-6;
+  const glm::dvec2 nearest = glm::round(place);
+  return {std::abs(place.x - nearest.x) < kNear ? nearest.x : place.x,
+          std::abs(place.y - nearest.y) < kNear ? nearest.y : place.y};
+}
+
+Resampled resample(const Before& before, const glm::dvec2& cells) {
+  const glm::dvec2 place = on_centers(cells);
   const glm::dvec2 low = glm::floor(place);
   const glm::dvec2 part = place - low;
   const glm::ivec2 corner(low);
@@ -118,14 +147,15 @@ Resampled resample(const Before& before, const glm::dvec2& place) {
     }
   }
   // The displacement is smooth: four points a way keep it, two would wear it down.
-  if (!inside(before, corner - 1) || !inside(before, corner + 2)) {
+  const glm::ivec2 between(part.x > 0.0 ? 1 : 0, part.y > 0.0 ? 1 : 0);
+  if (!inside(before, corner - between) || !inside(before, corner + 2 * between)) {
     return result;
   }
   const std::array<double, 4> cubic_x = cubic_weights(part.x);
   const std::array<double, 4> cubic_y = cubic_weights(part.y);
   for (int y = 0; y < 4; ++y) {
     for (int x = 0; x < 4; ++x) {
-      const glm::ivec2 at = corner + glm::ivec2(x - 1, y - 1);
+      const glm::ivec2 at = corner + between * glm::ivec2(x - 1, y - 1);
       const double weight =
           cubic_x[static_cast<std::size_t>(x)] * cubic_y[static_cast<std::size_t>(y)];
       result.cell.held +=
@@ -152,7 +182,7 @@ void copy_cells(const Grid& grid) {
 void move_cells(const Grid& grid, const CellMove& move, double depth) {
   copy_cells(grid);
   const Before before{grid.scratch.patch_before, grid.scratch.tractions_before,
-                      static_cast<int>(grid.side)};
+                      static_cast<int>(grid.side), static_cast<int>(patch_spare(grid.side))};
   const auto cells = grid.world.patch_cells.rows<PatchCell>(grid.identity.cells);
   const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
   std::size_t cell = 0;
@@ -181,18 +211,24 @@ void back_to_surface(const Grid& grid) {
 /// @return how the cells moved
 CellMove move_frame(const Grid& grid, const CellBox& box) {
   const double side = static_cast<double>(grid.side);
+  const glm::dvec2 off = patch_middle(grid.side) - 0.5 * side;
   const glm::dvec2 size = cell_size(grid);
   const glm::dvec2 half = 0.5 * size * glm::dvec2(box.end - box.first);
-  const glm::dvec2 wanted = patch_half_size(half / kFill);
+  const glm::dvec2 wanted = patch_half_size(half / fill_of_new(grid.side));
   glm::dvec2 middle = 0.5 * glm::dvec2(box.first + box.end);  // in cells from the grid's corner
   CellMove move;
   const glm::dvec2 growth = wanted / grid.frame.half_size;
-  const bool keeps_size = growth.x == growth.y && growth.x > 0.8 && growth.x < 1.2;
+  // With a free row or column on either side, or the next step would lay it anew.
+  const glm::ivec2 room = glm::ivec2(static_cast<int>(grid.side)) - (box.end - box.first) -
+                          glm::ivec2(static_cast<int>(patch_spare(grid.side)), 0);
+  const bool keeps_size =
+      growth.x == growth.y && growth.x > 0.8 && growth.x < 1.2 && std::min(room.x, room.y) >= 2;
   if (keeps_size) {
-    move.origin = glm::round(middle - 0.5 * side);
+    move.origin = glm::round(middle - off - 0.5 * side);
     middle = 0.5 * side + move.origin;
   } else {
     move.scale = growth;
+    middle -= off * growth;
     move.origin = middle - 0.5 - 0.5 * (side - 1.0) * growth;
     grid.frame.half_size = wanted;
   }
@@ -213,6 +249,16 @@ std::int32_t patch_aspect(const glm::dvec2& half_size) {
       std::clamp(std::round(ratio), -1.0 * kMostAspect, 1.0 * kMostAspect));
 }
 
+glm::dvec2 patch_middle(std::uint32_t side) {
+  const double half = 0.5 * static_cast<double>(side);
+  return {half + 0.5 * patch_spare(side), half};
+}
+
+std::uint32_t patch_spare(std::uint32_t side) {
+  constexpr std::uint32_t kCoarsest = 6;
+  return side % 2 == 0 && side >= kCoarsest ? 1 : 0;
+}
+
 glm::dvec2 patch_half_size(const glm::dvec2& least) {
   const double aspect = std::ldexp(1.0, patch_aspect(least));
   const double half = std::max(least.x, least.y * aspect);
@@ -225,17 +271,28 @@ void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints
   if (box.end.x == 0) {
     return;
   }
-  include_lobes(grid, region, contact, box);
-  const auto side = static_cast<int>(grid.side);
+  if (!reaches_edge(grid, box)) {
+    // Only then: a contact that has outgrown its grid has points outside of it anyway, and which
+    // ones is chance.
+    include_lobes(grid, region, contact, box);
+  }
   const glm::ivec2 extent = box.end - box.first;
-  const bool at_edge =
-      box.first.x < 1 || box.first.y < 1 || box.end.x > side - 1 || box.end.y > side - 1;
-  const bool too_small = std::max(extent.x, extent.y) < static_cast<int>(kSmallestFill * side);
-  if (!at_edge && !too_small) {
+  const bool too_small =
+      std::max(extent.x, extent.y) <
+      static_cast<int>(kSmallestFill * fill_of_new(grid.side) * static_cast<double>(grid.side));
+  if (!reaches_edge(grid, box) && !too_small) {
     return;
   }
   const double depth = context.world.regions.at<RegionGeometry>(region).largest_depth;
+  const glm::dvec3 origin = grid.frame.origin;
   move_cells(grid, move_frame(grid, box), depth);
+  // The material's motion is told at the grid's origin, which has moved.
+  RegionCarrier& carrier = context.world.regions.at<RegionCarrier>(region);
+  const double turn = glm::length(carrier.rotation);
+  if (turn > 0.0) {
+    const glm::dvec3 way = grid.frame.origin - origin;
+    carrier.translation += glm::angleAxis(turn, carrier.rotation / turn) * way - way;
+  }
   context.world.regions.at<PatchState>(region).moved = 1;
 }
 

@@ -17,6 +17,16 @@ bool has_patch(const World& world, const RegionIdentity& region);
 /// @param least  m
 glm::dvec2 patch_half_size(const glm::dvec2& least);
 
+/// Where a contact's middle is laid in a grid, in cells from its corner: in the middle of a column
+/// and between two rows. Each axis
+/// alone is mirror-symmetric, but the two staircases of the contact's rim differ: where they are
+/// the same their errors add up, to three times as much in the torque.
+glm::dvec2 patch_middle(std::uint32_t side);
+
+/// Columns at the grid's left that stay empty for that, so that as many are on either side of the
+/// middle: 1, or 0 where the grid is too coarse to spare one or odd already.
+std::uint32_t patch_spare(std::uint32_t side);
+
 /// Which of those shapes a grid has: -kMostAspect to kMostAspect.
 std::int32_t patch_aspect(const glm::dvec2& half_size);
 

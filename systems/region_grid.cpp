@@ -25,6 +25,8 @@ constexpr double kSettled =
 constexpr double kSteepest =
     0.25;  // smallest cosine between the surface's normal and the grid's that is divided by
 constexpr double kSmallestHalf = 1e-9;  // m
+constexpr int kCenteringPasses = 24;    // of a new grid of contact model patch
+constexpr double kCentered = 1e-10;     // of the grid
 
 /// A box in the grid's plane; empty while lowest > highest.
 struct PlaneBox {
@@ -86,6 +88,13 @@ glm::dvec2 half_size_for(const Grid& grid, const PlaneBox& box) {
   }
   const double least = std::max(0.1 * std::max(half.x, half.y), kSmallestHalf);
   return kMargin * glm::max(half, glm::dvec2(least));
+}
+
+/// Outward normal of the body's surface nearest to a point of its frame.
+glm::dvec3 body_normal(const Grid& grid, const glm::dvec3& point) {
+  return glm::normalize(
+      signed_distance(grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts, point)
+          .gradient);
 }
 
 /// Puts the grid around `box` (of its own plane) and its origin back on the body's rest surface.
@@ -169,6 +178,47 @@ void find_contact(const Grid& grid, const RegionPoints& contact, double start_de
     fit(grid, box);
     restart_heights(grid, start_depth);
   }
+}
+
+/// Middle of the overlap in the grid's plane, weighted with its depth, m.
+glm::dvec2 overlap_middle(const Grid& grid) {
+  double sum = 0.0;
+  glm::dvec2 moment(0.0);
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
+      const double weight = grid.cells[cell].coverage * std::max(grid.cells[cell].depth, 0.0);
+      sum += weight;
+      moment += weight * cell_center(grid.frame, grid.side, i, j);
+    }
+  }
+  return sum > 0.0 ? moment / sum : glm::dvec2(0.0);
+}
+
+/// Lays a new grid of contact model `patch` by the overlap alone: where the tool's samples lie must
+/// not matter, or mirrored motions would differ. Every pass finds the overlap on the grid of the
+/// last one; what depends on how its cells lie fades by a power of ten each.
+void center_patch(const Grid& grid, const RegionPoints& contact, double start_depth) {
+  const double side = static_cast<double>(grid.side);
+  for (int pass = 0; pass < kCenteringPasses; ++pass) {
+    const PlaneBox box = covered_box(grid, find_cells(grid, contact));
+    if (box.empty()) {
+      return;
+    }
+    const glm::dvec2 before = grid.frame.half_size;
+    const glm::dvec2 off = patch_middle(grid.side) / side * 2.0 - 1.0;  // of the half sides
+    const glm::dvec2 middle = overlap_middle(grid);
+    const glm::dvec2 half = half_size_for(grid, box);
+    const glm::dvec2 shift = middle - off * half;
+    fit(grid, {middle - off * half - half / kMargin, middle - off * half + half / kMargin});
+    turn_normal_to(grid.frame, body_normal(grid, grid.frame.origin));
+    restart_heights(grid, start_depth);
+    const glm::dvec2 change = glm::max(glm::abs(shift), glm::abs(half - before)) / half;
+    if (std::max(change.x, change.y) < kCentered) {
+      break;
+    }
+  }
+  find_cells(grid, contact);
 }
 
 /// Sums over a grid's cells in contact, every eighth one after another.
@@ -331,6 +381,9 @@ void region_grids(StepContext& context) {
           deepest_point(points_of(grid.scratch, contact), contact.cluster, deepest);
       find_contact(grid, contact, depth,
                    context.world.regions.at<RegionWrench>(region).event_now != 0);
+      if (has_patch(context.world, grid.identity)) {
+        center_patch(grid, contact, depth);
+      }
     }
     context.world.regions.at<RegionGeometry>(region) = summarize(grid);
   }

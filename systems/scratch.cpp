@@ -55,6 +55,10 @@ void Scratch::reserve(const World& world) {
           &patch.slips, &support_columns.x, &support_columns.y, &support_columns.z}) {
       *each = column();
     }
+    if (!world.footings.empty()) {
+      patch_support.assign(kSupportColumns * cells, 0.0);
+    }
+    patch_work.reserve(side);
     patch_before.assign(cells, PatchCell{});
     tractions_before.assign(cells, CellTraction{});
   }

@@ -67,8 +67,8 @@ struct CellColumns {
   std::span<double> coverage;                // as in CellGeometry
 };
 
-/// How far the body as a whole has moved the cells of one region, beside its RegionSupport, m, in
-/// the grid's frame.
+/// How far the body as a whole has moved the cells of one region, beside its RegionSupport, m:
+/// along the grid's axes and into the body.
 struct SupportColumns {
   std::span<double> x, y, z;
 };
@@ -118,6 +118,8 @@ struct Scratch {
   // patch_forces
   PatchColumns patch_columns;           // (cells of one region)
   SupportColumns support_columns;       // (cells of one region)
+  std::vector<double> patch_support;    // (kSupportColumns x cells of one region)
+  PatchWork patch_work;                 // likewise
   std::vector<PatchCell> patch_before;  // (cells of one region) while its grid moves
   std::vector<CellTraction> tractions_before;
 

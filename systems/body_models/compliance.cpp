@@ -30,14 +30,52 @@ Vector6 support_at(const RegionSupport& support, const glm::dvec3& point) {
   return motion;
 }
 
+/// The part of it that other regions have to do with.
+Vector6 support_by_others(const RegionSupport& support, const glm::dvec3& point) {
+  Vector6 motion;
+  motion << eigen(support.translation_by_others +
+                  glm::cross(support.rotation_by_others, point - support.about)),
+      eigen(support.rotation_by_others);
+  return motion;
+}
+
+/// The motion that Newton's step starts from. A region with contact model patch, which knows in its
+/// own equations what its load does (patch_support.hpp), stands where that has moved it.
+Vector6 support_now(const CompliantBody& body, const Stand& stand) {
+  const RegionSupport& support = body.world.regions.at<RegionSupport>(stand.region);
+  const glm::dvec3& center = footing_of(body, stand).center;
+  return stand.solved ? Vector6(stand.motion + support_by_others(support, center))
+                      : support_at(support, center);
+}
+
+/// Of such a region Newton's change is that by the others less what its own load gives way by it:
+/// the former is its own part of the equations, (I + C K) du.
+/// @param scaled  y of fill_equations
+/// @return where its support is to be
+Vector6 move_by_others(const CompliantBody& body, const Stand& stand, const StiffnessRoot& root,
+                       const Vector6& scaled) {
+  const Footing& footing = footing_of(body, stand);
+  RegionSupport& support = body.world.regions.at<RegionSupport>(stand.region);
+  Vector6 by_others = support_by_others(support, footing.center) + root.inverse * scaled;
+  if (footing.on_layer == 0) {
+    by_others += Eigen::Map<const Matrix6>(footing.own.data()) * (root.root * scaled);
+  }
+  support.translation_by_others = {by_others[0], by_others[1], by_others[2]};
+  support.rotation_by_others = {by_others[3], by_others[4], by_others[5]};
+  return stand.motion + by_others;
+}
+
 void move_supports(const CompliantBody& body, const Eigen::Map<Eigen::VectorXd>& change,
                    const std::array<StiffnessRoot, kMaxRegionsPerBody>& roots) {
   for (std::size_t i = 0; i < body.count; ++i) {
-    const glm::dvec3& center = footing_of(body, body.stands[i]).center;
-    RegionSupport& support = body.world.regions.at<RegionSupport>(body.stands[i].region);
+    const Stand& stand = body.stands[i];
+    const glm::dvec3& center = footing_of(body, stand).center;
+    RegionSupport& support = body.world.regions.at<RegionSupport>(stand.region);
     const Vector6 before = support_at(support, center);
-    const Vector6 step = roots[i].inverse * change.segment<6>(static_cast<Eigen::Index>(6 * i));
-    const Vector6 after = before + step;
+    const Vector6 scaled = change.segment<6>(static_cast<Eigen::Index>(6 * i));
+    const Vector6 after = stand.solved ? move_by_others(body, stand, roots[i], scaled)
+                                       : Vector6(before + roots[i].inverse * scaled);
+    const Vector6 step = after - before;
     support.about = center;
     support.translation = {after[0], after[1], after[2]};
     support.rotation = {after[3], after[4], after[5]};
@@ -61,9 +99,7 @@ void fill_equations(const CompliantBody& body,
     if (footing.on_layer == 0) {
       own += roots[i].root * Eigen::Map<const Matrix6>(footing.own.data()) * roots[i].root;
     }
-    change.segment<6>(at) +=
-        stand.motion -
-        support_at(body.world.regions.at<RegionSupport>(stand.region), footing.center);
+    change.segment<6>(at) += stand.motion - support_now(body, stand);
     for (std::size_t j = i + 1; j < body.count; ++j) {
       const Stand& other = body.stands[j];
       const Eigen::Map<const Matrix6> stored(coupling_between(body, stand, other).motion.data());

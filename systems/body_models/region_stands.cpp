@@ -246,6 +246,7 @@ void find_stands(CompliantBody& body) {
       Stand& stand = body.stands[body.count++];
       stand.region = region;
       stand.block = block_of(identity);
+      stand.solved = has_patch(world, identity);
     }
   }
   lay_footings(body);

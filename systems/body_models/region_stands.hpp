@@ -15,6 +15,7 @@ struct Stand {
   std::uint32_t block = 0;  // of cells, and row of its footing
   ContactLoad load;
   Vector6 motion = Vector6::Zero();  // at the footing's centre, by this region's own load
+  bool solved = false;               // its contact model knows what that is: contact model patch
 };
 
 /// One body at work.

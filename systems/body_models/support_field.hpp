@@ -10,7 +10,6 @@
 #include <glm/vec2.hpp>
 
 #include "ecs/components.hpp"
-#include "systems/scratch.hpp"
 
 namespace torsion {
 
@@ -38,9 +37,5 @@ inline std::array<double, kSupportTerms> support_terms(const glm::dvec2& at) {
 /// How far the field moves a point, m, body.
 /// @param point  m, body
 glm::dvec3 displacement_at(const SupportField& field, const glm::dvec3& point);
-
-/// Where the field moves the centres of a grid's cells, in the grid's frame.
-void find_support(const SupportField& field, const RegionFrame& frame, std::uint32_t side,
-                  const SupportColumns& columns);
 
 }  // namespace torsion

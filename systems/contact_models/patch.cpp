@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "systems/body_models/support_field.hpp"
 #include "systems/contact_models/friction_decay.hpp"
 #include "systems/contact_models/region_influences.hpp"
 #include "systems/frames.hpp"
@@ -14,17 +13,25 @@
 namespace torsion {
 namespace {
 
-constexpr double kNoContact = -1e30;  // m: depth of a cell that cannot touch
-constexpr std::uint32_t kSweepsAnew =
-    40;                                 // at most, of a region that begins or whose grid has moved
-constexpr double kSkipAnew = 1e-3;      // the residual that will do then; later steps go on
-constexpr double kMostForesight = 1.5;  // of the last step's change
+constexpr double kNoContact = -1e30;       // m: depth of a cell that cannot touch
+constexpr std::uint32_t kSweepsAnew = 40;  // at most, of a region that begins or whose grid moved
+constexpr std::uint32_t kRoundsAnew = 8;   // likewise, of pressures and tractions in turn
+constexpr double kSkipAnew = 1e-5;         // the residual that will do then
+constexpr double kMostForesight = 1.5;     // of the last step's change
+// A body that gives way takes more sweeps: its motions have compliances of their own, beside those
+// that the local inverse knows. Steps that end early must then not foresee more than the last
+// change: an error that a step's sweeps leave to the share r comes back as r (1 + s) and -r s of
+// the last two, with s what is foreseen; the roots of x^2 = r (1 + s) x - r s are within 1 for
+// every r < 1 only where s <= 1.
+constexpr std::uint32_t kSweepsOnSoftBody = 4;  // times the settings'
+constexpr double kMostOnSoftBody = 1.0;
 
 /// One region at work.
 struct Patch {
   World& world;
   const PatchColumns& columns;
   const SupportColumns& support;
+  PatchWork& work;
   std::uint32_t region = 0;
   std::uint32_t side = 0;
   RegionFrame frame;
@@ -52,10 +59,15 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
   problem.compliance = 2.0 * frame.half_size.x /
                        (static_cast<double>(settings.grid_side) * elasticity.shear_modulus());
   problem.coupled = influences.coupled;
+  problem.support = patch_support(world, region, context.scratch.patch_support);
   problem.sweeps = settings.sweeps;
+  if (problem.support.soft) {
+    problem.sweeps *= kSweepsOnSoftBody;
+  }
   return {world,
           context.scratch.patch_columns,
           context.scratch.support_columns,
+          context.scratch.patch_work,
           region,
           settings.grid_side,
           frame,
@@ -78,7 +90,8 @@ double foresight(const Patch& patch, double deepened) {
       glm::dot(last.slide, last.slide) + spin * spin + last.deepened * last.deepened;
   const double along = glm::dot(last.slide, patch.motion.slide) +
                        spin * patch.motion.spin * radius + last.deepened * deepened;
-  return square > 0.0 ? std::clamp(along / square, 0.0, kMostForesight) : 0.0;
+  const double most = patch.problem.support.response != nullptr ? kMostOnSoftBody : kMostForesight;
+  return square > 0.0 ? std::clamp(along / square, 0.0, most) : 0.0;
 }
 
 double friction_of(const Friction& friction, double kinetic_share) {
@@ -95,7 +108,7 @@ double deepest(const Patch& patch) {
 }
 
 /// Fills the columns: what the last step left, carried on by `share` of what it changed.
-void load(const Patch& patch, double share) {
+void load(Patch& patch, double share) {
   const PatchColumns& columns = patch.columns;
   const std::uint32_t body = patch.world.regions.at<RegionIdentity>(patch.region).body;
   const Friction& friction = patch.world.bodies.at<Friction>(body);
@@ -104,15 +117,48 @@ void load(const Patch& patch, double share) {
     const CellTraction& traction = patch.tractions[cell];
     const PatchCell& held = patch.cells[cell];
     const PatchChange& change = patch.changes[cell];
-    columns.depth[cell] =
-        geometry.coverage >= 0.5 ? geometry.depth + patch.support.z[cell] : kNoContact;
+    columns.depth[cell] = geometry.coverage >= 0.5 ? geometry.depth : kNoContact;
     columns.friction[cell] = friction_of(friction, traction.kinetic_share);
+    patch.problem.foreseen_pressure += std::abs(share * change.pressure);
+    patch.problem.foreseen_traction +=
+        std::abs(share * change.traction.x) + std::abs(share * change.traction.y);
     columns.pressure[cell] = traction.pressure + share * change.pressure;
     columns.traction_x[cell] = share * change.traction.x - traction.traction.x;
     columns.traction_y[cell] = share * change.traction.y - traction.traction.y;
     columns.depression[cell] = held.depression + share * change.depression;
     columns.moved_x[cell] = held.displacement.x + share * change.displacement.x;
     columns.moved_y[cell] = held.displacement.y + share * change.displacement.y;
+  }
+}
+
+/// The body's own motion at every cell beyond what the tool's overlap has of it already.
+void find_support(const Patch& patch) {
+  const PatchColumns& columns = patch.columns;
+  const PatchField moved{patch.support.x, patch.support.y, patch.support.z};
+  for (const std::span<double>& each : {moved.x, moved.y, moved.z}) {
+    std::ranges::fill(each, 0.0);
+  }
+  if (patch.problem.support.response == nullptr) {
+    return;
+  }
+  SupportPolynomials polynomials =
+      support_by(patch.problem.support, {columns.traction_x, columns.traction_y, columns.pressure});
+  const SupportPolynomials known = known_support(patch.world, patch.region);
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    polynomials[k] -= known[k];
+  }
+  add_polynomials(patch.problem.support, polynomials, moved);
+}
+
+/// Adds it, `sign` times, to the half-space's displacements.
+void add_motion_of_body(const Patch& patch, double sign) {
+  const PatchColumns& columns = patch.columns;
+  for (std::size_t cell = 0; cell < patch.cells.size(); ++cell) {
+    columns.moved_x[cell] += sign * patch.support.x[cell];
+    columns.moved_y[cell] += sign * patch.support.y[cell];
+    columns.target_x[cell] += sign * patch.support.x[cell];
+    columns.target_y[cell] += sign * patch.support.y[cell];
+    columns.depression[cell] += sign * patch.support.z[cell];
   }
 }
 
@@ -123,24 +169,12 @@ void set_targets(const Patch& patch) {
   for (std::uint32_t j = 0; j < patch.side; ++j) {
     for (std::uint32_t i = 0; i < patch.side; ++i, ++cell) {
       const PatchCell& at = patch.cells[cell];
-      // What holds is the displacement with the body's; the solver knows the half-space's alone.
+      // What holds is the displacement with the body's; the half-space's alone is sought.
       const glm::dvec2 support(patch.support.x[cell], patch.support.y[cell]);
       const glm::dvec2 held = at.known != 0 ? at.held - support : at.displacement;
       const glm::dvec2 arm = cell_center(patch.frame, patch.side, i, j) - patch.motion.pivot;
       columns.target_x[cell] = held.x + patch.motion.slide.x - patch.motion.spin * arm.y;
       columns.target_y[cell] = held.y + patch.motion.slide.y + patch.motion.spin * arm.x;
-    }
-  }
-}
-
-/// Cells outside the contact keep no tractions, those that foresight has made pull are let go.
-void let_go(const Patch& patch) {
-  for (std::uint32_t cell = 0; cell < patch.cells.size(); ++cell) {
-    const PatchColumns& columns = patch.columns;
-    const bool loaded = columns.pressure[cell] != 0.0 || columns.traction_x[cell] != 0.0 ||
-                        columns.traction_y[cell] != 0.0;
-    if (loaded && (columns.pressure[cell] <= 0.0 || columns.depth[cell] == kNoContact)) {
-      unload_cell(patch.problem, columns, cell);
     }
   }
 }
@@ -156,7 +190,7 @@ void start_anew(Patch& patch) {
       columns.traction_y[cell] = 0.0;
     }
   }
-  displace_patch(patch.problem, columns);
+  displace_patch(patch.problem, columns, patch.work);
   for (std::size_t cell = 0; cell < patch.cells.size(); ++cell) {
     patch.cells[cell].displacement = {columns.moved_x[cell], columns.moved_y[cell]};
     patch.cells[cell].depression = columns.depression[cell];
@@ -165,7 +199,9 @@ void start_anew(Patch& patch) {
         -glm::dvec2(columns.traction_x[cell], columns.traction_y[cell]);
   }
   patch.problem.sweeps = std::max(patch.problem.sweeps, kSweepsAnew);
+  patch.problem.rounds = kRoundsAnew;
   patch.problem.skip = kSkipAnew;
+  patch.problem.settled = 0.0;
 }
 
 /// A pressure to measure changes by: the mean of what is there, or what the depth will ask for.
@@ -320,7 +356,9 @@ void summarize(const Patch& patch, const PatchSums& sums) {
   friction.stick_turn = mean_turn(patch, glm::dvec2(center), moved);
   const double turn = friction.stick_turn;
   // About the grid's origin, which is not the pressure's centre.
-  const glm::dvec2 of_origin = moved - turn * glm::dvec2(-center.y, center.x);
+  const glm::dvec2 turned(std::cos(turn) * center.x - std::sin(turn) * center.y,
+                          std::sin(turn) * center.x + std::cos(turn) * center.y);
+  const glm::dvec2 of_origin = moved - (turned - glm::dvec2(center));
   carrier.translation = tangent_to_body(patch.frame, of_origin);
   carrier.rotation = patch.frame.normal * turn;
 }
@@ -329,18 +367,20 @@ void solve_region(StepContext& context, std::uint32_t region) {
   Patch patch = patch_of(context, region);
   const double depth = deepest(patch);
   const double deepened = depth - patch.state.depth;
-  find_support(patch.world.regions.at<SupportField>(region), patch.frame, patch.side,
-               patch.support);
   const bool anew = patch.state.started == 0 || patch.state.moved != 0;
   load(patch, anew ? 0.0 : foresight(patch, deepened));
   if (anew) {
     start_anew(patch);
   } else {
-    let_go(patch);
+    let_go_cells(patch.problem, patch.columns, patch.work, kNoContact);
   }
+  find_support(patch);
   set_targets(patch);
+  add_motion_of_body(patch, 1.0);
   patch.problem.reference = reference_pressure(patch, depth);
-  const PatchOutcome outcome = solve_patch(patch.problem, patch.columns);
+  const PatchOutcome outcome = solve_patch(patch.problem, patch.columns, patch.work);
+  find_support(patch);
+  add_motion_of_body(patch, -1.0);
   const bool started = patch.state.started != 0;
   double force = 0.0;
   for (const double pressure : patch.columns.pressure) {

@@ -3,10 +3,13 @@
 // Contact with Coulomb friction on a grid of cells of an elastic half-space: which pressures and
 // tangential tractions press a given shape into it and move it along.
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "systems/contact_models/influence.hpp"
+#include "systems/contact_models/patch_support.hpp"
 
 namespace torsion {
 
@@ -24,14 +27,43 @@ struct PatchColumns {
   std::span<double> slips;  // 1: at the friction limit or without pressure, 0: sticks
 };
 
+/// What a solution needs while it is sought. (side x side) each unless said otherwise.
+struct PatchWork {
+  std::vector<double> residual_x,
+      residual_y;                        // m, ((side + 2) x (side + 2)) with a border of zeros
+  std::vector<double> asked_x, asked_y;  // Pa: what the residual asks for
+  std::vector<double> step_x, step_y;    // Pa: the last change
+  std::vector<double> moves_x, moves_y;  // m: what it displaces
+  // A rigid motion of the cells that count, ((side + 2) x (side + 2)) with a border of zeros, and
+  // what three such ask for, Pa/m and Pa
+  std::vector<double> rigid_x, rigid_y;
+  std::array<std::vector<double>, 3> rigid_asks_x, rigid_asks_y;
+  std::vector<double> limit;               // Pa: of the friction
+  std::vector<double> along_x, along_y;    // unit: of the friction of a cell that slips
+  std::vector<double> softened;            // of what turns it: 1 where nothing slips
+  std::vector<double> change_pressure;     // Pa, in this solution
+  std::vector<double> change_x, change_y;  // Pa, likewise
+  std::vector<double> scales_x, scales_y;  // (sources)
+  std::vector<std::uint32_t> places;       // (sources) as in InfluenceSources
+  std::vector<std::uint32_t> cells;        // those that can carry a load
+  std::vector<std::uint32_t> bordered;     // (cells) their rows in the residuals
+  void reserve(std::uint32_t side);
+};
+
 /// What one solution is for.
 struct PatchProblem {
   InfluenceTables influences;
-  double compliance = 0.0;   // m/Pa: cell length along x over the shear modulus
-  bool coupled = false;      // pressure moves the surface sideways: nu < 0.5
-  double reference = 0.0;    // Pa: typical pressure; changes below `skip` times it are left out
-  double skip = 1e-5;        // relative
-  std::uint32_t sweeps = 2;  // at most; even numbers go forth and back
+  PatchSupport support;     // what the body as a whole adds to displacements
+  double compliance = 0.0;  // m/Pa: cell length along x over the shear modulus
+  bool coupled = false;     // pressure moves the surface sideways: nu < 0.5
+  double reference = 0.0;   // Pa: typical pressure; a largest change below `skip` times it ends
+  double skip = 1e-9;       // relative
+  double settled = 1e-2;    // of the whole change of a step: a smaller one ends it, too; sums over
+                            // the cells
+  double foreseen_pressure = 0.0;  // Pa: change since the last step that is there already, sum over
+  double foreseen_traction = 0.0;  // the cells, both components
+  std::uint32_t sweeps = 2;        // at most, of the pressures and then of the tractions
+  std::uint32_t rounds = 1;        // at most, of the two in turn where they are coupled
 };
 
 /// What became of it.
@@ -40,16 +72,21 @@ struct PatchOutcome {
   std::uint32_t sweeps = 0;
 };
 
-/// Block Gauss-Seidel with projection: pressures onto p >= 0, tractions onto the disc |q| <= mu p.
+/// Projected conjugate gradients, first for pressures p >= 0, then for tractions in their discs
+/// |q| <= mu p, both with the local inverse of the influences as preconditioner. A sweep asks every
+/// cell at once, so the grid has no first cell, and mirror images have mirrored solutions.
 /// Starts from the tractions that are there; displacements must belong to them. With mu = 0 the
 /// tractions go to zero.
-/// Source: Johnson, Contact Mechanics, 1985, 5.9; Vollebregt, CONTACT user guide.
-PatchOutcome solve_patch(const PatchProblem& problem, const PatchColumns& columns);
+/// Source: Polonsky and Keer, Wear 231 (1999) 206; Dostal and Kozubek, Mathematical Programming 135
+/// (2012) 195 (discs); Johnson, Contact Mechanics, 1985, 5.9; Vollebregt, CONTACT user guide.
+PatchOutcome solve_patch(const PatchProblem& problem, const PatchColumns& columns, PatchWork& work);
 
 /// Displacements from tractions, anew.
-void displace_patch(const PatchProblem& problem, const PatchColumns& columns);
+void displace_patch(const PatchProblem& problem, const PatchColumns& columns, PatchWork& work);
 
-/// Takes a cell's tractions away.
-void unload_cell(const PatchProblem& problem, const PatchColumns& columns, std::uint32_t cell);
+/// Takes the tractions away from cells that pull, and from those out of reach: pressure below or at
+/// zero, or depth below `least_depth`.
+void let_go_cells(const PatchProblem& problem, const PatchColumns& columns, PatchWork& work,
+                  double least_depth);
 
 }  // namespace torsion

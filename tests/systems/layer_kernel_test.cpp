@@ -156,8 +156,11 @@ DiscForces press_and_turn(const InfluenceTables& tables) {
   problem.coupled = false;  // as the exact solutions have it
   problem.reference = 0.05;
   problem.skip = 1e-7;
+  problem.settled = 0.0;
   problem.sweeps = 2000;
-  solve_patch(problem, grid.columns);
+  PatchWork work;
+  work.reserve(Grid::kSide);
+  solve_patch(problem, grid.columns, work);
   DiscForces forces;
   for (std::uint32_t j = 0; j < Grid::kSide; ++j) {
     for (std::uint32_t i = 0; i < Grid::kSide; ++i) {

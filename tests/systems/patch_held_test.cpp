@@ -44,8 +44,12 @@ double worst_difference(const Hand& hand) {
                                         patch_aspect(frame.half_size));
   problem.compliance = 2.0 * frame.half_size.x / (side * elasticity.shear_modulus());
   problem.coupled = elasticity.poisson_ratio < 0.5;
-  displace_patch(problem, {columns[0], columns[1], columns[2], columns[3], columns[4], columns[5],
-                           columns[6], columns[7], columns[8], columns[9], columns[10]});
+  PatchWork work;
+  work.reserve(side);
+  displace_patch(problem,
+                 {columns[0], columns[1], columns[2], columns[3], columns[4], columns[5],
+                  columns[6], columns[7], columns[8], columns[9], columns[10]},
+                 work);
   double worst = 0.0;
   for (std::size_t cell = 0; cell < tractions.size(); ++cell) {
     worst = std::max(worst, std::abs(columns[7][cell] - held[cell].depression));

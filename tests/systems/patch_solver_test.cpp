@@ -29,11 +29,14 @@ class Grid {
     for (std::vector<double>& column : columns_) {
       column.assign(kSide * kSide, 0.0);
     }
+    work.reserve(kSide);
     problem.influences = influence_tables(values_, kSide, 0);
     problem.compliance = cell_ / kShearModulus;
     problem.coupled = coupled;
     problem.reference = 1e5;
     problem.skip = 1e-9;
+    problem.settled = 0.0;
+    problem.rounds = 100;
     problem.sweeps = 1000;
     for (std::uint32_t cell = 0; cell < kSide * kSide; ++cell) {
       const double x = place_x(cell);
@@ -63,7 +66,7 @@ class Grid {
       columns.target_x[cell] = from_x + slide - turn * place_y(cell);
       columns.target_y[cell] = from_y + turn * place_x(cell);
     }
-    return solve_patch(problem, columns);
+    return solve_patch(problem, columns, work);
   }
   double force() {
     return sum([&](std::uint32_t cell) { return view().pressure[cell]; });
@@ -82,6 +85,7 @@ class Grid {
   }
 
   PatchProblem problem;
+  PatchWork work;
 
  private:
   template <class Of>
@@ -151,7 +155,7 @@ TEST(PatchSolverTest, DisplacementsAreThoseOfTheTractions) {
   const PatchColumns columns = grid.view();
   const std::vector<double> depression(columns.depression.begin(), columns.depression.end());
   const std::vector<double> moved(columns.moved_x.begin(), columns.moved_x.end());
-  displace_patch(grid.problem, columns);
+  displace_patch(grid.problem, columns, grid.work);
   for (std::size_t cell = 0; cell < depression.size(); ++cell) {
     // Sums of thousands of changes: rounding only.
     ASSERT_NEAR(columns.depression[cell], depression[cell], 1e-11 * kDepth);
@@ -164,9 +168,7 @@ TEST(PatchSolverTest, UnloadingEveryCellLeavesNothing) {
   grid.move(0.0, 0.0);
   grid.move(8e-5, 0.02);
   const PatchColumns columns = grid.view();
-  for (std::uint32_t cell = 0; cell < kSide * kSide; ++cell) {
-    unload_cell(grid.problem, columns, cell);
-  }
+  let_go_cells(grid.problem, columns, grid.work, kDepth);
   for (std::uint32_t cell = 0; cell < kSide * kSide; ++cell) {
     ASSERT_EQ(columns.pressure[cell], 0.0);
     ASSERT_NEAR(columns.depression[cell], 0.0, 1e-11 * kDepth);

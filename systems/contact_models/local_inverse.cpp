@@ -1,0 +1,74 @@
+#include "systems/contact_models/local_inverse.hpp"
+
+#include <array>
+#include <utility>
+
+namespace torsion {
+namespace {
+
+constexpr std::size_t kUnknowns = 4;  // here, along x, along y, corner: the rest is symmetry
+
+/// Gauss' elimination; the matrix is that of a positive definite one under symmetry, so it needs no
+/// pivots.
+std::array<double, kUnknowns> solve(std::array<std::array<double, kUnknowns>, kUnknowns> matrix,
+                                    std::array<double, kUnknowns> values) {
+  for (std::size_t k = 0; k < kUnknowns; ++k) {
+    for (std::size_t row = k + 1; row < kUnknowns; ++row) {
+      const double factor = matrix[row][k] / matrix[k][k];
+      for (std::size_t column = k; column < kUnknowns; ++column) {
+        matrix[row][column] -= factor * matrix[k][column];
+      }
+      values[row] -= factor * values[k];
+    }
+  }
+  for (std::size_t k = kUnknowns; k-- > 0;) {
+    for (std::size_t column = k + 1; column < kUnknowns; ++column) {
+      values[k] -= matrix[k][column] * values[column];
+    }
+    values[k] /= matrix[k][k];
+  }
+  return values;
+}
+
+}  // namespace
+
+LocalInverse local_inverse(const InfluenceTables& tables, InfluenceKind kind) {
+  if (tables.side < 3) {
+    return {1.0 / tables.self(kind), 0.0, 0.0, 0.0};
+  }
+  const auto at = [&](std::uint32_t columns, std::uint32_t rows) {
+    return tables.of(kind)[tables.index(0, 0, columns, rows)];
+  };
+  const double x_corner = at(0, 1) + at(2, 1);
+  const double y_corner = at(1, 0) + at(1, 2);
+  const auto [here, along_x, along_y, corner] =
+      solve({{{at(0, 0), 2.0 * at(1, 0), 2.0 * at(0, 1), 4.0 * at(1, 1)},
+              {at(1, 0), at(0, 0) + at(2, 0), 2.0 * at(1, 1), 2.0 * x_corner},
+              {at(0, 1), 2.0 * at(1, 1), at(0, 0) + at(0, 2), 2.0 * y_corner},
+              {at(1, 1), x_corner, y_corner, at(0, 0) + at(2, 0) + at(0, 2) + at(2, 2)}}},
+            {1.0, 0.0, 0.0, 0.0});
+  return {here, along_x, along_y, corner};
+}
+
+void apply_local_inverse(const LocalInverse& inverse, double scale, std::uint32_t side,
+                         std::span<const double> wanted, std::span<double> asked) {
+  const double here = inverse.here * scale;
+  const double along_x = inverse.along_x * scale;
+  const double along_y = inverse.along_y * scale;
+  const double corner = inverse.corner * scale;
+  const std::size_t width = std::size_t{side} + 2;
+  for (std::uint32_t j = 0; j < side; ++j) {
+    const double* const low = wanted.data() + j * width;
+    const double* const middle = low + width;
+    const double* const high = middle + width;
+    double* __restrict const to = asked.data() + std::size_t{j} * side;
+    for (std::uint32_t i = 0; i < side; ++i) {
+      // Sums in pairs, so that a mirror image has the same bits.
+      to[i] = here * middle[i + 1] + along_x * (middle[i] + middle[i + 2]) +
+              along_y * (low[i + 1] + high[i + 1]) +
+              corner * ((low[i] + high[i + 2]) + (low[i + 2] + high[i]));
+    }
+  }
+}
+
+}  // namespace torsion

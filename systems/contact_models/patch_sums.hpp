@@ -1,0 +1,67 @@
+#pragma once
+
+// What changes of pressures and tractions do to the surface, for the solver of the contact model
+// `patch`.
+
+#include <span>
+
+#include "systems/contact_models/patch_solver.hpp"
+#include "systems/contact_models/sum_influence.hpp"
+
+namespace torsion {
+
+/// How much a sweep changes, Pa.
+struct SweepChange {
+  double largest = 0.0;
+  double sum = 0.0;  // over the cells, both components
+};
+
+/// True when a sweep changes so little that it can be the last.
+inline bool ends(const PatchProblem& problem, const SweepChange& change, double whole) {
+  return change.largest <= problem.skip * problem.reference ||
+         change.sum <= problem.settled * whole;
+}
+
+inline GridBlock block_of(const InfluenceTables& tables) {
+  return {tables.side, tables.width(), tables.index(0, 0, 0, 0)};
+}
+
+/// Gathers the cells where one of the changes is not zero; scales become displacements per table.
+/// @param change_x, change_y  Pa, (side x side)
+InfluenceSources gather_sources(const PatchProblem& problem, std::span<const double> change_x,
+                                std::span<const double> change_y, PatchWork& work);
+
+/// Adds to the displacements what changes of the pressure do.
+void add_pressure(const PatchProblem& problem, const PatchColumns& columns,
+                  std::span<const double> change, PatchWork& work);
+
+/// Adds to the displacements what changes of the tangential tractions do.
+void add_tractions(const PatchProblem& problem, const PatchColumns& columns,
+                   std::span<const double> change_x, std::span<const double> change_y,
+                   PatchWork& work);
+
+/// Only to those along the surface what changes of the pressure do sideways.
+/// @param change  Pa, (side x side)
+void add_sideways(const PatchProblem& problem, const PatchColumns& columns,
+                  std::span<const double> change, PatchWork& work);
+
+/// Only to the depression what changes of the tangential tractions do.
+void add_depression(const PatchProblem& problem, const PatchColumns& columns,
+                    std::span<const double> change_x, std::span<const double> change_y,
+                    PatchWork& work);
+
+/// work.moves_x = depression by work.step_x.
+void move_by_pressure(const PatchProblem& problem, PatchWork& work);
+
+/// work.moves_x, moves_y = displacement along the surface by work.step_x, step_y.
+void move_by_traction(const PatchProblem& problem, PatchWork& work);
+
+/// Sweeps over the pressures until they change by less than what ends it.
+PatchOutcome relax_pressures(const PatchProblem& problem, const PatchColumns& columns,
+                             PatchWork& work);
+
+/// Sweeps over the tangential tractions, likewise.
+PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& columns,
+                             PatchWork& work);
+
+}  // namespace torsion

@@ -21,6 +21,10 @@ class WindowTarget final : public Target {
   /// @param gpu, window  must outlive the target. Throws vk::SystemError.
   WindowTarget(const Gpu& gpu, const Window& window, std::uint32_t slots);
   ~WindowTarget() override;
+  WindowTarget(const WindowTarget&) = delete;
+  WindowTarget& operator=(const WindowTarget&) = delete;
+  WindowTarget(WindowTarget&&) = delete;
+  WindowTarget& operator=(WindowTarget&&) = delete;
 
   /// Fits images to the window's present size and to `share` of it along each side for the scene.
   /// False while the window has no size: then nothing can be drawn.
@@ -84,7 +88,6 @@ class WindowTarget final : public Target {
   std::uint32_t current_ = 0;  // of shown_
   vk::Extent2D outer_;
   vk::Extent2D inner_;
-  double share_ = 0.0;
   bool stale_ = true;  // the swapchain no longer fits the window
   bool surface_lost_ = false;
   bool keep_ = false;

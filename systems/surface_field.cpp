@@ -169,7 +169,7 @@ void interpolate_block(const BodyField& field, VertexBlock& block) {
       const glm::dvec3 rest = block.rest.at(i);
       const ContactShare under = share_of_contact(turn, rest);
       float& angle = block.turn[slot][i];
-      angle += static_cast<float>(under.share * (under.angle - double{angle}));
+      angle += static_cast<float>(under.share * (under.angle - static_cast<double>(angle)));
       angle *= static_cast<float>(block.free[i]);
       if (under.share > 0.0) {
         block.smooth.set(i, block.smooth.at(i) - under.share * under.left *

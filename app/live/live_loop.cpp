@@ -7,6 +7,7 @@
 
 #include "app/live/rebuild.hpp"
 #include "device/scripted_motion.hpp"
+#include "systems/frames.hpp"
 #include "systems/held_tool/coupling_choice.hpp"
 #include "systems/held_tool/tool_equilibrium.hpp"
 #include "systems/rotation_vector.hpp"
@@ -182,15 +183,13 @@ void mark_cells(const World& world, std::vector<CellMark>& marks) {
     const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
     const RegionFrame& frame = world.regions.at<RegionFrame>(region);
     const Pose& body = world.bodies.at<Pose>(identity.body);
-    const glm::dvec2 cell = 2.0 * frame.half_size / static_cast<double>(side);
     const auto tractions = world.cells.rows<CellTraction>(identity.cells);
     const auto geometry = world.cells.rows<CellGeometry>(identity.cells);
     for (std::uint32_t i = 0; i < tractions.size() && marks.size() < kMostCellMarks; ++i) {
       if (tractions[i].pressure > 0.0) {
-        const double x = (i % side + 0.5) * cell.x - frame.half_size.x;
-        const double y = (i / side + 0.5) * cell.y - frame.half_size.y;
-        const glm::dvec3 place = frame.origin + frame.tangent_x * x + frame.tangent_y * y +
-                                 frame.normal * geometry[i].height;
+        const std::uint32_t row = i / side;
+        const glm::dvec2 center = cell_center(frame, side, i % side, row);
+        const glm::dvec3 place = grid_to_body(frame, {center, geometry[i].height});
         marks.push_back({glm::vec3(body.position + body.rotation * place), tractions[i].sticks});
       }
     }

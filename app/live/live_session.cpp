@@ -38,8 +38,8 @@ VirtualCoupling mouse_coupling(const SceneDescription& scene, double radius) {
           kTorqueShare * er * radius * radius};
 }
 
-LiveSession::LiveSession(Session session, const PrepareOptions& options)
-    : session_(std::move(session)), options_(options) {
+LiveSession::LiveSession(Session session, PrepareOptions options)
+    : session_(std::move(session)), options_(std::move(options)) {
   recording_ = begin_recording(session_, options_);
   auto first = std::make_unique<Generation>();
   first->simulation = std::move(session_.simulation);

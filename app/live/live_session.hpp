@@ -16,7 +16,7 @@ namespace torsion {
 class LiveSession {
  public:
   /// @param session  prepared with `options`, no step taken
-  LiveSession(Session session, const PrepareOptions& options);
+  LiveSession(Session session, PrepareOptions options);
   ~LiveSession();
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;

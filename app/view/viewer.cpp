@@ -283,7 +283,7 @@ Result<Done> Viewer::frame() {
   if (input.hidden) {
     return Done{};
   }
-  const Result<Done> shown = show(input, overlay);
+  Result<Done> shown = show(input, overlay);
   fit_share(now() - started);
   return shown;
 }

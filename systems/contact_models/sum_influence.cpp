@@ -36,12 +36,12 @@ TORSION_INLINE void sum_block(const Sums& at, const double* table, const double*
     const double scale = scales[source];
     for (std::uint32_t row = 0; row < Rows; ++row) {
       Vector value;
-      std::memcpy(&value, from + row * at.block.width, sizeof value);
+      std::memcpy(&value, from + std::size_t{row} * at.block.width, sizeof value);
       sums[row] += scale * value;
     }
   }
   for (std::uint32_t row = 0; row < Rows; ++row) {
-    std::memcpy(displacement + row * at.block.side, &sums[row], sizeof(Vector));
+    std::memcpy(displacement + std::size_t{row} * at.block.side, &sums[row], sizeof(Vector));
   }
 }
 
@@ -54,7 +54,7 @@ TORSION_INLINE void sum_block(const Sums& at, const TangentialSums& of) {
     const double scale_x = of.scales_x[source];
     const double scale_y = of.scales_y[source];
     for (std::uint32_t row = 0; row < Rows; ++row) {
-      const std::size_t to = row * at.block.width;
+      const std::size_t to = std::size_t{row} * at.block.width;
       Vector xx;
       Vector xy;
       Vector yy;
@@ -66,8 +66,8 @@ TORSION_INLINE void sum_block(const Sums& at, const TangentialSums& of) {
     }
   }
   for (std::uint32_t row = 0; row < Rows; ++row) {
-    std::memcpy(of.moved_x + row * at.block.side, &sums_x[row], sizeof(Vector));
-    std::memcpy(of.moved_y + row * at.block.side, &sums_y[row], sizeof(Vector));
+    std::memcpy(of.moved_x + std::size_t{row} * at.block.side, &sums_x[row], sizeof(Vector));
+    std::memcpy(of.moved_y + std::size_t{row} * at.block.side, &sums_y[row], sizeof(Vector));
   }
 }
 

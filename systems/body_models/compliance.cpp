@@ -7,6 +7,7 @@
 
 #include "systems/body_models/region_stands.hpp"
 #include "systems/body_models/symmetric_solve.hpp"
+#include "systems/fault.hpp"
 #include "systems/scratch.hpp"
 
 namespace torsion {
@@ -131,6 +132,10 @@ void deform_body(StepContext& context, std::uint32_t row) {
   change.setZero();
   fill_equations(body, roots, matrix, change);
   solve_symmetric(size, size, matrix.data(), 1, change.data(), kLeastPivot);
+  if (!change.allFinite()) {
+    raise(context.world.clock.at<Clock>(0), Fault::kResultNotFinite);
+    change.setZero();
+  }
   move_supports(body, change, roots);
 }
 

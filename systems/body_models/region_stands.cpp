@@ -188,6 +188,16 @@ bool is_found(const RegionCoupling& coupling, const Footing& to, const Footing& 
   return coupling.serial_to == to.serial && coupling.serial_from == from.serial;
 }
 
+/// Where the one is seen from the other: as far as their rims at least. Point loads in each other's
+/// place would move each other without bound, and regions that part or meet lie in each other for a
+/// step.
+glm::dvec3 apart(const Footing& there, const Footing& here) {
+  const glm::dvec3 way = there.center - here.center;
+  const double distance = glm::length(way);
+  const double least = there.radius + here.radius;
+  return distance < least ? here.center + way * (least / distance) : there.center;
+}
+
 void find_coupling(const CompliantBody& body, const Footing& there, const Footing& here,
                    RegionCoupling& coupling) {
   coupling.serial_to = there.serial;
@@ -195,7 +205,7 @@ void find_coupling(const CompliantBody& body, const Footing& there, const Footin
   Eigen::Map<Matrix6> motion(coupling.motion.data());
   motion = there.share * here.share * motion_between(body.ports, there, here);
   if (there.center != here.center) {
-    motion += half_space_coupling({there.center, there.normal}, {here.center, here.normal},
+    motion += half_space_coupling({apart(there, here), there.normal}, {here.center, here.normal},
                                   body.world.bodies.at<Elasticity>(body.row));
   }
   const double thickness = layer_thickness(body.world, body.row, here.normal, here.center);

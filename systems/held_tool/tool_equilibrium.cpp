@@ -27,25 +27,22 @@ Eigen::Vector3d eigen(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
-/// Force and torque about a point for small motions of the point, of a spring with stiffness
-/// `along` n and `across` it at `arm` from the point, and `turning` about n and `tilting` across.
-Matrix6 spring_about(const glm::dvec3& n, const glm::dvec3& arm, double along, double across,
-                     double turning, double tilting) {
-  const Eigen::Vector3d axis = eigen(n);
-  const Eigen::Matrix3d projection = axis * axis.transpose();
-  const Eigen::Matrix3d rest = Eigen::Matrix3d::Identity() - projection;
+/// Force and torque about a point for small motions of the point, of a spring at `arm` from it.
+/// @param shifting, turning  N/m and N m/rad
+Matrix6 spring_about(const glm::dvec3& arm, const Eigen::Matrix3d& shifting,
+                     const Eigen::Matrix3d& turning) {
   Eigen::Matrix3d lever;
   lever << 0.0, -arm.z, arm.y, arm.z, 0.0, -arm.x, -arm.y, arm.x, 0.0;
   Eigen::Matrix<double, 3, 6> at_arm;
   at_arm << Eigen::Matrix3d::Identity(), -lever;
-  const Eigen::Matrix3d spring = along * projection + across * rest;
-  Matrix6 stiffness = at_arm.transpose() * spring * at_arm;
-  stiffness.bottomRightCorner<3, 3>() += turning * projection + tilting * rest;
+  Matrix6 stiffness = at_arm.transpose() * shifting * at_arm;
+  stiffness.bottomRightCorner<3, 3>() += turning;
   return stiffness;
 }
 
-/// Of one region that sticks: a disc bonded to a half-space. Source: Johnson, 1985, 3.2 and 3.7;
-/// Reissner & Sagoci, 1944.
+/// Of one region that sticks: a disc bonded to a half-space. A long contact tilts the harder: the
+/// place of its force runs from end to end while the tool tilts by its depth over its length.
+/// Source: Johnson, 1985, 3.2 and 3.7; Reissner & Sagoci, 1944.
 Matrix6 contact_stiffness(const World& world, std::uint32_t region, const glm::dvec3& center) {
   const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
   const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
@@ -54,11 +51,20 @@ Matrix6 contact_stiffness(const World& world, std::uint32_t region, const glm::d
   const double g = elasticity.shear_modulus();
   const double nu = elasticity.poisson_ratio;
   const double a = geometry.radius;
-  const glm::dvec3 normal = body.rotation * world.regions.at<RegionFrame>(region).normal;
-  const glm::dvec3 arm = to_outer(body, geometry.equivalent_point) - center;
-  return spring_about(normal, arm, world.regions.at<RegionNormal>(region).stiffness,
-                      8.0 * g * a / (2.0 - nu), 16.0 / 3.0 * g * a * a * a,
-                      8.0 / 3.0 * g * a * a * a / (1.0 - nu));
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const double along = world.regions.at<RegionNormal>(region).stiffness;
+  const double tilting = 8.0 / 3.0 * g * a * a * a / (1.0 - nu);
+  const glm::dvec2 half_square = frame.half_size * frame.half_size;
+  const Eigen::Vector3d axis = eigen(body.rotation * frame.normal);
+  const Eigen::Vector3d x = eigen(body.rotation * frame.tangent_x);
+  const Eigen::Vector3d y = eigen(body.rotation * frame.tangent_y);
+  const Eigen::Matrix3d normal = axis * axis.transpose();
+  const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - normal;
+  return spring_about(to_outer(body, geometry.equivalent_point) - center,
+                      along * normal + 8.0 * g * a / (2.0 - nu) * across,
+                      16.0 / 3.0 * g * a * a * a * normal +
+                          std::max(tilting, along * half_square.y) * (x * x.transpose()) +
+                          std::max(tilting, along * half_square.x) * (y * y.transpose()));
 }
 
 /// How much of a step to take that follows `last`, 1/4 to 1. A contact that is stiffer than its
@@ -84,18 +90,35 @@ Vector6 last_step(const World& world, std::uint32_t tool) {
   return last;
 }
 
+/// What the contacts do to the tool as they are now. What is let out of a region lags behind while
+/// it forms, merges or splits, and a tool without mass that fell through that lag would bounce.
+Wrench contact_wrench(const World& world, std::uint32_t tool) {
+  Wrench contact = world.tools.at<ToolWrench>(tool).total;
+  if (world.tools.at<ToolWrench>(tool).state != WrenchState::kLive) {
+    return contact;
+  }
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    if (world.regions.at<RegionIdentity>(region).tool == tool) {
+      const RegionWrench& wrench = world.regions.at<RegionWrench>(region);
+      contact.force -= wrench.event_share * wrench.event_change.force;
+      contact.torque -= wrench.event_share * wrench.event_change.torque;
+    }
+  }
+  return contact;
+}
+
 }  // namespace
 
 Pose next_tool_pose(const World& world, std::uint32_t tool, const VirtualCoupling& coupling,
                     const Pose& handle) {
   const Pose& now = world.tools.at<ToolPose>(tool).now;
   const glm::dvec3 center = world.tools.at<ToolMotion>(tool).mass_center;
-  const Wrench& contact = world.tools.at<ToolWrench>(tool).total;
+  const Wrench contact = contact_wrench(world, tool);
   const Wrench pull = coupling_wrench(coupling, {handle}, {now});
   const glm::dvec3 arm = now.position - center;
 
-  Matrix6 stiffness = spring_about({1.0, 0.0, 0.0}, arm, coupling.stiffness, coupling.stiffness,
-                                   coupling.turn_stiffness, coupling.turn_stiffness);
+  Matrix6 stiffness = spring_about(arm, coupling.stiffness * Eigen::Matrix3d::Identity(),
+                                   coupling.turn_stiffness * Eigen::Matrix3d::Identity());
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
     if (world.regions.at<RegionIdentity>(region).tool == tool) {
       stiffness += contact_stiffness(world, region, center);

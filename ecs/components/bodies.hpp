@@ -1,0 +1,88 @@
+#pragma once
+
+// What a body is made of, what holds it, and which models run on it.
+// Units, frames and "written by": ecs/components.hpp.
+
+#include <cstdint>
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include "ecs/entity.hpp"
+
+namespace torsion {
+
+/// Linear elastic, isotropic. Written by: load.
+struct Elasticity {
+  double youngs_modulus = 3e6;  // E, Pa
+  double poisson_ratio = 0.5;   // nu
+  double density = 1100.0;      // rho, kg/m^3
+  [[nodiscard]] double shear_modulus()
+      const {  // G = E / (2 (1 + nu)), equation (3) of the paper, Pa
+    return youngs_modulus / (2.0 * (1.0 + poisson_ratio));
+  }
+  [[nodiscard]] double contact_modulus() const {  // E* = E / (1 - nu^2) against a rigid tool, Pa
+    return youngs_modulus / (1.0 - poisson_ratio * poisson_ratio);
+  }
+};
+
+/// Coulomb coefficients, static_friction >= dynamic_friction >= 0. Written by: load.
+struct Friction {
+  double static_friction = 0.75;
+  double dynamic_friction = 0.75;
+};
+
+enum class FixedKind : std::uint32_t { kPoint, kFace, kVolumes };
+
+/// What holds the body. Written by: load.
+struct FixedRegion {
+  FixedKind kind = FixedKind::kPoint;
+  std::uint32_t padding = 0;
+  glm::dvec3 point{
+      0.0};  // m, body: q_f of the paper; the centroid of a face or of the fixed volumes
+  glm::dvec3 normal{0.0};  // body, unit, into the body; only for kFace
+  Range volumes;           // rows in `fixed_volumes`; kPoint and kFace have none
+};
+
+enum class VolumeKind : std::uint32_t { kBox, kSphere };
+
+/// A unit box (side 2) or unit sphere (radius 1) whose image fixes what of the body lies in it.
+/// Written by: load.
+struct FixedVolume {
+  glm::dmat3 to_unit{1.0};  // unit = to_unit * (x_body - center)
+  glm::dvec3 center{0.0};   // m, body
+  VolumeKind kind = VolumeKind::kBox;
+  std::uint32_t padding = 0;
+};
+
+enum class ContactModel : std::uint32_t { kAuto, kPaper, kMdr, kPatch };
+enum class BodyModel : std::uint32_t { kAuto, kNone, kSkeleton, kCompliance };
+
+/// What the scene asked for and, once prepared, what runs (never kAuto). Written by: load.
+struct BodyModels {
+  ContactModel contact = ContactModel::kAuto;
+  BodyModel body = BodyModel::kAuto;
+  double tolerance = 0.05;        // relative error in the torque that kAuto may make
+  double region_threshold = 0.0;  // r_th, m; at least what the sampling resolves
+};
+
+/// Which rows of other tables belong to a tool or body. Written by: load.
+struct OwnedRows {
+  Range parts;       // in `parts`
+  Range samples;     // in `samples`; tools only
+  Range balls;       // in `balls`; tools only
+  Range anchors;     // in `anchors`; bodies only
+  Range influences;  // in `influences`; bodies with contact model patch only: its tables and, of a
+                     // layer with body model compliance, its kernel (layer_kernel.hpp)
+  Range ports;       // in `ports`; body model compliance only, the first of them are its anchors
+  Range compliance;  // in `compliance`, 3 rows a port of 3 numbers a port, displacements by the
+                     // force there, m/N; then 3 rows a port of 3 an anchor, turns by it, rad/N
+};
+
+/// Axis-aligned box of the rest shape in the owner's frame. Written by: load.
+struct Bounds {
+  glm::dvec3 lowest{0.0};   // m
+  glm::dvec3 highest{0.0};  // m
+};
+
+}  // namespace torsion

@@ -1,0 +1,69 @@
+#pragma once
+
+// The cells and layers over which a region's contact model works.
+// Units, frames and "written by": ecs/components.hpp.
+
+#include <cstdint>
+
+#include <glm/vec2.hpp>
+
+namespace torsion {
+
+/// One cell of a region's grid. Written by: region_grids.
+struct CellGeometry {
+  double height = 0.0;    // m, grid: z of the tool's surface under the cell's centre
+  double depth = 0.0;     // m: overlap along the normal, <= 0 outside the contact
+  double coverage = 0.0;  // share of the cell's area that is in contact, 0 to 1
+};
+
+/// Written by: carry_tractions and the friction forces of the contact model.
+struct CellTraction {
+  glm::dvec2 traction{0.0};    // Pa, grid, on the tool, per covered area
+  double pressure = 0.0;       // Pa
+  double kinetic_share = 0.0;  // 0: threshold mu_s; 1: mu_d, after slipping a slip length
+  double coverage = 0.0;       // share of the cell that the traction acts on
+  std::uint32_t sticks = 0;    // 1: sticks, 0: slips or carries nothing
+  std::uint32_t padding = 0;
+};
+
+/// One value of the influence tables that fill_influences
+/// (systems/contact_models/influence.hpp) makes. Written by: load.
+struct Influence {
+  double value = 0.0;
+};
+
+/// What a region's own tables in `layer_influences` were filled for; zero before. Written by:
+/// patch_forces.
+struct LayerGrid {
+  double thickness = 0.0;     // m
+  glm::dvec2 half_size{0.0};  // m
+};
+
+/// The body's surface under one cell of a region with contact model `patch`. Written by:
+/// patch_forces.
+struct PatchCell {
+  glm::dvec2 displacement{0.0};  // m, grid: of the local half-space, tangential
+  double depression = 0.0;       // m: into the body
+  glm::dvec2 held{0.0};          // m, grid: the displacement at which friction holds or has left it
+  std::uint32_t known = 0;       // 0: `held` is what the displacement is
+  std::uint32_t padding = 0;
+};
+
+/// What the last step changed of it, from which the next one starts. Written by: patch_forces.
+struct PatchChange {
+  glm::dvec2 traction{0.0};      // Pa, grid, on the body
+  double pressure = 0.0;         // Pa
+  glm::dvec2 displacement{0.0};  // m, grid
+  double depression = 0.0;       // m
+};
+
+inline constexpr std::uint32_t kMdrLayers = 32;
+
+/// One layer of springs of a region with contact model `mdr`: how far the tool has deflected it.
+/// Written by: mdr_forces.
+struct MdrLayer {
+  glm::dvec2 shift{0.0};  // m, grid
+  double turn = 0.0;      // rad
+};
+
+}  // namespace torsion

@@ -1,0 +1,191 @@
+#pragma once
+
+// Contact regions. Rows are in the order of formation; a region of a step continues the one of the
+// last step that it overlaps most.
+// Units, frames and "written by": ecs/components.hpp.
+
+#include <array>
+#include <cstdint>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "ecs/components/basics.hpp"
+#include "ecs/entity.hpp"
+
+namespace torsion {
+
+/// Written by: group_regions.
+struct RegionIdentity {
+  Entity self;
+  std::uint32_t body = 0;   // row in `bodies`
+  std::uint32_t tool = 0;   // row in `tools`
+  std::uint64_t order = 0;  // 0, 1, 2, ... in the order of formation, never used twice
+  Range cells;              // its rows in `cells`: grid_side x grid_side, x fastest
+};
+
+/// The grid's placement. Its x and y axes keep their direction as well as the turning normal lets
+/// them. Written by: group_regions and region_grids.
+struct RegionFrame {
+  glm::dvec3 origin{0.0};               // m, body: on the rest surface, centre of the grid
+  glm::dvec3 tangent_x{1.0, 0.0, 0.0};  // body, unit
+  glm::dvec3 tangent_y{0.0, 1.0, 0.0};  // body, unit
+  glm::dvec3 normal{0.0, 0.0, 1.0};     // body, unit, out of the body: tangent_x x tangent_y
+  glm::dvec2 half_size{0.0};            // m: the grid covers origin +- half_size
+};
+
+/// How the material under the region has moved from where the rest shape has it, as a rigid body.
+/// Contact is found against the rest shape, so the tool is seen from the moved material. Written
+/// by: the contact model; zero for `paper`.
+struct RegionCarrier {
+  glm::dvec3 translation{0.0};  // m, body, of the grid's origin
+  glm::dvec3 rotation{0.0};     // rad, body: rotation vector
+};
+
+/// How the whole body's deformation has moved the material under the region, as a rigid body.
+/// Written by: compliance; zero with other body models.
+struct RegionSupport {
+  glm::dvec3 about{0.0};             // m, body: the point that has gone by `translation`
+  glm::dvec3 translation{0.0};       // m, body
+  glm::dvec3 rotation{0.0};          // rad, body: rotation vector
+  glm::dvec3 translation_step{0.0};  // m: by the last step
+  glm::dvec3 rotation_step{0.0};     // rad
+  // The part of it that the body's other regions have to do with; the rest is by its own load.
+  glm::dvec3 translation_by_others{0.0};  // m, body, likewise
+  glm::dvec3 rotation_by_others{0.0};     // rad
+};
+
+inline constexpr std::uint32_t kSupportTerms = 15;
+
+/// How the whole body's deformation moves the material under the region beyond RegionSupport: a
+/// polynomial of the fourth degree in two coordinates along the surface. Written by: compliance;
+/// zero with other body models.
+struct SupportField {
+  glm::dvec3 origin{0.0};   // m, body
+  glm::dvec3 along_x{0.0};  // 1/m, body: coordinate x is dot(along_x, point - origin)
+  glm::dvec3 along_y{0.0};
+  std::array<glm::dvec3, kSupportTerms> terms{};  // m, body: of 1; x, y; x^2, x y, y^2; x^3, ...
+};
+
+/// Where the tractions are: the grid as it was when they were last carried over to it, moved since
+/// with the material where that sticks; half_size 0 before the first time. Written by:
+/// group_regions and carry_tractions.
+struct TractionFrame {
+  RegionFrame frame;
+};
+
+/// Written by: region_grids.
+struct RegionGeometry {
+  glm::dvec3 equivalent_point{0.0};  // m, body: p_eq, the pressure centre, on the tool's surface
+  glm::dvec3 rest_point{0.0};        // m, body: where p_eq was on the body's rest surface
+  double area = 0.0;                 // m^2
+  double radius = 0.0;               // m: a = sqrt(area / pi)
+  double mean_depth = 0.0;           // m: x, the overlap's mean over the area
+  double largest_depth = 0.0;        // m
+  glm::dvec3 mean_normal{0.0};       // body, unit: of the rest surface, mean over the area
+};
+
+/// Motion of the tool over the body at the region. Written by: region_motion.
+struct RegionMotion {
+  glm::dvec2 pivot{0.0};  // m, grid: where the axis goes through the region; p_eq when it misses it
+  glm::dvec2 slide{0.0};  // m, grid: tangential motion of the tool at the pivot in this step
+  glm::dvec3 axis{0.0};   // body, unit; zero before the tool has turned
+  double spin = 0.0;      // rad: turn about the normal in this step
+  double turn = 0.0;      // rad: phi, the sum of spin since the region formed
+  double axis_share = 0.0;  // 1: the rotation axis goes through the region; 0: it misses it
+  double lever = 0.0;  // m: l of the paper, distance to the fixed point along the axis, at least a
+};
+
+/// Written by: normal_forces.
+struct RegionNormal {
+  double force = 0.0;      // N: F_n without rotation, along the outward normal on the tool
+  double stiffness = 0.0;  // N/m: dF/dx
+};
+
+/// Written by: friction_forces.
+struct RegionFriction {
+  glm::dvec2 force{0.0};       // N, grid, on the tool
+  double couple = 0.0;         // N m, about the normal through p_eq, on the tool
+  double kinetic_share = 0.0;  // 0: threshold mu_s and elastic traction; 1: mu_d along the slip
+  double stick_radius = 0.0;   // m: r_m, at most a
+  double stick_turn = 0.0;     // rad: phi at r_m that the body's surface follows (phi_m)
+  double stick_share = 0.0;    // of the area that sticks: there the body moves with the tool
+};
+
+/// How the contact model `patch` stands in a region. Written by: patch_forces.
+struct PatchState {
+  glm::dvec2 slide{0.0};      // m, grid: motion of the last step, as in RegionMotion
+  double spin = 0.0;          // rad, likewise
+  double deepened = 0.0;      // m: change of the largest depth in the last step
+  double depth = 0.0;         // m: the largest depth
+  double residual = 0.0;      // of the pressures and tractions, relative to the mean pressure
+  std::uint32_t sweeps = 0;   // in the last step
+  std::uint32_t started = 0;  // 0: no solution yet
+  std::uint32_t moved = 0;    // 1: the grid has moved, displacements must be found anew
+  std::uint32_t padding = 0;
+};
+
+/// Where smooth exact shapes lie deepest in each other in a region with contact model `mdr`.
+/// Written by: mdr_contacts.
+struct SmoothContact {
+  double share = 0.0;        // 1: known from the shapes; 0: not, what the cells show counts
+  double depth = 0.0;        // m, along the common normal
+  glm::dvec2 place{0.0};     // m, grid
+  double curvature_1 = 0.0;  // 1/m, principal, of both surfaces together
+  double curvature_2 = 0.0;  // 1/m, the larger
+  double beyond = 0.0;  // how far the surfaces part at the edge beyond their paraboloid, relative
+};
+
+/// How the contact model `mdr` stands in a region. Written by: mdr_forces.
+struct MdrState {
+  double radius = 0.0;      // m: a of the last step, 0 before the first
+  double elongation = 0.0;  // 1 - b / a
+  double flat_share = 0.0;  // of the force: by a flat punch's pressure, the rest by a paraboloid's
+  double kinetic_share = 0.0;  // 0: mu_s, 1: mu_d
+};
+
+inline constexpr std::uint32_t kFieldDiscs = 10;
+inline constexpr std::uint32_t kFieldBlocks = 5;
+
+/// Normal force that a part of a region presses into the body.
+struct PressedBlock {
+  glm::dvec2 place{0.0};  // m, grid: its pressure centre
+  double force = 0.0;     // N
+};
+
+/// What a region of an elastic half-space does to the body around it, small enough for a snapshot:
+/// bonded discs turned by small angles, and forces. Their exact fields add up to that of the
+/// region. Written by: region_fields; all zero for contact model `paper`.
+struct RegionField {
+  glm::dvec2 center{0.0};         // m, grid: of the discs
+  double radius = 0.0;            // m: of the largest disc; 0: there is no such field
+  double spread = 0.0;            // m: width over which the force of a block is spread
+  double turn[kFieldDiscs] = {};  // rad: of the disc of radius (j + 1) / kFieldDiscs * radius
+  PressedBlock blocks[kFieldBlocks * kFieldBlocks];
+};
+
+inline constexpr std::uint32_t kAnchorsPerBody = 48;
+
+/// Angle about the region's normal by which each anchor of its body turns because of the region,
+/// beyond what the half-space under the region does there; small angles. With it a picture can turn
+/// the body as far as it turns, where AnchorMotion alone would move it along tangents. Written by:
+/// anchor_motions; all zero with other body models than compliance.
+struct AnchorTurns {
+  double turn[kAnchorsPerBody] = {};  // rad
+  // How far the material under the contact has gone round at distance r from rest_point, rad,
+  // as RegionSupport and SupportField have it, from which the contact sees the tool:
+  double support = 0.0;         // rad: at r = 0
+  double support_growth = 0.0;  // rad/m^2: times r^2, what it is more
+};
+
+/// Written by: region_wrenches.
+struct RegionWrench {
+  Wrench on_tool;            // world, about the tool's mass centre, as let out
+  Wrench event_change;       // world: what birth, merge or split would have made jump; fades out
+  double event_share = 0.0;  // of event_change still let out: 1 at the event, 0 when faded
+  std::uint32_t event_now =
+      0;  // 1: on_tool holds what this region takes over; group_regions sets it
+  std::uint32_t padding = 0;
+};
+
+}  // namespace torsion

@@ -1,41 +1,24 @@
 #include "scenes/write_gltf.hpp"
 
-#include <cstring>
 #include <limits>
 #include <span>
 #include <sstream>
 
-#include <tiny_gltf.h>
+#include "scenes/gltf_rows.hpp"
 
 namespace torsion {
 namespace {
 
 /// Appends rows to the one buffer of `model` and makes an accessor of them.
 template <class Row>
-int add_accessor(tinygltf::Model& model, std::span<const Row> rows, int component, int type,
-                 int target, std::size_t count) {
-  auto& data = model.buffers[0].data;
-  data.resize((data.size() + 3) / 4 * 4);
-  tinygltf::BufferView view;
-  view.buffer = 0;
-  view.byteOffset = data.size();
-  view.byteLength = rows.size_bytes();
-  view.target = target;
-  data.resize(data.size() + rows.size_bytes());
-  std::memcpy(data.data() + view.byteOffset, rows.data(), rows.size_bytes());
-  model.bufferViews.push_back(view);
-  tinygltf::Accessor accessor;
-  accessor.bufferView = static_cast<int>(model.bufferViews.size()) - 1;
-  accessor.componentType = component;
-  accessor.type = type;
-  accessor.count = count;
-  model.accessors.push_back(accessor);
-  return static_cast<int>(model.accessors.size()) - 1;
+int add_accessor(tinygltf::Model& model, std::span<const Row> rows, const RowKind& kind) {
+  return append_rows(model, 0, std::as_bytes(rows), kind);
 }
 
 int add_vectors(tinygltf::Model& model, std::span<const glm::vec3> rows) {
-  return add_accessor(model, rows, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3,
-                      TINYGLTF_TARGET_ARRAY_BUFFER, rows.size());
+  return add_accessor(model, rows,
+                      {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, rows.size(),
+                       TINYGLTF_TARGET_ARRAY_BUFFER});
 }
 
 void set_bounds(tinygltf::Accessor& accessor, std::span<const glm::vec3> rows) {
@@ -76,13 +59,15 @@ void add_mesh(tinygltf::Model& model, const WrittenMesh& mesh) {
     primitive.attributes["_REST_POSITION"] = add_vectors(model, mesh.rest_positions);
   }
   if (!mesh.twist_angles.empty()) {
-    primitive.attributes["_TWIST_ANGLE"] = add_accessor<float>(
-        model, mesh.twist_angles, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR,
-        TINYGLTF_TARGET_ARRAY_BUFFER, mesh.twist_angles.size());
+    primitive.attributes["_TWIST_ANGLE"] =
+        add_accessor<float>(model, mesh.twist_angles,
+                            {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR,
+                             mesh.twist_angles.size(), TINYGLTF_TARGET_ARRAY_BUFFER});
   }
-  primitive.indices = add_accessor<glm::uvec3>(
-      model, mesh.triangles, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
-      TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, 3 * mesh.triangles.size());
+  primitive.indices =
+      add_accessor<glm::uvec3>(model, mesh.triangles,
+                               {TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
+                                3 * mesh.triangles.size(), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER});
   tinygltf::Mesh written;
   written.name = mesh.name;
   written.primitives.push_back(primitive);

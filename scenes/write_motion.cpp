@@ -1,7 +1,6 @@
 #include "scenes/write_motion.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <span>
 #include <sstream>
 
@@ -9,28 +8,15 @@
 #include <glm/vec4.hpp>
 
 #include "scenes/gltf_file.hpp"
+#include "scenes/gltf_rows.hpp"
 
 namespace torsion {
 namespace {
 
-/// Appends rows to the buffer and makes an accessor of them.
 template <class Row>
 int add_rows(tinygltf::Model& model, int buffer, std::span<const Row> rows, int type) {
-  std::vector<unsigned char>& data = model.buffers[static_cast<std::size_t>(buffer)].data;
-  tinygltf::BufferView view;
-  view.buffer = buffer;
-  view.byteOffset = data.size();
-  view.byteLength = rows.size_bytes();
-  data.resize(data.size() + rows.size_bytes());
-  std::memcpy(data.data() + view.byteOffset, rows.data(), rows.size_bytes());
-  model.bufferViews.push_back(view);
-  tinygltf::Accessor accessor;
-  accessor.bufferView = static_cast<int>(model.bufferViews.size()) - 1;
-  accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
-  accessor.type = type;
-  accessor.count = rows.size();
-  model.accessors.push_back(accessor);
-  return static_cast<int>(model.accessors.size()) - 1;
+  return append_rows(model, buffer, std::as_bytes(rows),
+                     {TINYGLTF_COMPONENT_TYPE_FLOAT, type, rows.size()});
 }
 
 void add_channel(tinygltf::Animation& animation, int node, const char* path, int times,

@@ -183,12 +183,15 @@ ReferenceCase twist_case(bool quick) {
   return result;
 }
 
+reference::CattaneoMindlin pushed(const SphereOnHalfSpace& sphere) {
+  return {sphere.hertz.force, sphere.friction.dynamic_friction, sphere.hertz.radius,
+          reference::tangential_modulus(sphere.elasticity.youngs_modulus,
+                                        sphere.elasticity.poisson_ratio)};
+}
+
 ReferenceCase shear_case(bool quick) {
   const SphereOnHalfSpace sphere = sphere_on_half_space(quick);
-  const reference::CattaneoMindlin contact{
-      sphere.hertz.force, sphere.friction.dynamic_friction, sphere.hertz.radius,
-      reference::tangential_modulus(sphere.elasticity.youngs_modulus,
-                                    sphere.elasticity.poisson_ratio)};
+  const reference::CattaneoMindlin contact = pushed(sphere);
   const double amplitude = 0.95 * reference::full_slip_displacement(contact);
   ReferenceCase result;
   result.name = "sphere_shear";
@@ -222,10 +225,7 @@ ReferenceCase slide_and_spin_case(bool quick) {
   const SphereOnHalfSpace sphere = sphere_on_half_space(quick);
   const double radius = sphere.hertz.radius;
   const double limit = sphere.friction.dynamic_friction * sphere.hertz.force;
-  const reference::CattaneoMindlin shear{
-      sphere.hertz.force, sphere.friction.dynamic_friction, radius,
-      reference::tangential_modulus(sphere.elasticity.youngs_modulus,
-                                    sphere.elasticity.poisson_ratio)};
+  const reference::CattaneoMindlin shear = pushed(sphere);
   // Long enough for all to slip whatever the motion before.
   const double way = 5.0 * reference::full_slip_displacement(shear);
   ReferenceCase result;

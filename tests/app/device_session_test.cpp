@@ -11,6 +11,7 @@
 #include "device/scripted_motion.hpp"
 #include "device/usb/usb_list.hpp"
 #include "tests/device/mock_usb.hpp"
+#include "tests/support/paths.hpp"
 
 namespace torsion {
 namespace {
@@ -40,7 +41,7 @@ struct Held {
     PrepareOptions options;
     options.contact_model = ContactModel::kMdr;
     options.body_model = BodyModel::kNone;
-    const std::string scene = std::string(TORSION_SOURCE_DIR) + "/scenes/ball_on_cube.gltf";
+    const std::string scene = test::shipped_scene("ball_on_cube");
     session = std::move(open_session(scene, options, true)).value();
     const Pose home = scripted_pose(session.scene.tools[0].script, 0.0);
     link = std::move(DeviceLink::open({"usb", {}, 0.2}, home)).value();

@@ -11,6 +11,7 @@
 #include "systems/held_tool/handle_side.hpp"
 #include "systems/held_tool/tool_equilibrium.hpp"
 #include "systems/rotation_vector.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/systems/emulated_hand.hpp"
 
 namespace torsion {
@@ -36,8 +37,7 @@ std::vector<double> grips() {
 Session open(const std::string& name, double rate = 1.0 / kPeriod) {
   PrepareOptions options;
   options.rate = rate;
-  auto opened =
-      open_session(std::string(TORSION_SOURCE_DIR) + "/scenes/" + name + ".gltf", options, true);
+  auto opened = open_session(test::shipped_scene(name), options, true);
   EXPECT_TRUE(opened) << opened.error().text;
   return std::move(opened).value();
 }

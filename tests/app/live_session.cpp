@@ -1,6 +1,7 @@
 #include "tests/app/live_session.hpp"
 
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/test_cache.hpp"
 
 namespace torsion::test {
 
@@ -8,7 +9,7 @@ PrepareOptions ball_options() {
   PrepareOptions options;
   options.contact_model = ContactModel::kMdr;
   options.body_model = BodyModel::kNone;
-  options.use_cache = false;
+  options.use_cache = has_test_cache();
   return options;
 }
 

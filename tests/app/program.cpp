@@ -9,13 +9,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/support/paths.hpp"
+
 namespace torsion::test {
 
 Ran run_torsion(const std::vector<std::string>& words) {
   const Folder folder;
   const std::string out = folder / "out";
   const std::string err = folder / "err";
-  std::vector<std::string> all = {std::string(TORSION_BINARY_DIR) + "/torsion"};
+  std::vector<std::string> all = {build_folder() + "/torsion"};
   all.insert(all.end(), words.begin(), words.end());
   std::vector<char*> arguments;
   arguments.reserve(all.size() + 1);
@@ -42,7 +44,7 @@ Ran run_torsion(const std::vector<std::string>& words) {
 }
 
 std::string scene(const std::string& name) {
-  return std::string(TORSION_SOURCE_DIR) + "/scenes/" + name + ".gltf";
+  return shipped_scene(name);
 }
 
 Folder::Folder() {

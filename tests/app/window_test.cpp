@@ -7,6 +7,7 @@
 
 #include "render/image_io.hpp"
 #include "tests/app/program.hpp"
+#include "tests/support/paths.hpp"
 
 namespace torsion {
 namespace {
@@ -46,9 +47,8 @@ class WindowTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new test::Folder;
-    const std::string command = "xvfb-run -a -s '-screen 0 1280x720x24' " +
-                                std::string(TORSION_SOURCE_DIR) + "/tests/app/window_test.sh " +
-                                std::string(TORSION_BINARY_DIR) + "/torsion " +
+    const std::string command = "xvfb-run -a -s '-screen 0 1280x720x24' " + test::source_folder() +
+                                "/tests/app/window_test.sh " + test::build_folder() + "/torsion " +
                                 test::scene("ball_on_cube_soft") + " " + (*folder_ / ".") + " > " +
                                 (*folder_ / "log") + " 2>&1";
     status_ = std::system(command.c_str());  // NOLINT(cert-env33-c,concurrency-mt-unsafe): a script

@@ -44,13 +44,8 @@ std::vector<glm::dvec3> patch_points() {
   return points;
 }
 
-void exact_shape(benchmark::State& state, ShapeKind kind, glm::dvec3 half_extent,
-                 glm::dquat rotation) {
-  ShapePart part;
-  part.kind = kind;
-  part.half_extent = half_extent;
-  part.pose.rotation = rotation;
-  const World world = world_with({part});
+/// The distances of all points of the patch to the world's first part.
+void time_patch(benchmark::State& state, const World& world) {
   const std::vector<glm::dvec3> points = patch_points();
   std::vector<Distance> distances(points.size());
   for (auto _ : state) {
@@ -59,6 +54,16 @@ void exact_shape(benchmark::State& state, ShapeKind kind, glm::dvec3 half_extent
     benchmark::ClobberMemory();
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
+}
+
+void exact_shape(benchmark::State& state, ShapeKind kind, glm::dvec3 half_extent,
+                 glm::dquat rotation) {
+  ShapePart part;
+  part.kind = kind;
+  part.half_extent = half_extent;
+  part.pose.rotation = rotation;
+  const World world = world_with({part});
+  time_patch(state, world);
 }
 
 void single_point(benchmark::State& state, ShapeKind kind, glm::dvec3 half_extent) {
@@ -79,14 +84,7 @@ void single_point(benchmark::State& state, ShapeKind kind, glm::dvec3 half_exten
 void mesh_field(benchmark::State& state) {
   const SurfaceMesh mesh = sphere_mesh(0.05, static_cast<std::uint32_t>(state.range(0)));
   const World world = field_world(build_distance_field(mesh).value());
-  const std::vector<glm::dvec3> points = patch_points();
-  std::vector<Distance> distances(points.size());
-  for (auto _ : state) {
-    signed_distances(world, {0, 1}, points, distances);
-    benchmark::DoNotOptimize(distances.data());
-    benchmark::ClobberMemory();
-  }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
+  time_patch(state, world);
   state.counters["triangles"] = static_cast<double>(mesh.triangles.size());
 }
 

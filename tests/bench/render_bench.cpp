@@ -87,20 +87,26 @@ PassTimes measure(const TwistedCube& scene, std::uint32_t samples, const char* n
 }
 
 void compare(const char* pass, double device, double cpu, double wanted) {
-  std::printf("%-8s device %7.3f ms, one thread of C++ %7.3f ms, ratio %5.2f (wanted <= %.0f)\n",
-              pass, device, cpu, device / cpu, wanted);
+  std::printf("%-8s device %7.3f ms, one thread of C++ %7.3f ms, ratio %5.2f", pass, device, cpu,
+              device / cpu);
+  if (wanted > 0.0) {
+    std::printf(" (wanted <= %.0f)", wanted);
+  }
+  std::printf("\n");
 }
 
 /// The twins over the same rows.
-void compare_with_cpu(const FrameWorld& frame, const PassTimes& device) {
+/// @param wanted_deform, wanted_normals  ratios to beat; 0 where there is no goal
+void compare_with_cpu(const FrameWorld& frame, const PassTimes& device, double wanted_deform,
+                      double wanted_normals) {
   std::vector<glm::vec4> positions(frame.body_vertices.size());
   std::vector<glm::vec4> normals(frame.body_vertices.size());
   const NormalRings rings = make_normal_rings(frame);
   compare("deform", device.deform, milliseconds_of([&] { deform_vertices(frame, 0, positions); }),
-          kWantedDeform);
+          wanted_deform);
   compare("normals", device.normals,
           milliseconds_of([&] { vertex_normals(frame, rings, 0, positions, normals); }),
-          kWantedNormals);
+          wanted_normals);
 }
 
 }  // namespace
@@ -115,15 +121,15 @@ int main() {
   std::printf("\n");
   const PassTimes all_turned = measure(scene, 1, "1 region, 1 sample");
   measure(scene, 4, "1 region, 4 samples");
-  compare_with_cpu(scene.frame, all_turned);
+  compare_with_cpu(scene.frame, all_turned, kWantedDeform, kWantedNormals);
 
   // What is usual: a twist that ends within a few contact radii.
   for (TwistAngle& angle : scene.frame.twist.column<TwistAngle>()) {
     angle.angle = std::abs(angle.angle) < 0.1F ? 0.0F : angle.angle;
   }
-  compare_with_cpu(scene.frame, measure(scene, 1, "twist near the contact"));
+  compare_with_cpu(scene.frame, measure(scene, 1, "twist near the contact"), 0.0, kWantedNormals);
 
   scene.frame.bodies.at<FrameBody>(0).regions_drawn = 0;
-  compare_with_cpu(scene.frame, measure(scene, 1, "no region"));
+  compare_with_cpu(scene.frame, measure(scene, 1, "no region"), 0.0, kWantedNormals);
   return 0;
 }

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "scenes/load_gltf.hpp"
+#include "tests/support/paths.hpp"
 
 namespace torsion {
 namespace {
@@ -101,7 +102,7 @@ class LoadGltfFuzzTest : public testing::TestWithParam<std::string> {
 
 TEST_P(LoadGltfFuzzTest, EndsWithASceneOrWithProblems) {
   const std::filesystem::path source =
-      std::filesystem::path(TORSION_SOURCE_DIR) / "scenes" / GetParam();
+      std::filesystem::path(test::source_folder()) / "scenes" / GetParam();
   const std::string good = read_all(source);
   ASSERT_FALSE(good.empty());
   const std::filesystem::path buffer = std::filesystem::path(source).replace_extension(".bin");

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include "tests/reference/airy_layer.hpp"
 #include "tests/reference/exact/bars.hpp"
 #include "tests/reference/exact/hertz.hpp"
 #include "tests/reference/exact/layers.hpp"
@@ -50,27 +51,10 @@ TEST(LayerTorsionTest, ReachesThickAndThinLimits) {
 }
 
 /// L of a bonded or frictionless layer, plane strain (the same as axisymmetric), from its boundary
-/// conditions: stresses of Airy's function phi = [(A + B z) cosh k z + (C + D z) sinh k z] cos k x,
-/// k = 1, base z = 0, surface z = u, and 2 G (u_x, u_z) = -grad phi + (1 - nu) (psi_z, psi_x),
-/// psi_xz = laplacian phi (Mindlin and Cheng's displacement form).
+/// conditions.
 double compliance_from_boundaries(LayerBase base, double poisson, double u) {
-  struct Row {
-    Eigen::RowVector4d phi, slope, sideways, normal;
-  };
-  const auto at = [&](double z) {
-    const double c = std::cosh(z);
-    const double s = std::sinh(z);
-    Row row;
-    row.phi << c, z * c, s, z * s;
-    row.slope << s, c + z * s, c, s + z * c;
-    const Eigen::RowVector4d psi(0.0, 2.0 * c, 0.0, 2.0 * s);
-    const Eigen::RowVector4d psi_slope(0.0, 2.0 * s, 0.0, 2.0 * c);
-    row.sideways = row.phi + (1.0 - poisson) * psi_slope;
-    row.normal = -row.slope + (1.0 - poisson) * psi;
-    return row;
-  };
-  const Row bottom = at(0.0);
-  const Row top = at(u);
+  const AiryRows bottom = airy_rows(poisson, 0.0);
+  const AiryRows top = airy_rows(poisson, u);
   Eigen::Matrix4d conditions;
   conditions.row(0) = bottom.normal;
   conditions.row(1) = base == LayerBase::kBonded ? bottom.sideways : bottom.slope;  // or no shear

@@ -11,6 +11,7 @@
 #include "tests/reference/exact/hertz.hpp"
 #include "tests/reference/exact/lubkin.hpp"
 #include "tests/reference/exact/materials.hpp"
+#include "tests/support/paths.hpp"
 
 namespace torsion::reference {
 namespace {
@@ -24,8 +25,8 @@ struct Pose {
 };
 
 std::vector<Pose> read_case(const std::string& name) {
-  std::ifstream file(std::string(TORSION_SOURCE_DIR) + "/tests/reference/finite_elements/results/" +
-                     name + ".csv");
+  std::ifstream file(test::source_folder() + "/tests/reference/finite_elements/results/" + name +
+                     ".csv");
   std::vector<Pose> poses;
   std::string line;
   std::getline(file, line);

@@ -12,6 +12,7 @@
 #include "tests/render/gpu_fixture.hpp"
 #include "tests/render/render_scenes.hpp"
 #include "tests/support/image_compare.hpp"
+#include "tests/support/paths.hpp"
 
 namespace torsion {
 namespace {
@@ -32,7 +33,7 @@ class GoldenTest : public GpuTest {
   }
 
   static std::filesystem::path golden_path(const std::string& name) {
-    return std::filesystem::path(TORSION_SOURCE_DIR) / "tests/images" / (name + ".png");
+    return std::filesystem::path(test::source_folder()) / "tests/images" / (name + ".png");
   }
 
   /// Leaves NAME.actual.png and NAME.difference.png in the build folder's `images` when it fails.
@@ -46,7 +47,7 @@ class GoldenTest : public GpuTest {
     if (close_enough(difference)) {
       return;
     }
-    const std::filesystem::path kept = std::filesystem::path(TORSION_BINARY_DIR) / "images";
+    const std::filesystem::path kept = std::filesystem::path(test::build_folder()) / "images";
     std::filesystem::create_directories(kept);
     must(write_png(image, kept / (name + ".actual.png")));
     if (difference.same_size) {

@@ -8,13 +8,15 @@
 #include "device/scripted_motion.hpp"
 #include "scenes/load_gltf.hpp"
 #include "systems/step.hpp"
+#include "tests/support/paths.hpp"
+#include "tests/support/test_cache.hpp"
 
 namespace torsion::test {
 namespace {
 
 /// Paths below scenes/, those exported from Blender included.
 std::vector<std::string> shipped_scenes() {
-  const std::filesystem::path folder = std::filesystem::path(TORSION_SOURCE_DIR) / "scenes";
+  const std::filesystem::path folder = std::filesystem::path(source_folder()) / "scenes";
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     const std::string extension = entry.path().extension().string();
@@ -45,12 +47,12 @@ TEST(ShippedScenesTest, AllThatTheDesignNamesAreThere) {
 class ShippedSceneTest : public testing::TestWithParam<std::string> {};
 
 TEST_P(ShippedSceneTest, LoadsPreparesAndSteps) {
-  const auto path = std::filesystem::path(TORSION_SOURCE_DIR) / "scenes" / GetParam();
+  const auto path = std::filesystem::path(source_folder()) / "scenes" / GetParam();
   const LoadedScene loaded = load_gltf(path);
   ASSERT_TRUE(loaded.scene.has_value()) << to_text(loaded.problems);
   EXPECT_GT(loaded.scene->duration, 0.0);
   PrepareOptions options;
-  options.use_cache = false;
+  options.use_cache = has_test_cache();
   Result<Simulation> prepared = prepare(*loaded.scene, options);
   ASSERT_TRUE(prepared.ok()) << prepared.error().text;
   Simulation& simulation = prepared.value();

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "systems/frames.hpp"
+#include "tests/support/test_cache.hpp"
 
 namespace torsion::test {
 namespace {
@@ -130,9 +131,9 @@ SceneDescription ball_on_cube() {
 }
 
 Hand::Hand(const SceneDescription& scene, const PrepareOptions& options) {
-  PrepareOptions uncached = options;
-  uncached.use_cache = false;
-  Result<Simulation> prepared = prepare(scene, uncached);
+  PrepareOptions here = options;
+  here.use_cache = has_test_cache();
+  Result<Simulation> prepared = prepare(scene, here);
   if (!prepared) {
     throw std::runtime_error(prepared.error().text);
   }

@@ -13,6 +13,7 @@
 
 #include "systems/contact_models/layer_influence.hpp"
 #include "systems/contact_models/patch_solver.hpp"
+#include "tests/reference/airy_layer.hpp"
 #include "tests/reference/exact/layers.hpp"
 
 namespace torsion {
@@ -24,26 +25,11 @@ std::vector<double> kernel_of(double poisson_ratio) {
   return kernel;
 }
 
-/// The whole layer's compliance by Airy's function [(A + B z) cosh z + (C + D z) sinh z] cos x,
-/// base z = 0, surface z = u: along by traction along, and minus along by pressure.
+/// The whole layer's compliance from its boundary conditions: along by traction along, and minus
+/// along by pressure.
 std::pair<double, double> along_and_mixed(double poisson_ratio, double u) {
-  struct Rows {
-    Eigen::RowVector4d phi, slope, sideways, normal;
-  };
-  const auto at = [&](double z) {
-    const double c = std::cosh(z);
-    const double s = std::sinh(z);
-    Rows rows;
-    rows.phi << c, z * c, s, z * s;
-    rows.slope << s, c + z * s, c, s + z * c;
-    const Eigen::RowVector4d psi(0.0, 2.0 * c, 0.0, 2.0 * s);
-    const Eigen::RowVector4d psi_slope(0.0, 2.0 * s, 0.0, 2.0 * c);
-    rows.sideways = rows.phi + (1.0 - poisson_ratio) * psi_slope;
-    rows.normal = -rows.slope + (1.0 - poisson_ratio) * psi;
-    return rows;
-  };
-  const Rows base = at(0.0);
-  const Rows top = at(u);
+  const reference::AiryRows base = reference::airy_rows(poisson_ratio, 0.0);
+  const reference::AiryRows top = reference::airy_rows(poisson_ratio, u);
   Eigen::Matrix4d conditions;
   conditions << base.normal, base.sideways, top.slope, top.phi;
   const Eigen::FullPivLU<Eigen::Matrix4d> solver(conditions);

@@ -11,6 +11,7 @@
 
 #include "systems/contact_models/elliptic_contact.hpp"
 #include "tests/reference/exact/elliptic_integrals.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/systems/mdr_springs.hpp"
 
 namespace torsion {
@@ -24,7 +25,7 @@ struct Twisted {
 
 /// Curves by axes b / a and Poisson's ratio.
 std::map<std::pair<double, double>, std::vector<Twisted>> read_curves() {
-  std::ifstream file(std::string(TORSION_SOURCE_DIR) +
+  std::ifstream file(test::source_folder() +
                      "/tests/reference/boundary_elements/elliptic_twist.csv");
   std::map<std::pair<double, double>, std::vector<Twisted>> curves;
   std::string line;

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include <tiny_gltf.h>
+
+namespace torsion {
+
+/// What an accessor's rows are.
+struct RowKind {
+  int component = TINYGLTF_COMPONENT_TYPE_FLOAT;
+  int type = TINYGLTF_TYPE_SCALAR;
+  std::size_t count = 0;
+  int target = 0;  // of the buffer view; 0 for none
+};
+
+/// Appends rows to a buffer of the model, from a multiple of four bytes as accessors must
+/// (glTF 2.0, 3.6.2.4), and makes a view and an accessor of them.
+/// @return the accessor's index
+int append_rows(tinygltf::Model& model, int buffer, std::span<const std::byte> rows,
+                const RowKind& kind);
+
+}  // namespace torsion

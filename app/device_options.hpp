@@ -6,7 +6,7 @@
 
 namespace torsion {
 
-/// --falcon-firmware and --knob-torque.
+/// --falcon-firmware, --knob-torque and the buttons that turn.
 void add_device_options(CLI::App& subcommand, DeviceChoice& choice);
 
 }  // namespace torsion

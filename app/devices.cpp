@@ -128,6 +128,16 @@ void add_device_options(CLI::App& subcommand, DeviceChoice& choice) {
   subcommand.add_option("--knob-torque", choice.largest_knob_torque, "Largest, N m, of an ODrive")
       ->check(CLI::Range(0.0, 5.0))
       ->capture_default_str();
+  subcommand
+      .add_option_function<std::pair<std::uint32_t, std::uint32_t>>(
+          "--turn-buttons",
+          [&choice](const std::pair<std::uint32_t, std::uint32_t>& numbers) {
+            choice.turn_buttons.left = 1U << (numbers.first - 1U);
+            choice.turn_buttons.right = 1U << (numbers.second - 1U);
+          },
+          "Two buttons (1 to 32) that turn the tool counter-clockwise and clockwise where a device "
+          "senses no turn [1 4]")
+      ->check(CLI::Range(1, 32));
 }
 
 void add_devices(CLI::App& app, Command& command) {

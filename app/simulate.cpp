@@ -5,9 +5,9 @@
 
 #include "app/commands.hpp"
 #include "app/device_options.hpp"
+#include "app/live/scene_device.hpp"
 #include "app/simulate_loop.hpp"
 #include "app/summary.hpp"
-#include "device/scripted_motion.hpp"
 
 namespace torsion {
 namespace {
@@ -57,26 +57,6 @@ std::uint64_t steps_of_run(const SimulateOptions& options, const Session& sessio
   return options.seconds < 0.0 ? recorded : std::min(recorded, steps_in(session, seconds));
 }
 
-/// The devices that the options or the scene ask for; null where neither does.
-Result<std::unique_ptr<DeviceLink>> open_device(const SimulateOptions& options,
-                                                const Session& session, RunDevice& device) {
-  DeviceChoice choice = options.device;
-  const auto& tools = session.scene.tools;
-  const auto held = std::ranges::find(tools, "usb", &ToolDescription::device);
-  device.tool = held != tools.end() ? static_cast<std::uint32_t>(held - tools.begin()) : 0U;
-  if (choice.what.empty() && held != tools.end()) {
-    choice.what = "usb";
-  }
-  if (!options.realtime || choice.what.empty()) {
-    return std::unique_ptr<DeviceLink>();
-  }
-  // Where the tool is when a hand takes it.
-  const Pose home = scripted_pose(tools[device.tool].script, 0.0);
-  auto opened = DeviceLink::open(choice, home);
-  device.link = opened ? opened.value().get() : nullptr;
-  return opened;
-}
-
 /// Runs, and finishes what is written.
 Result<RunStatistics> run(const SimulateOptions& options, Session& session, std::uint64_t steps,
                           const RunFiles& files, RunFacts& facts) {
@@ -85,13 +65,13 @@ Result<RunStatistics> run(const SimulateOptions& options, Session& session, std:
     Progress progress("simulating", options.quiet);
     if (options.realtime) {
       RealtimeMode mode;
-      RunDevice device;
       const Interrupt interrupt;  // before any thread
-      const auto link = open_device(options, session, device);
-      if (!link) {
-        return link.error();
+      const Result<SceneDevice> opened = open_device(options.device, session.scene);
+      if (!opened) {
+        return opened.error();
       }
-      device.interrupt = device.link != nullptr ? &interrupt : nullptr;
+      DeviceLink* const link = opened.value().link.get();
+      const RunDevice device{link, link != nullptr ? &interrupt : nullptr, opened.value().tool};
       statistics = run_realtime(session, steps, files, device, progress, mode);
       facts.mode = describe(mode);
       if (device.link != nullptr) {

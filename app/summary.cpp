@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/live/device_words.hpp"
 #include "ecs/hash.hpp"
 #include "ecs/model_names.hpp"
 #include "systems/fault.hpp"
@@ -23,30 +24,31 @@ nlohmann::ordered_json histogram_json(const TimeHistogram& histogram) {
   return rows;
 }
 
-std::string device_lines(const DeviceView& view) {
-  std::string text = fmt::format("device   {}\n", describe(view));
-  if (view.answer_us.count() > 0) {
-    text += fmt::format(
-        "         {} samples; lost {} times; from a sample to the force that is sent median "
-        "{:.0f} us, 99 % {:.0f} us; the physics' result in it {:.0f} us, {:.0f} us old\n",
-        view.sample.number, view.losses, view.answer_us.quantile(0.5),
-        view.answer_us.quantile(0.99), view.result_us.quantile(0.5), view.result_us.quantile(0.99));
-  }
-  return text;
-}
-
-nlohmann::ordered_json device_json(const DeviceView& view) {
-  return {{"state", describe(view)},
-          {"rate_Hz", view.sample.rate},
-          {"samples", view.sample.number},
-          {"losses", view.losses},
-          {"sample_to_force_us",
-           {{"median", view.answer_us.quantile(0.5)}, {"p99", view.answer_us.quantile(0.99)}}},
-          {"result_age_us",
-           {{"median", view.result_us.quantile(0.5)}, {"p99", view.result_us.quantile(0.99)}}}};
-}
-
 }  // namespace
+
+std::string clock_text(const RunStatistics& statistics, const std::string& mode) {
+  return fmt::format(
+      "thread   {}\n"
+      "clock    {:.2f} steps a second; {} of {} periods began more than 1 ms late, {} steps took "
+      "longer than a period\n"
+      "lateness:\n{}step times:\n{}",
+      mode, static_cast<double>(statistics.steps) / statistics.wall_time,
+      statistics.missed_deadlines, statistics.lateness.count(), statistics.overruns,
+      statistics.lateness.text(), statistics.step_times.text());
+}
+
+void add_clock(nlohmann::ordered_json& json, const RunStatistics& statistics,
+               const std::string& mode) {
+  json["rate_Hz"] = static_cast<double>(statistics.steps) / statistics.wall_time;
+  json["thread"] = mode;
+  json["missed_deadlines"] = statistics.missed_deadlines;
+  json["overruns"] = statistics.overruns;
+  json["lateness_us"] = {{"median", statistics.lateness.quantile(0.5)},
+                         {"p99", statistics.lateness.quantile(0.99)},
+                         {"largest", statistics.lateness.largest()},
+                         {"histogram", histogram_json(statistics.lateness)}};
+  json["step_us"]["histogram"] = histogram_json(statistics.step_times);
+}
 
 std::string summary_text(const Session& session, const RunStatistics& statistics,
                          const RunFacts& facts) {
@@ -68,17 +70,10 @@ std::string summary_text(const Session& session, const RunStatistics& statistics
                         choice.contact_why, name_of(choice.models.body), choice.body_why);
   }
   if (statistics.lateness.count() > 0) {
-    text += fmt::format(
-        "thread   {}\n"
-        "clock    {:.2f} steps a second; {} of {} steps began more than 1 ms late, {} took longer "
-        "than a period\n"
-        "lateness:\n{}step times:\n{}",
-        facts.mode, static_cast<double>(statistics.steps) / statistics.wall_time,
-        statistics.missed_deadlines, statistics.steps, statistics.overruns,
-        statistics.lateness.text(), statistics.step_times.text());
+    text += clock_text(statistics, facts.mode);
   }
   if (facts.device) {
-    text += device_lines(*facts.device);
+    text += device_summary(*facts.device);
   }
   text += fmt::format("world    hash {:016x}\n", hash(world));
   if (!facts.trace.empty()) {
@@ -126,15 +121,7 @@ std::string summary_json(const Session& session, const RunStatistics& statistics
     }
   }
   if (statistics.lateness.count() > 0) {
-    json["rate_Hz"] = static_cast<double>(statistics.steps) / statistics.wall_time;
-    json["thread"] = facts.mode;
-    json["missed_deadlines"] = statistics.missed_deadlines;
-    json["overruns"] = statistics.overruns;
-    json["lateness_us"] = {{"median", statistics.lateness.quantile(0.5)},
-                           {"p99", statistics.lateness.quantile(0.99)},
-                           {"largest", statistics.lateness.largest()},
-                           {"histogram", histogram_json(statistics.lateness)}};
-    json["step_us"]["histogram"] = histogram_json(statistics.step_times);
+    add_clock(json, statistics, facts.mode);
   }
   if (facts.device) {
     json["device"] = device_json(*facts.device);

@@ -3,6 +3,8 @@
 #include <optional>
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "app/live/device_link.hpp"
 #include "app/run_statistics.hpp"
 #include "app/session.hpp"
@@ -16,6 +18,14 @@ struct RunFacts {
   std::optional<DeviceView> device;  // of what held the tool at the end
   std::string mode;  // what the system granted a run on the clock; empty: it was not on it
 };
+
+/// How a run on the clock kept its time, histograms and all, lines for a person.
+/// @param mode  what the system granted its thread
+std::string clock_text(const RunStatistics& statistics, const std::string& mode);
+
+/// The same as keys of an object, in which "step_us" is an object.
+void add_clock(nlohmann::ordered_json& json, const RunStatistics& statistics,
+               const std::string& mode);
 
 /// What a run came to, for a person.
 std::string summary_text(const Session& session, const RunStatistics& statistics,

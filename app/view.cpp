@@ -4,6 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
+#include "app/device_options.hpp"
+#include "app/live/device_words.hpp"
+#include "app/summary.hpp"
 #include "app/view/viewer.hpp"
 
 namespace torsion {
@@ -15,6 +18,10 @@ struct ViewOptions {
   bool json = false;
 };
 
+double pictures_a_second(const ViewerOutcome& outcome) {
+  return static_cast<double>(outcome.frames) / (outcome.seconds - outcome.opened_after);
+}
+
 nlohmann::ordered_json to_json(const ViewerOutcome& outcome) {
   const RunStatistics& statistics = outcome.statistics;
   const auto times = [](const TimeHistogram& histogram) {
@@ -22,21 +29,21 @@ nlohmann::ordered_json to_json(const ViewerOutcome& outcome) {
                                   {"p99", histogram.quantile(0.99)},
                                   {"largest", histogram.largest()}};
   };
-  return {{"seconds", outcome.seconds},
-          {"opened_after_s", outcome.opened_after},
-          {"pictures", outcome.frames},
-          {"pictures_a_second",
-           static_cast<double>(outcome.frames) / (outcome.seconds - outcome.opened_after)},
-          {"inner_resolution", outcome.share},
-          {"thread", outcome.mode},
-          {"steps", statistics.steps},
-          {"periods", statistics.lateness.count()},
-          {"missed_deadlines", statistics.missed_deadlines},
-          {"overruns", statistics.overruns},
-          {"lateness_us", times(statistics.lateness)},
-          {"step_us", times(statistics.step_times)},
-          {"peak_force_N", statistics.peak_force},
-          {"peak_torque_Nm", statistics.peak_torque}};
+  nlohmann::ordered_json json = {{"seconds", outcome.seconds},
+                                 {"opened_after_s", outcome.opened_after},
+                                 {"pictures", outcome.frames},
+                                 {"pictures_a_second", pictures_a_second(outcome)},
+                                 {"inner_resolution", outcome.share},
+                                 {"steps", statistics.steps},
+                                 {"periods", statistics.lateness.count()},
+                                 {"step_us", times(statistics.step_times)},
+                                 {"peak_force_N", statistics.peak_force},
+                                 {"peak_torque_Nm", statistics.peak_torque}};
+  add_clock(json, statistics, outcome.mode);
+  if (outcome.device) {
+    json["device"] = device_json(*outcome.device);
+  }
+  return json;
 }
 
 int view(const ViewOptions& options) {
@@ -52,9 +59,9 @@ int view(const ViewOptions& options) {
     fmt::print("{}\n", to_json(outcome.value()).dump(2));
   } else {
     const ViewerOutcome& was = outcome.value();
-    fmt::print("{:.1f} s, {} pictures; {} of {} periods over 1 ms late; {}\n", was.seconds,
-               was.frames, was.statistics.missed_deadlines, was.statistics.lateness.count(),
-               was.mode);
+    fmt::print("window   {:.1f} s, {} pictures, {:.1f} a second at {:.0f} % size at the end\n{}{}",
+               was.seconds, was.frames, pictures_a_second(was), 100.0 * was.share,
+               clock_text(was.statistics, was.mode), was.device ? device_summary(*was.device) : "");
   }
   return kDone;
 }
@@ -72,6 +79,9 @@ void add_view(CLI::App& app, Command& command) {
                          "File to write at the end with everything that went in");
   subcommand->add_option("--screenshot", options->viewer.screenshot,
                          "PNG to write of the last picture");
+  subcommand->add_option("--device", options->viewer.device.what,
+                         "What holds the tool instead of the mouse: usb, or usb:falcon+odrive");
+  add_device_options(*subcommand, options->viewer.device);
   subcommand->add_flag("--json", options->json, "Print what the session was like as JSON");
   subcommand->callback([options, &command] {
     command = [options] {

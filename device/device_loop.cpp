@@ -1,6 +1,8 @@
 #include "device/device_loop.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -9,7 +11,8 @@
 namespace torsion {
 namespace {
 
-constexpr double kOldWrench = 2e-3;  // s: a part does not display a wrench older than this
+constexpr double kOldWrench = 2e-3;     // s: a part does not display a wrench older than this
+constexpr double kLongestStep = 20e-3;  // s: a button counts no longer between two samples
 
 /// What a driver's samples come to: the row they belong to.
 struct RowContext {
@@ -145,6 +148,23 @@ void compose_points(const DeviceLoop& loop, DeviceSample& whole) {
   whole.traits.encoder_turn_step = whole.traits.encoder_step / loop.options.spacing;
 }
 
+/// Where nothing senses a turn, two buttons of a device make one, at a constant speed.
+void turn_by_buttons(DeviceLoop& loop, double now) {
+  const TurnButtons& by = loop.options.turn_buttons;
+  DeviceSample& whole = loop.whole;
+  const double elapsed = std::clamp(now - loop.button_time, 0.0, kLongestStep);
+  loop.button_time = now;
+  whole.buttons_turn = whole.sensed == kTranslationAxes;
+  if (!whole.buttons_turn) {
+    return;
+  }
+  const double left = (whole.buttons & by.left) != 0 ? 1.0 : 0.0;
+  const double right = (whole.buttons & by.right) != 0 ? 1.0 : 0.0;
+  loop.button_turn = std::remainder(loop.button_turn + (left - right) * by.speed * elapsed,
+                                    2.0 * std::numbers::pi);
+  whole.pose.rotation = glm::angleAxis(loop.button_turn, loop.options.twist_axis);
+}
+
 /// All devices as one.
 void compose(DeviceLoop& loop) {
   DeviceSample& whole = loop.whole;
@@ -233,6 +253,7 @@ Wrench on_sample(void* context, const DeviceSample& sample) {
     give_roles(loop);  // a trouble may have taken it out, or brought it back
   }
   compose(loop);
+  turn_by_buttons(loop, sample.time);
   const bool live = loop.whole.state == DeviceState::kLive;
   if (live != was_live) {
     loop.whole.epoch = kept + (live ? 1U : 0U);
@@ -313,6 +334,7 @@ void detach(DeviceLoop& loop, std::size_t row, double now) {
   device = {};
   give_roles(loop);
   compose(loop);
+  turn_by_buttons(loop, now);
   loop.wrench = {};
   loop.whole.time = now;
   loop.whole.number += 1;

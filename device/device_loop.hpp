@@ -22,8 +22,16 @@ enum class DeviceRole : std::uint8_t {
   kPoint,  // one of two or three that carry the tool
 };
 
+/// Buttons that turn the tool about its twist axis, for a device that senses no turn.
+struct TurnButtons {
+  std::uint32_t left = 1U << 0;   // bits of DeviceSample::buttons: counter-clockwise while held
+  std::uint32_t right = 1U << 3;  // clockwise
+  double speed = 1.0;             // rad/s
+};
+
 struct LoopOptions {
   DriverOptions drivers;
+  TurnButtons turn_buttons;
   std::uint32_t kinds = ~0U;             // bits 1 << DeviceKind: which may be used
   glm::dvec3 twist_axis{0.0, 1.0, 0.0};  // world, at rest: what a knob turns about
   double spacing = 0.2;                  // m: between devices that carry a tool together
@@ -45,8 +53,10 @@ struct DeviceLoop {
   std::array<DeviceRow, kMostDevices> rows;
   CarriedTool carried;
   DeviceSample whole;
-  Wrench wrench;       // that the sink asked for last
-  double asked = 0.0;  // s: when
+  double button_turn = 0.0;  // rad: that buttons have made so far
+  double button_time = 0.0;  // s: until when
+  Wrench wrench;             // that the sink asked for last
+  double asked = 0.0;        // s: when
 };
 
 /// A free row, or kMostDevices.

@@ -59,10 +59,11 @@ struct DeviceSample {
   DeviceTrouble trouble = DeviceTrouble::kNone;
   std::uint8_t sensed = kNoAxes;    // of DeviceAxes
   std::uint8_t actuated = kNoAxes;  // likewise
-  bool steers_rate = false;  // it has no place of its own: its pose is where it was steered to
-  std::uint32_t epoch = 0;   // another one: the pose starts anew and may be anywhere
-  std::uint64_t number = 0;  // of the samples so far
-  double time = 0.0;         // s, steady clock, when it arrived
+  bool steers_rate = false;   // it has no place of its own: its pose is where it was steered to
+  bool buttons_turn = false;  // it senses no turn: two of its buttons make one
+  std::uint32_t epoch = 0;    // another one: the pose starts anew and may be anywhere
+  std::uint64_t number = 0;   // of the samples so far
+  double time = 0.0;          // s, steady clock, when it arrived
   DeviceTraits traits;
   double rate = 0.0;  // Hz, of the last samples
 };

@@ -9,7 +9,6 @@
 
 #include "app/live/periodic_clock.hpp"
 #include "app/live/realtime_mode.hpp"
-#include "device/device_text.hpp"
 
 namespace torsion {
 namespace {
@@ -100,6 +99,7 @@ Result<std::unique_ptr<DeviceLink>> DeviceLink::open(const DeviceChoice& choice,
   options.loop.twist_axis = tool.rotation * glm::dvec3(0.0, 1.0, 0.0);
   options.loop.drivers.falcon_firmware = link->firmware_;
   options.loop.drivers.largest_knob_torque = choice.largest_knob_torque;
+  options.loop.turn_buttons = choice.turn_buttons;
   options.on_start = [] {
     become_realtime();
   };
@@ -151,27 +151,6 @@ Wrench DeviceLink::take(const DeviceSample& sample) {
 const DeviceView& DeviceLink::view() {
   views_.refresh();
   return views_.front();
-}
-
-std::string describe(const DeviceView& view) {
-  const DeviceSample& sample = view.sample;
-  const std::string trouble = trouble_text(sample.trouble);
-  if (sample.state == DeviceState::kAbsent) {
-    return "no device is plugged in";
-  }
-  if (sample.state != DeviceState::kLive) {
-    return "not ready: " + (trouble.empty() ? "it is being set up" : trouble);
-  }
-  std::string text = fmt::format(
-      "{:.0f} Hz; measures {}; displays {}; coupling {:.4g} N/m up to {:.3g} N, {:.4g} N m/rad up "
-      "to {:.3g} N m",
-      sample.rate, sensed_text(sample.sensed), actuated_text(sample.actuated),
-      view.coupling.stiffness, view.coupling.largest_force, view.coupling.turn_stiffness,
-      view.coupling.largest_torque);
-  if (!view.outcome.holds) {
-    text += fmt::format("; bring it to the tool: {:.0f} mm to go", 1e3 * view.outcome.distance);
-  }
-  return trouble.empty() ? text : text + "; another one: " + trouble;
 }
 
 }  // namespace torsion

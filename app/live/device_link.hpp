@@ -19,6 +19,7 @@ struct DeviceChoice {
   std::string what;                       // "usb", or "usb:falcon+odrive"; empty: none
   std::filesystem::path falcon_firmware;  // empty: in the user's data folder, if there
   double largest_knob_torque = 0.2;       // N m
+  TurnButtons turn_buttons;               // of a device that senses no turn
 };
 
 /// What the device's thread shows of itself.
@@ -71,8 +72,5 @@ Result<std::uint32_t> kinds_of(const std::string& what);
 
 /// Where firmware is looked for that no option names.
 std::filesystem::path usual_falcon_firmware();
-
-/// One line for a person on what the device is and does, and what it lacks.
-std::string describe(const DeviceView& view);
 
 }  // namespace torsion

@@ -108,7 +108,7 @@ void go_over(LiveLoop& loop, Generation& to, bool carry) {
   } else {
     loop.statistics = RunStatistics{};
     for (LiveTool& tool : loop.tools) {
-      tool.from = PoseFrom::kScript;
+      tool.from = tool.at_start;
       tool.sample = 0;
       tool.books = PassivityState{};
     }

@@ -29,6 +29,7 @@ enum class PoseFrom : std::uint32_t {
 /// What moves one tool. Written by the physics thread once that runs.
 struct LiveTool {
   PoseFrom from = PoseFrom::kScript;
+  PoseFrom at_start = PoseFrom::kScript;  // where a restart goes back to
   HandleSlot* slot = nullptr;  // where handle poses come from and wrenches go; may be null
   VirtualCoupling coupling;
   PassivityLimits limits;  // of the device; as they are made, the controller adds nothing

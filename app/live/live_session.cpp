@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "ecs/assert.hpp"
 #include "ecs/hash.hpp"
 #include "systems/surface_field.hpp"
 
@@ -72,6 +73,18 @@ LiveSession::~LiveSession() {
   }
 }
 
+void LiveSession::give(SceneDevice device) {
+  device_ = std::move(device);
+  if (device_.link == nullptr) {
+    return;
+  }
+  LiveTool& tool = loop_.tools[device_.tool];
+  tool.slot = &device_.link->slot();
+  tool.from = PoseFrom::kHandle;
+  tool.at_start = PoseFrom::kHandle;
+  device_view_ = &device_.link->view();
+}
+
 void LiveSession::start(bool privileges) {
   loop_.wants_privileges = privileges;
   physics_ = std::thread(run_live, std::ref(loop_));
@@ -93,6 +106,9 @@ void LiveSession::take_inputs() {
 bool LiveSession::refresh() {
   take_prepared();
   take_inputs();
+  if (device_.link != nullptr) {
+    device_view_ = &device_.link->view();
+  }
   if (!loop_.frames.refresh()) {
     return false;
   }
@@ -104,6 +120,7 @@ bool LiveSession::refresh() {
 }
 
 void LiveSession::hold(std::uint32_t tool, const Pose& handle) {
+  TORSION_ASSERT(!on_device(tool));
   HandleSample& sample = slots_[tool]->sample.back();
   sample.pose = handle;
   sample.number = ++samples_[tool];

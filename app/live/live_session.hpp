@@ -8,6 +8,7 @@
 
 #include "app/live/live_loop.hpp"
 #include "app/live/recording.hpp"
+#include "app/live/scene_device.hpp"
 
 namespace torsion {
 
@@ -22,6 +23,14 @@ class LiveSession {
   LiveSession& operator=(const LiveSession&) = delete;
   LiveSession(LiveSession&&) = delete;
   LiveSession& operator=(LiveSession&&) = delete;
+
+  /// From the start on a device holds a tool, and no mouse does. @pre not started
+  void give(SceneDevice device);
+  /// Of that device, as of the last refresh(); null without one.
+  [[nodiscard]] const DeviceView* device() const { return device_view_; }
+  [[nodiscard]] bool on_device(std::uint32_t tool) const {
+    return device_.link != nullptr && device_.tool == tool;
+  }
 
   /// Starts the physics thread and waits until it knows what the system grants it.
   /// @param privileges  whether to ask for SCHED_FIFO and locked memory
@@ -47,6 +56,7 @@ class LiveSession {
   void show_cells(bool on) { loop_.wants_cells.store(on, std::memory_order_relaxed); }
 
   /// Holds a tool at `handle`, through its coupling; an animation lets go of it.
+  /// @pre no device has it
   void hold(std::uint32_t tool, const Pose& handle);
   [[nodiscard]] bool held(std::uint32_t tool) const { return held_[tool] != 0; }
   [[nodiscard]] const VirtualCoupling& coupling(std::uint32_t tool) const {
@@ -75,6 +85,8 @@ class LiveSession {
   LiveLoop loop_;
   std::vector<std::unique_ptr<Generation>> generations_;  // the shown one first
   std::vector<std::unique_ptr<HandleSlot>> slots_;
+  SceneDevice device_;
+  const DeviceView* device_view_ = nullptr;
   std::vector<std::uint64_t> samples_;  // so many were sent, one count a tool
   std::vector<std::uint8_t> held_;
   std::vector<VirtualCoupling> couplings_;

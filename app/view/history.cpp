@@ -17,7 +17,7 @@ Wrench in_contact_axes(const Wrench& world, const glm::dvec3& normal, const glm:
   return {turned(world.force), turned(world.torque)};
 }
 
-void History::add(const LiveRow& row) {
+void History::add(const LiveRow& row, double device_hz) {
   if (size_ > 0 && row.trace.time < (*this)[size_ - 1].time) {
     clear();  // the session began anew
   }
@@ -35,6 +35,7 @@ void History::add(const LiveRow& row) {
       row.couple,
       longest_step_,
       latest_,
+      device_hz,
       row.generation};
   if (size_ < kPoints) {
     ++size_;

@@ -10,13 +10,14 @@ namespace torsion {
 
 /// A row of a session, thinned for plots.
 struct PlotPoint {
-  double time = 0.0;     // s
-  Wrench world;          // on the tool
-  Wrench contact;        // the same along the oldest region's tangents (x, y) and normal (z)
-  double twist = 0.0;    // rad
-  double couple = 0.0;   // N m
-  double step_us = 0.0;  // the longest of the rows that the point stands for
-  double late_us = 0.0;  // likewise
+  double time = 0.0;       // s
+  Wrench world;            // on the tool
+  Wrench contact;          // the same along the oldest region's tangents (x, y) and normal (z)
+  double twist = 0.0;      // rad
+  double couple = 0.0;     // N m
+  double step_us = 0.0;    // the longest of the rows that the point stands for
+  double late_us = 0.0;    // likewise
+  double device_hz = 0.0;  // of a device that holds the tool
   std::uint64_t generation = 0;
 };
 
@@ -26,7 +27,8 @@ class History {
   static constexpr std::size_t kPoints = 4096;
   static constexpr double kPeriod = 4e-3;  // s: between points
 
-  void add(const LiveRow& row);
+  /// @param device_hz  the rate of the device that holds the tool; 0: none does
+  void add(const LiveRow& row, double device_hz = 0.0);
   void clear();
 
   [[nodiscard]] std::size_t size() const { return size_; }

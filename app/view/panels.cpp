@@ -10,24 +10,19 @@
 #include <glm/geometric.hpp>
 #include <imgui.h>
 
+#include "app/live/device_words.hpp"
+#include "app/view/banners.hpp"
+#include "app/view/panel_style.hpp"
 #include "app/view/plots.hpp"
 #include "ecs/model_names.hpp"
-#include "systems/fault.hpp"
 
 namespace torsion {
 namespace {
 
-constexpr ImU32 kRed = IM_COL32(200, 45, 45, 255);
 constexpr ImU32 kGreen = IM_COL32(30, 140, 60, 255);
 constexpr ImU32 kBlue = IM_COL32(39, 111, 196, 255);
 constexpr ImU32 kGrey = IM_COL32(165, 168, 175, 255);
 constexpr double kPlotSeconds = 10.0;
-constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings;
-
-void text(const std::string& line) {
-  ImGui::TextUnformatted(line.c_str());
-}
 
 void dim(const std::string& line) {
   ImGui::TextDisabled("%s", line.c_str());
@@ -81,6 +76,18 @@ void controls(ViewState& state) {
   }
 }
 
+/// The device that holds the tool, and in red what of the contact it does not let one feel.
+void device_part(const DeviceView& device) {
+  for (const std::string& line : device_lines(device)) {
+    text(line);
+  }
+  if (const std::string missing = not_displayed(device); !missing.empty()) {
+    ImGui::PushTextWrapPos();
+    ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kRed), "%s", missing.c_str());
+    ImGui::PopTextWrapPos();
+  }
+}
+
 void state_lines(const ViewState& state, const LiveSession& session) {
   const LiveFrame& frame = session.frame();
   const RunStatistics& statistics = frame.statistics;
@@ -92,7 +99,9 @@ void state_lines(const ViewState& state, const LiveSession& session) {
   ImGui::TextColored(ImVec4(0.80F, 0.45F, 0.0F, 1.0F), "  torque %.3g N m",
                      glm::length(wrench.torque));
   const VirtualCoupling& coupling = session.coupling(state.tool);
-  if (session.held(state.tool)) {
+  if (session.on_device(state.tool)) {
+    device_part(*session.device());
+  } else if (session.held(state.tool)) {
     text(fmt::format("held by the mouse: {:.3g} N/m, up to {:.3g} N", coupling.stiffness,
                      coupling.largest_force));
   } else {
@@ -262,6 +271,12 @@ void timing_plot(const History& history) {
   draw_plot({"Physics thread (us)", "s", -kPlotSeconds, 0.0, 50.0, true}, curves, 60.0F);
 }
 
+void device_plot(const History& history) {
+  const std::array<Curve, 1> curve = {
+      over_time(history, "samples", kBlue, [](const PlotPoint& point) { return point.device_hz; })};
+  draw_plot({"Device (Hz)", "s", -kPlotSeconds, 0.0, 100.0, true}, curve, 40.0F);
+}
+
 void right_panel(ViewState& state, LiveSession& session) {
   const float width = 330.0F;
   ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - width - 8.0F, 8.0F));
@@ -285,18 +300,22 @@ void right_panel(ViewState& state, LiveSession& session) {
     wrench_plots(state, history);
     twist_plot(history);
     timing_plot(history);
+    if (session.on_device(state.tool)) {
+      device_plot(history);
+    }
   }
   ImGui::End();
 }
 
-void keys_line(const ViewState& state) {
+void keys_line(const ViewState& state, bool on_device) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos(ImVec2(size.x / 2.0F, size.y - 8.0F), ImGuiCond_Always,
                           ImVec2(0.5F, 1.0F));
   if (ImGui::Begin("##keys", nullptr,
                    kFixed | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize |
                        ImGuiWindowFlags_NoInputs)) {
-    text(state.grabbed
+    text(on_device ? "The device holds the tool   Left = orbit, right = pan, wheel = zoom"
+         : state.grabbed
              ? "You hold the tool: move = across   Shift = push along the view   Alt or wheel = "
                "turn it about the contact's normal"
              : "Take the tool with the left mouse button and press it on the body   "
@@ -305,51 +324,6 @@ void keys_line(const ViewState& state) {
         "P screenshot   O recording   Esc close");
   }
   ImGui::End();
-}
-
-void banner(const char* id, const std::string& line, float& top, ImU32 color) {
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(size.x / 2.0F, top), ImGuiCond_Always, ImVec2(0.5F, 0.0F));
-  ImGui::SetNextWindowSizeConstraints(ImVec2(120.0F, 0.0F), ImVec2(560.0F, 400.0F));
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, color);
-  ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(255, 255, 255, 255));
-  if (ImGui::Begin(id, nullptr,
-                   kFixed | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize |
-                       ImGuiWindowFlags_NoInputs)) {
-    ImGui::PushTextWrapPos(540.0F);
-    text(line);
-    ImGui::PopTextWrapPos();
-    top += ImGui::GetWindowSize().y + 6.0F;
-  }
-  ImGui::End();
-  ImGui::PopStyleColor(2);
-}
-
-void banners(const ViewState& state, const LiveSession& session, double now) {
-  float top = 8.0F;
-  const LiveFrame& frame = session.frame();
-  const std::uint32_t faults = frame.snapshot.clock.at<Clock>(0).faults;
-  if (faults != 0) {
-    banner("##fault", "FAULT, no force meanwhile: " + faults_text(faults), top, kRed);
-  }
-  if (!state.scene_error.empty()) {
-    banner("##scene",
-           "The file has changed and cannot be used; the scene before it goes on.\n" +
-               state.scene_error,
-           top, kRed);
-  }
-  if (state.missed_lately > 10) {
-    banner("##late",
-           fmt::format("The physics thread was over 1 ms late {} times in the last second.",
-                       state.missed_lately),
-           top, IM_COL32(200, 110, 0, 255));
-  }
-  if (frame.statistics.lost_inputs > 0) {
-    banner("##lost", "Inputs were lost: this recording cannot be replayed. Restart.", top, kRed);
-  }
-  if (now < state.message_until && !state.wants_screenshot) {
-    banner("##message", state.message, top, IM_COL32(40, 100, 60, 240));
-  }
 }
 
 }  // namespace
@@ -361,13 +335,13 @@ bool differ(const std::vector<BodyPick>& a, const std::vector<BodyPick>& b) {
 }
 
 void draw_panels(ViewState& state, LiveSession& session, double now) {
-  banners(state, session, now);
+  draw_banners(state, session, now);
   if (!state.show_panels) {
     return;
   }
   left_panel(state, session);
   right_panel(state, session);
-  keys_line(state);
+  keys_line(state, session.on_device(state.tool));
 }
 
 }  // namespace torsion

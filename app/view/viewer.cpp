@@ -91,7 +91,13 @@ Result<Done> Viewer::begin(Session session) {
   const bool again = session_ != nullptr;
   renderer_.reset();
   session_.reset();
+  // A device that held a tool of the scene before is closed by now.
+  Result<SceneDevice> device = open_device(options_.device, session.scene);
+  if (!device) {
+    return device.error();
+  }
   session_ = std::make_unique<LiveSession>(std::move(session), options_.prepare);
+  session_->give(std::move(device).value());
   session_->start();
   if (!session_->mode().fifo) {
     // Before the driver makes its threads, which inherit it.
@@ -168,7 +174,11 @@ void Viewer::take_wishes() {
 }
 
 void Viewer::take_history() {
-  session_->take_rows([this](const LiveRow& row) { state_.histories[row.tool].add(row); });
+  const DeviceView* const device = session_->device();
+  session_->take_rows([&](const LiveRow& row) {
+    const bool shown = session_->on_device(row.tool) && device->sample.state == DeviceState::kLive;
+    state_.histories[row.tool].add(row, shown ? device->sample.rate : 0.0);
+  });
   const std::uint64_t missed = session_->frame().statistics.missed_deadlines;
   if (missed < missed_then_ || now() > missed_since_ + 1.0) {
     state_.missed_lately =
@@ -294,6 +304,7 @@ Result<ViewerOutcome> Viewer::run() {
   if (!session) {
     return session.error();
   }
+  interrupt_.emplace();  // before any thread, but not while a scene is prepared for long
   start_ = std::chrono::steady_clock::now();
   Result<Window> window = Window::open(
       "Torsion: " + std::filesystem::path(options_.scene).filename().string(), kWidth, kHeight);
@@ -308,7 +319,8 @@ Result<ViewerOutcome> Viewer::run() {
     done = frame();
     const bool over = options_.seconds >= 0.0 && now() > options_.seconds;
     const WindowInput& input = window_->input();
-    if (over || input.close || std::ranges::count(input.pressed, kKeyEscape) > 0) {
+    if (over || input.close || interrupt_->within(0) ||
+        std::ranges::count(input.pressed, kKeyEscape) > 0) {
       break;
     }
   }
@@ -341,6 +353,9 @@ Result<ViewerOutcome> Viewer::finish() {
   outcome_.mode = describe(session_->mode());
   outcome_.seconds = now();
   outcome_.share = state_.share;
+  if (session_->device() != nullptr) {
+    outcome_.device = *session_->device();
+  }
   if (!options_.record.empty()) {
     session_->refresh();
     const Result<Done> saved = save_recording(session_->recording(), options_.record);

@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "app/live/interrupt.hpp"
 #include "app/live/live_session.hpp"
 #include "app/view/gui.hpp"
 #include "app/view/scene_watch.hpp"
@@ -21,6 +22,7 @@ namespace torsion {
 struct ViewerOptions {
   std::string scene;
   PrepareOptions prepare;
+  DeviceChoice device;     // what holds a tool; empty: what the scene says
   double seconds = -1.0;   // s: closes by itself after that; negative: when the person does
   std::string record;      // file to write the recording to at the end; empty: none
   std::string screenshot;  // file to write the last picture to; empty: none
@@ -31,9 +33,10 @@ struct ViewerOutcome {
   RunStatistics statistics;
   std::string mode;
   std::uint64_t frames = 0;
-  double seconds = 0.0;       // that the window was open
-  double opened_after = 0.0;  // s: from the scene being ready to the first picture
-  double share = 1.0;         // inner resolution at the end
+  double seconds = 0.0;              // that the window was open
+  double opened_after = 0.0;         // s: from the scene being ready to the first picture
+  double share = 1.0;                // inner resolution at the end
+  std::optional<DeviceView> device;  // that held a tool at the end
 };
 
 /// A scene in a window. Everything is in the main thread but physics, and what prepares worlds.
@@ -80,6 +83,7 @@ class Viewer {
   [[nodiscard]] std::string file_name(const std::string& extension);
 
   ViewerOptions options_;
+  std::optional<Interrupt> interrupt_;  // a device is let go of whatever ends the program
   std::optional<Window> window_;
   std::unique_ptr<Gui> gui_;
   std::unique_ptr<LiveSession> session_;

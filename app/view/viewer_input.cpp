@@ -83,6 +83,9 @@ void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
   const auto& tools = session_->frame().snapshot.tools;
   double nearest = 1e300;
   for (std::uint32_t tool = 0; tool < tools.size(); ++tool) {
+    if (session_->on_device(tool)) {
+      continue;
+    }
     const auto met = meets_box(ray, tools.at<ToolPose>(tool).now, world.tools.at<Bounds>(tool));
     if (met && *met < nearest) {
       nearest = *met;

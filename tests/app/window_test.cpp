@@ -7,11 +7,13 @@
 
 #include "render/image_io.hpp"
 #include "tests/app/program.hpp"
+#include "tests/app/window_pictures.hpp"
 #include "tests/support/paths.hpp"
 
 namespace torsion {
 namespace {
 
+using test::has_red_banner;
 using test::read_text;
 
 /// Share of the pixels of a rectangle in which a colour differs by more than 8 of 255.
@@ -29,18 +31,6 @@ double changed(const Image& a, const Image& b, std::uint32_t left, std::uint32_t
     }
   }
   return count / (static_cast<double>(right - left) * (bottom - top));
-}
-
-/// Whether the upper middle has the banner's red on it.
-bool has_red_banner(const Image& image) {
-  std::uint32_t red = 0;
-  for (std::uint32_t y = 8; y < 60; ++y) {
-    for (std::uint32_t x = image.width / 3; x < 2 * image.width / 3; ++x) {
-      const std::size_t at = 4 * (std::size_t{y} * image.width + x);
-      red += image.rgba[at] > 180 && image.rgba[at + 1] < 70 && image.rgba[at + 2] < 70 ? 1U : 0U;
-    }
-  }
-  return red > 1000;
 }
 
 class WindowTest : public ::testing::Test {

@@ -1,5 +1,6 @@
 // Several devices as one, and devices that are pulled out.
 
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -54,6 +55,49 @@ TEST(DeviceLoopTest, AFalconMovesAndASpaceMouseTurns) {
   }
   EXPECT_NEAR(client.last.pose.position.x, 0.0, 1e-4);
   EXPECT_GT(client.last.pose.rotation.x, 0.0);
+}
+
+TEST(DeviceLoopTest, TwoButtonsOfAFalconTurnTheTool) {
+  DeviceClient client;
+  LoopOptions options;
+  options.turn_buttons = {1U << 1, 1U << 2, 0.5};
+  FakeBus bus(options, client.sink());
+  const std::size_t falcon = bus.plug(EmulatedFalcon{});
+  bus.run(kStart);
+  ASSERT_EQ(client.last.state, DeviceState::kLive);
+  EXPECT_TRUE(client.last.buttons_turn);
+  EXPECT_EQ(client.last.sensed, kTranslationAxes);
+  EXPECT_EQ(client.last.pose.rotation.y, 0.0);
+  const auto turned = [&] {
+    return 2.0 * std::atan2(client.last.pose.rotation.y, client.last.pose.rotation.w);
+  };
+  // 0.4 s at 0.5 rad/s, within a packet at each end.
+  constexpr double kPackets = 2 * 0.5 * 2e-3;  // rad
+  bus.device<EmulatedFalcon>(falcon).buttons = 1U << 1;
+  bus.run(0.4);
+  EXPECT_NEAR(turned(), 0.2, kPackets);
+  bus.device<EmulatedFalcon>(falcon).buttons = 1U << 2;
+  bus.run(0.6);
+  EXPECT_NEAR(turned(), -0.1, 2.0 * kPackets);
+  // Both at once hold it, and so does none.
+  bus.device<EmulatedFalcon>(falcon).buttons = 0b110;
+  bus.run(0.1);
+  const double before = turned();
+  bus.run(0.2);
+  EXPECT_EQ(turned(), before);
+}
+
+TEST(DeviceLoopTest, ButtonsTurnNothingBesideADeviceThatTurns) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  const std::size_t falcon = bus.plug(EmulatedFalcon{});
+  bus.plug(EmulatedOdrive{});
+  bus.run(kStart);
+  ASSERT_EQ(client.last.state, DeviceState::kLive);
+  bus.device<EmulatedFalcon>(falcon).buttons = 1U << 0;
+  bus.run(0.2);
+  EXPECT_FALSE(client.last.buttons_turn);
+  EXPECT_EQ(client.last.pose.rotation.y, 0.0);
 }
 
 TEST(DeviceLoopTest, TwoFalconsDisplayATorqueAcrossTheirLine) {

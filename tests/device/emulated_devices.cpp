@@ -88,7 +88,7 @@ Buffer told(EmulatedFalcon& device, Bytes packet) {
   for (glm::length_t leg = 0; leg < 3; ++leg) {
     put_nibbles(answer, counts_of(angles[leg]));
   }
-  answer.push_back(static_cast<std::uint8_t>('A' + (device.homed ? 0x70 : 0)));
+  answer.push_back(static_cast<std::uint8_t>('A' + (device.homed ? 0x70 : 0) + device.buttons));
   answer.push_back('A');
   answer.push_back('>');
   return ftdi(answer);

@@ -25,6 +25,7 @@ struct EmulatedSpaceMouse {
 struct EmulatedFalcon {
   bool has_firmware = true;
   bool homed = true;
+  std::uint8_t buttons = 0;
   glm::dvec3 place{0.0, 0.0, 0.115};     // m, device axes
   std::array<std::int16_t, 3> motors{};  // as told last
   Buffer firmware;                       // as it arrived

@@ -1,0 +1,20 @@
+#pragma once
+
+// What the files that build panels share.
+
+#include <string>
+
+#include <imgui.h>
+
+namespace torsion {
+
+inline constexpr ImU32 kRed = IM_COL32(200, 45, 45, 255);
+inline constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                                           ImGuiWindowFlags_NoCollapse |
+                                           ImGuiWindowFlags_NoSavedSettings;
+
+inline void text(const std::string& line) {
+  ImGui::TextUnformatted(line.c_str());
+}
+
+}  // namespace torsion

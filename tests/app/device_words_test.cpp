@@ -1,0 +1,66 @@
+// What is said of a device, in the words that a person has to act on.
+
+#include "app/live/device_words.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace torsion {
+namespace {
+
+DeviceView live_view(std::uint8_t actuated) {
+  DeviceView view;
+  view.sample.state = DeviceState::kLive;
+  view.sample.sensed = kTranslationAxes;
+  view.sample.actuated = actuated;
+  view.sample.rate = 998.0;
+  view.coupling = {450.0, 0.0, 0.5, 0.0, 3.0, 0.1};
+  view.outcome.holds = true;
+  return view;
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(DeviceWordsTest, TorqueThatIsNotDisplayedIsSaidAndTorqueThatIsNot) {
+  EXPECT_TRUE(has(not_displayed(live_view(kTranslationAxes)), "torque is only drawn"));
+  EXPECT_TRUE(has(not_displayed(live_view(kNoAxes)), "Force and torque are only drawn"));
+  EXPECT_TRUE(has(not_displayed(live_view(kTwistAxis)), "force is only drawn"));
+  EXPECT_TRUE(has(not_displayed(live_view(kTranslationAxes | kTwistAxis)), "twist axis"));
+  EXPECT_EQ(not_displayed(live_view(kTranslationAxes | kRotationAxes)), "");
+}
+
+TEST(DeviceWordsTest, GainsAndRateAreStated) {
+  std::string all;
+  for (const std::string& line : device_lines(live_view(kTranslationAxes))) {
+    all += line + "\n";
+  }
+  EXPECT_TRUE(has(all, "998 Hz")) << all;
+  EXPECT_TRUE(has(all, "450 N/m, up to 3 N")) << all;
+  EXPECT_TRUE(has(all, "0.5 N m/rad, up to 0.1 N m")) << all;
+}
+
+TEST(DeviceWordsTest, ABannerWhereThereIsNoForceAndNoneWhereAllIsWell) {
+  constexpr bool kStepsGoOn = true;
+  DeviceView view = live_view(kTranslationAxes);
+  EXPECT_EQ(device_banner(view, kStepsGoOn).text, "");
+  EXPECT_TRUE(has(device_banner(view, !kStepsGoOn).text, "No force in a pause"));
+  view.outcome.holds = false;
+  view.outcome.distance = 0.023;
+  EXPECT_TRUE(has(device_banner(view, kStepsGoOn).text, "23 mm to go"));
+  EXPECT_FALSE(device_banner(view, kStepsGoOn).failed);
+  view.sample.trouble = DeviceTrouble::kNoAccess;
+  view.sample.state = DeviceState::kStarting;
+  EXPECT_TRUE(device_banner(view, kStepsGoOn).failed);
+  view.sample.trouble = DeviceTrouble::kNone;
+  view.sample.state = DeviceState::kAbsent;
+  EXPECT_FALSE(device_banner(view, kStepsGoOn).failed);  // there never was one
+  view.losses = 1;
+  EXPECT_TRUE(device_banner(view, kStepsGoOn).failed);
+  EXPECT_TRUE(has(device_banner(view, kStepsGoOn).text, "gone"));
+}
+
+}  // namespace
+}  // namespace torsion

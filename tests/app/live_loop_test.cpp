@@ -62,7 +62,7 @@ TEST(LiveLoopTest, ATickTakesNothingFromTheHeap) {
   loop.wants_rows = true;
   loop.wants_inputs = true;
   reserve(loop, session, session.simulation);
-  loop.tools[0] = {PoseFrom::kHandle, &slot, coupling(), {}, {}, {}, {}, 0};
+  loop.tools[0] = {PoseFrom::kHandle, PoseFrom::kScript, &slot, coupling(), {}, {}, {}, {}, 0};
   for (int i = 0; i < 200; ++i) {
     hold_at(slot, static_cast<std::uint64_t>(i) + 1, kTouching - 1e-5 * i, 1e-3 * i);
     const AllocationGuard guard;

@@ -80,6 +80,25 @@ TEST(LiveSessionTest, ARestartBeginsAnewAndSoDoesItsRecording) {
   EXPECT_EQ(session.recording().entries.front().step, 0U);
 }
 
+TEST(LiveSessionTest, ADeviceHasTheToolFromTheStartOnAndAfterARestart) {
+  constexpr bool kPrivileges = false;
+  LiveSession session(test::ball_session(), test::ball_options());
+  session.give({std::make_unique<DeviceLink>(Pose{}), 0});
+  session.start(kPrivileges);
+  EXPECT_TRUE(session.on_device(0));
+  // Nothing is plugged in, so the tool stays; its animation would have moved it.
+  const auto place = [&] { return session.frame().snapshot.tools.at<ToolPose>(0).now.position; };
+  ASSERT_TRUE(comes_true(session, [&] { return clock_of(session).step > 5; }));
+  const glm::dvec3 first = place();
+  ASSERT_TRUE(comes_true(session, [&] { return clock_of(session).step > 400; }));
+  EXPECT_EQ(place(), first);
+  ASSERT_TRUE(session.choose(session.shown().picks, true));
+  ASSERT_TRUE(comes_true(session, [&] { return session.frame().generation == 1; }));
+  ASSERT_TRUE(comes_true(session, [&] { return clock_of(session).step > 400; }));
+  EXPECT_EQ(place(), first);
+  EXPECT_EQ(session.device()->sample.state, DeviceState::kAbsent);
+}
+
 TEST(LiveSessionTest, AMouseHoldsNoDeeperThanTheModelsGo) {
   const Session session = test::ball_session();
   const VirtualCoupling coupling = mouse_coupling(session.scene, 0.05);

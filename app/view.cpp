@@ -39,6 +39,9 @@ nlohmann::ordered_json to_json(const ViewerOutcome& outcome) {
                                  {"step_us", times(statistics.step_times)},
                                  {"peak_force_N", statistics.peak_force},
                                  {"peak_torque_Nm", statistics.peak_torque}};
+  for (const PassTime& pass : kPasses) {
+    json["pass_ms"][pass.name] = outcome.passes.*pass.time;
+  }
   add_clock(json, statistics, outcome.mode);
   if (outcome.device) {
     json["device"] = device_json(*outcome.device);

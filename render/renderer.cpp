@@ -23,7 +23,7 @@ namespace torsion {
 namespace {
 
 constexpr std::uint32_t kSlots = Renderer::kFramesInFlight;
-constexpr std::uint32_t kTimestamps = 7;  // one before and after each pass of PassTimes
+constexpr std::uint32_t kTimestamps = 9;  // one before and after each pass of PassTimes
 constexpr double kArrowLength = 0.6;      // of the longest, as a part of the bodies' largest side
 constexpr std::uint32_t kColorMapWidth = 256;
 constexpr std::uint32_t kLargestSide =
@@ -225,9 +225,13 @@ void Renderer::Impl::record(const Frame& frame, const FrameInputs& inputs, SlotB
   stamp();
   if (window) {
     window->stretch(frame);
+  }
+  stamp();
+  if (window) {
     record_overlay(commands, window->window_view(), window->window_extent(), window_overlay,
                    inputs);
   }
+  stamp();
   target().finish(frame);
   stamp();
 }
@@ -396,7 +400,8 @@ Result<PassTimes> Renderer::pass_times(std::uint64_t number) try {
   const auto between = [&, &counts = ticks](std::uint32_t pass) {
     return static_cast<double>(counts[pass + 1] - counts[pass]) * impl_->gpu.milliseconds_per_tick;
   };
-  return PassTimes{between(0), between(1), between(2), between(3), between(4), between(5)};
+  return PassTimes{between(0), between(1), between(2), between(3),
+                   between(4), between(5), between(6), between(7)};
 } catch (const vk::SystemError& error) {
   return described(error, "times were read");
 }
@@ -411,6 +416,10 @@ Result<std::vector<glm::vec4>> Renderer::read_normals() try {
   return impl_->read_rows(impl_->buffers.normals);
 } catch (const vk::SystemError& error) {
   return described(error, "normals were read back");
+}
+
+std::uint64_t Renderer::pictures() const {
+  return impl_->drawn;
 }
 
 const std::string& Renderer::device_name() const {

@@ -45,8 +45,24 @@ struct PassTimes {
   double normals = 0.0;
   double shadow = 0.0;
   double draw = 0.0;       // bodies, ground, arrows, tools, overlay
-  double read_back = 0.0;  // or what brings it into the window, overlay and all
+  double stretch = 0.0;    // into the window's size
+  double overlay = 0.0;    // over a window
+  double read_back = 0.0;  // or what hands it to the window
 };
+
+/// The passes by name, in their order.
+struct PassTime {
+  const char* name;
+  double PassTimes::*time;
+};
+inline constexpr std::array<PassTime, 8> kPasses = {{{"upload", &PassTimes::upload},
+                                                     {"deform", &PassTimes::deform},
+                                                     {"normals", &PassTimes::normals},
+                                                     {"shadow", &PassTimes::shadow},
+                                                     {"draw", &PassTimes::draw},
+                                                     {"stretch", &PassTimes::stretch},
+                                                     {"overlay", &PassTimes::overlay},
+                                                     {"read_back", &PassTimes::read_back}}};
 
 /// Deforms and draws a frame world into pictures of one size, which needs no window, or into a
 /// window. One thread at a time.
@@ -98,6 +114,9 @@ class Renderer {
 
   /// The same for the time that each pass took.
   Result<PassTimes> pass_times(std::uint64_t number);
+
+  /// Pictures so far; the last has this number less one.
+  [[nodiscard]] std::uint64_t pictures() const;
 
   /// The last frame's deformed positions [m, body] and normals [body] of all bodies' vertices, w
   /// unused. For tests; waits until the device is idle.

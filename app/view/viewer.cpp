@@ -250,6 +250,9 @@ Result<Done> Viewer::show(const WindowInput& input, const OverlayDrawList& overl
     return drawn.error();
   }
   outcome_.frames += drawn.value() ? 1U : 0U;
+  if (drawn.value()) {
+    add_passes();
+  }
   if (drawn.value() && outcome_.frames == 1) {
     outcome_.opened_after = now();
   }
@@ -260,6 +263,20 @@ Result<Done> Viewer::show(const WindowInput& input, const OverlayDrawList& overl
     say(written ? name : written.error().text);
   }
   return Done{};
+}
+
+/// Of the picture before the last, which is done by now, so that nothing waits.
+void Viewer::add_passes() {
+  if (renderer_->pictures() < 2) {
+    return;
+  }
+  if (const auto times = renderer_->pass_times(renderer_->pictures() - 2)) {
+    passes_timed_ += 1;
+    for (const PassTime& pass : kPasses) {
+      double& mean = outcome_.passes.*pass.time;
+      mean += (times.value().*pass.time - mean) / static_cast<double>(passes_timed_);
+    }
+  }
 }
 
 Result<Done> Viewer::write_screenshot(const std::string& path) {

@@ -36,6 +36,7 @@ struct ViewerOutcome {
   double seconds = 0.0;              // that the window was open
   double opened_after = 0.0;         // s: from the scene being ready to the first picture
   double share = 1.0;                // inner resolution at the end
+  PassTimes passes;                  // ms a picture, the mean
   std::optional<DeviceView> device;  // that held a tool at the end
 };
 
@@ -65,6 +66,7 @@ class Viewer {
   Result<Done> make_renderer();
   Result<Done> frame();
   Result<Done> show(const WindowInput& input, const OverlayDrawList& overlay);
+  void add_passes();
   Result<Done> write_screenshot(const std::string& path);
   Result<ViewerOutcome> finish();
   void take_keys(const WindowInput& input);
@@ -102,6 +104,7 @@ class Viewer {
   double twist_scale_ = 0.0;       // rad, the largest so far
   double pressure_scale_ = 0.0;    // Pa, likewise
   std::uint64_t missed_then_ = 0;
+  std::uint64_t passes_timed_ = 0;
   int files_written_ = 0;
 
   std::thread reloader_;

@@ -44,7 +44,7 @@ struct Held {
     const std::string scene = test::shipped_scene("ball_on_cube");
     session = std::move(open_session(scene, options, true)).value();
     const Pose home = scripted_pose(session.scene.tools[0].script, 0.0);
-    link = std::move(DeviceLink::open({"usb", {}, 0.2}, home)).value();
+    link = std::move(DeviceLink::open({"usb", {}, 0.2, {}}, home)).value();
     loop.wants_privileges = false;
     reserve(loop, session, session.simulation);
     loop.tools[0].from = PoseFrom::kHandle;

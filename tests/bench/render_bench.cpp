@@ -46,15 +46,6 @@ double milliseconds_of(F&& f) {
   return median(times);
 }
 
-struct Pass {
-  const char* name;
-  double PassTimes::*time;
-};
-constexpr std::array kPasses = {
-    Pass{"upload", &PassTimes::upload},   Pass{"deform", &PassTimes::deform},
-    Pass{"normals", &PassTimes::normals}, Pass{"shadow", &PassTimes::shadow},
-    Pass{"draw", &PassTimes::draw},       Pass{"read back", &PassTimes::read_back}};
-
 /// Medians over kFrames frames, printed as a row.
 PassTimes measure(const TwistedCube& scene, std::uint32_t samples, const char* name) {
   RendererOptions options;
@@ -74,7 +65,7 @@ PassTimes measure(const TwistedCube& scene, std::uint32_t samples, const char* n
   }
   PassTimes medians;
   std::printf("%-22s", name);
-  for (const Pass& pass : kPasses) {
+  for (const PassTime& pass : kPasses) {
     std::vector<double> times;
     for (std::size_t i = 2; i < frames.size(); ++i) {
       times.push_back(frames[i].*pass.time);
@@ -115,7 +106,7 @@ int main() {
   TwistedCube scene = twisted_cube(1.0, kSquares);
   std::printf("%u vertices, %u triangles, 1280x720\n%-22s", scene.frame.body_vertices.size(),
               scene.frame.body_triangles.size(), "");
-  for (const Pass& pass : kPasses) {
+  for (const PassTime& pass : kPasses) {
     std::printf("%11s", pass.name);
   }
   std::printf("\n");

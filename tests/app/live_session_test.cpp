@@ -87,7 +87,9 @@ TEST(LiveSessionTest, ADeviceHasTheToolFromTheStartOnAndAfterARestart) {
   session.start(kPrivileges);
   EXPECT_TRUE(session.on_device(0));
   // Nothing is plugged in, so the tool stays; its animation would have moved it.
-  const auto place = [&] { return session.frame().snapshot.tools.at<ToolPose>(0).now.position; };
+  const auto place = [&] {
+    return session.frame().snapshot.tools.at<ToolPose>(0).now.position;
+  };
   ASSERT_TRUE(comes_true(session, [&] { return clock_of(session).step > 5; }));
   const glm::dvec3 first = place();
   ASSERT_TRUE(comes_true(session, [&] { return clock_of(session).step > 400; }));

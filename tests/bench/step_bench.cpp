@@ -1,11 +1,12 @@
 // What a step costs: the shipped scenes in contact, the same body cut ever finer, loading, and a
 // whole run against the clock. Run by ./dev bench.
 //
-// All of them are run several times, in turns, and two rows of each are printed: the median of its
-// runs, and the least, which is what it costs where no neighbour slows the machine down.
+// All of them are run five times, in turns; printed are the median of the runs and, in brackets,
+// the least, which is what it costs where no neighbour slows the machine down.
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -223,16 +224,33 @@ void in_turns(benchmark::internal::Benchmark* bench) {
       ->ComputeStatistics("least", least);
 }
 
-/// Of the aggregates only the two that this program promises.
-class TwoRows : public benchmark::ConsoleReporter {
+/// A row a benchmark: the median of its runs and, in brackets, the least, of its time and counters.
+class Rows : public benchmark::BenchmarkReporter {
  public:
-  using ConsoleReporter::ConsoleReporter;
+  bool ReportContext(const Context& /*context*/) override { return true; }
   void ReportRuns(const std::vector<Run>& runs) override {
-    std::vector<Run> kept;
-    std::ranges::copy_if(runs, std::back_inserter(kept), [](const Run& run) {
-      return run.error_occurred || run.aggregate_name == "median" || run.aggregate_name == "least";
-    });
-    ConsoleReporter::ReportRuns(kept);
+    const Run* median = nullptr;
+    const Run* fastest = nullptr;
+    for (const Run& run : runs) {
+      if (run.error_occurred) {
+        std::printf("%s: %s\n", run.benchmark_name().c_str(), run.error_message.c_str());
+      }
+      median = run.aggregate_name == "median" ? &run : median;
+      fastest = run.aggregate_name == "least" ? &run : fastest;
+    }
+    if (median == nullptr || fastest == nullptr) {
+      return;
+    }
+    const benchmark::BenchmarkName& name = median->run_name;
+    std::printf("%-36s", (name.function_name + (name.args.empty() ? "" : "/" + name.args)).c_str());
+    std::printf(" mean %.4g (%.4g) %s", median->GetAdjustedRealTime(),
+                fastest->GetAdjustedRealTime(), benchmark::GetTimeUnitString(median->time_unit));
+    for (const auto& [counter, value] : median->counters) {
+      std::printf("  %s %.4g (%.4g)", counter.c_str(), value.value,
+                  fastest->counters.at(counter).value);
+    }
+    std::printf("\n");
+    std::fflush(stdout);
   }
 };
 
@@ -287,7 +305,7 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) {
     return 2;
   }
-  torsion::TwoRows rows;
+  torsion::Rows rows;
   benchmark::RunSpecifiedBenchmarks(&rows);
   return 0;
 }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 
@@ -10,6 +12,7 @@
 
 #include "systems/sample_surface_pieces.hpp"
 #include "systems/sample_surface_tree.hpp"
+#include "systems/widest.hpp"
 
 namespace torsion {
 namespace {
@@ -77,19 +80,34 @@ CandidateColumns columns_of(std::span<const Candidate> candidates, double spacin
   return columns;
 }
 
-void lower_distances(CandidateColumns& columns, std::size_t chosen) {
+/// Lowers all distances to those to `chosen`, where that is nearer.
+/// @return the row that is farthest then
+TORSION_WIDEST std::size_t lower_distances(CandidateColumns& columns, std::size_t chosen) {
+  constexpr std::size_t kBlock = 256;  // rows among which the farthest is looked for by its value
   const auto& [x, y, z, nx, ny, nz] = columns.column;
   const std::array<float, 6> to{x[chosen],  y[chosen],  z[chosen],
                                 nx[chosen], ny[chosen], nz[chosen]};
   const auto square = [](float value) {
     return value * value;
   };
-  for (std::size_t i = 0; i < columns.squared_distance.size(); ++i) {
-    const float squared = square(x[i] - to[0]) + square(y[i] - to[1]) + square(z[i] - to[2]) +
-                          square(nx[i] - to[3]) + square(ny[i] - to[4]) + square(nz[i] - to[5]);
-    columns.squared_distance[i] =
-        squared < columns.squared_distance[i] ? squared : columns.squared_distance[i];
+  std::vector<float>& nearest = columns.squared_distance;
+  std::int32_t most = -1;
+  std::size_t most_block = 0;
+  for (std::size_t first = 0; first < nearest.size(); first += kBlock) {
+    const std::size_t end = std::min(first + kBlock, nearest.size());
+    std::int32_t most_here = -1;  // not negative, so that bits compare as their values
+    for (std::size_t i = first; i < end; ++i) {
+      const float squared = square(x[i] - to[0]) + square(y[i] - to[1]) + square(z[i] - to[2]) +
+                            square(nx[i] - to[3]) + square(ny[i] - to[4]) + square(nz[i] - to[5]);
+      nearest[i] = squared < nearest[i] ? squared : nearest[i];
+      most_here = std::max(most_here, std::bit_cast<std::int32_t>(nearest[i]));
+    }
+    most_block = most_here > most ? first : most_block;
+    most = std::max(most, most_here);
   }
+  const auto place = nearest.begin() + static_cast<std::ptrdiff_t>(most_block);
+  return static_cast<std::size_t>(std::find(place, nearest.end(), std::bit_cast<float>(most)) -
+                                  nearest.begin());
 }
 
 /// Picks again and again the candidate that is farthest from all picked so far: Gonzalez,
@@ -102,13 +120,10 @@ std::vector<std::uint32_t> spread_out(std::span<const Candidate> candidates, dou
   std::size_t next = 0;
   while (chosen.size() < std::min<std::size_t>(count, candidates.size())) {
     chosen.push_back(static_cast<std::uint32_t>(next));
-    lower_distances(columns, next);
-    const auto farthest =
-        std::max_element(columns.squared_distance.begin(), columns.squared_distance.end());
-    if (!(*farthest > 0.0F)) {
+    next = lower_distances(columns, next);
+    if (!(columns.squared_distance[next] > 0.0F)) {
       break;
     }
-    next = static_cast<std::size_t>(farthest - columns.squared_distance.begin());
   }
   return chosen;
 }

@@ -203,6 +203,20 @@ inline void copy_target_to_color_target(const vk::raii::CommandBuffer& commands,
                 });
 }
 
+/// The window's image with scene and marks on it, before panels are copied over that.
+inline void color_target_to_copy_target(const vk::raii::CommandBuffer& commands, vk::Image image) {
+  using namespace detail;
+  image_barrier(commands, image, vk::ImageAspectFlagBits::eColor,
+                {
+                    .srcStageMask = Stage::eColorAttachmentOutput,
+                    .srcAccessMask = Access::eColorAttachmentWrite,
+                    .dstStageMask = Stage::eCopy,
+                    .dstAccessMask = Access::eTransferWrite,
+                    .oldLayout = vk::ImageLayout::eColorAttachmentOptimal,
+                    .newLayout = vk::ImageLayout::eTransferDstOptimal,
+                });
+}
+
 /// The window's image, copied for a screenshot, before it is shown. The semaphore does the rest.
 inline void copy_source_to_present(const vk::raii::CommandBuffer& commands, vk::Image image) {
   using namespace detail;

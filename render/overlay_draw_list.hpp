@@ -35,11 +35,23 @@ struct OverlayClip {
   std::uint32_t height = 0;
 };
 
+/// Pixels of the target that a panel covers, all of them.
+struct OverlayPanel {
+  std::int32_t left = 0;
+  std::int32_t top = 0;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+};
+
 /// Triangles, drawn in order, blended one over the other.
 struct OverlayDrawList {
   std::vector<OverlayVertex> vertices;
   std::vector<std::uint32_t> indices;  // three for each triangle
   std::vector<OverlayClip> clips;      // in order; empty: all indices, unclipped
+  // Of a window's overlay: the last clips are of opaque panels, which may be kept from picture to
+  // picture; what is before them lies over the scene.
+  std::size_t panel_clips = 0;
+  std::vector<OverlayPanel> panels;
 };
 
 }  // namespace torsion

@@ -183,8 +183,9 @@ vk::Rect2D clip_rectangle(const OverlayClip& clip, vk::Extent2D extent) {
           {static_cast<std::uint32_t>(right - left), static_cast<std::uint32_t>(bottom - top)}};
 }
 
+/// @param clips  which of the overlay's; one without clips is drawn whole
 void draw_overlay(const Commands& commands, const FrameInputs& inputs, vk::Extent2D extent,
-                  const vk::raii::Pipeline& pipeline) {
+                  const vk::raii::Pipeline& pipeline, std::span<const OverlayClip> clips) {
   if (inputs.overlay == nullptr || inputs.overlay->indices.empty() ||
       !*inputs.surfaces.glyphs.view) {
     return;
@@ -199,7 +200,7 @@ void draw_overlay(const Commands& commands, const FrameInputs& inputs, vk::Exten
   if (inputs.overlay->clips.empty()) {
     commands.drawIndexed(static_cast<std::uint32_t>(inputs.overlay->indices.size()), 1, 0, 0, 0);
   }
-  for (const OverlayClip& clip : inputs.overlay->clips) {
+  for (const OverlayClip& clip : clips) {
     const vk::Rect2D rectangle = clip_rectangle(clip, extent);
     if (rectangle.extent.width > 0 && rectangle.extent.height > 0) {
       commands.setScissor(0, rectangle);
@@ -341,13 +342,14 @@ void record_draw(const Frame& target, const FrameInputs& inputs) {
   const vk::RenderingAttachmentInfo depth =
       depth_attachment(surfaces.depth, vk::AttachmentStoreOp::eDontCare);
   commands.beginRendering(vk::RenderingInfo{
-      .renderArea = {{0, 0}, target.extent},
+      .renderArea = inputs.part,
       .layerCount = 1,
       .colorAttachmentCount = 1,
       .pColorAttachments = &color,
       .pDepthAttachment = &depth,
   });
   set_view(commands, {{0, 0}, target.extent});
+  commands.setScissor(0, inputs.part);
   push_draw_bindings(commands, inputs, true);
   draw_bodies(commands, inputs);
   draw_arrows(commands, inputs);
@@ -357,17 +359,31 @@ void record_draw(const Frame& target, const FrameInputs& inputs) {
   }
   draw_tools(commands, inputs);
   if (!inputs.overlay_apart) {
-    draw_overlay(commands, inputs, target.extent, inputs.pipelines.overlay);
+    const std::span<const OverlayClip> all = inputs.overlay == nullptr
+                                                 ? std::span<const OverlayClip>{}
+                                                 : std::span(inputs.overlay->clips);
+    draw_overlay(commands, inputs, target.extent, inputs.pipelines.overlay, all);
   }
   commands.endRendering();
 }
 
 void record_overlay(const Commands& commands, vk::ImageView view, vk::Extent2D extent,
-                    const vk::raii::Pipeline& pipeline, const FrameInputs& inputs) {
+                    const vk::raii::Pipeline& pipeline, const FrameInputs& inputs,
+                    OverlayPart part) {
+  if (inputs.overlay == nullptr) {
+    return;
+  }
+  const std::span<const OverlayClip> clips(inputs.overlay->clips);
+  const std::size_t marks = clips.size() - inputs.overlay->panel_clips;
+  const bool panels = part == OverlayPart::kPanels;
+  const auto drawn = panels ? clips.subspan(marks) : clips.first(marks);
+  if (drawn.empty()) {
+    return;
+  }
   const vk::RenderingAttachmentInfo color{
       .imageView = view,
       .imageLayout = vk::ImageLayout::eColorAttachmentOptimal,
-      .loadOp = vk::AttachmentLoadOp::eLoad,
+      .loadOp = panels ? vk::AttachmentLoadOp::eDontCare : vk::AttachmentLoadOp::eLoad,
       .storeOp = vk::AttachmentStoreOp::eStore,
   };
   commands.beginRendering(vk::RenderingInfo{
@@ -378,7 +394,7 @@ void record_overlay(const Commands& commands, vk::ImageView view, vk::Extent2D e
   });
   set_view(commands, {{0, 0}, extent});
   push_draw_bindings(commands, inputs, true);
-  draw_overlay(commands, inputs, extent, pipeline);
+  draw_overlay(commands, inputs, extent, pipeline, drawn);
   commands.endRendering();
 }
 

@@ -13,21 +13,10 @@
 #include "render/overlay_draw_list.hpp"
 #include "render/pipelines.hpp"
 #include "render/scene_buffers.hpp"
+#include "render/surfaces.hpp"
 #include "render/target.hpp"
 
 namespace torsion {
-
-/// Images and samplers that all frames share.
-struct Surfaces {
-  Image2d
-      color;  // multisampled; empty with one sample a pixel, when the target is drawn to directly
-  Image2d depth;
-  Image2d shadow_map;
-  Image2d color_maps;  // a row for each of twist and pressure
-  Image2d glyphs;      // the overlay's atlas; empty without one
-  vk::raii::Sampler shadow_sampler = nullptr;
-  vk::raii::Sampler linear_sampler = nullptr;
-};
 
 /// What a frame is recorded from.
 struct FrameInputs {
@@ -44,6 +33,7 @@ struct FrameInputs {
   std::uint32_t arrow_vertices = 0;
   const OverlayDrawList* overlay = nullptr;
   bool overlay_apart = false;  // it is drawn by record_overlay(), not over the scene's picture
+  vk::Rect2D part;             // of the target: what nothing hides; no more than that is drawn
 };
 
 /// Records the copies of what the CPU wrote for this frame, where there are staging buffers.
@@ -56,11 +46,14 @@ void record_shadow(const vk::raii::CommandBuffer& commands, const FrameInputs& i
 /// Ground, bodies and arrows, the tools over them, the overlay over all unless `inputs` has none.
 void record_draw(const Frame& target, const FrameInputs& inputs);
 
-/// The overlay alone over what is on the image, whose format keeps encoded colours as they are:
-/// blending them so is what Dear ImGui is made for, and a third of the time on a processor.
+enum class OverlayPart : std::uint8_t { kMarks, kPanels };
+
+/// A part of a window's overlay alone: marks over what is on the image, panels into one of theirs,
+/// whose format keeps encoded colours as they are: blending them so is what Dear ImGui is made for,
+/// and a third of the time on a processor.
 /// @param pipeline  for that image's format, one sample a pixel
 void record_overlay(const vk::raii::CommandBuffer& commands, vk::ImageView view,
                     vk::Extent2D extent, const vk::raii::Pipeline& pipeline,
-                    const FrameInputs& inputs);
+                    const FrameInputs& inputs, OverlayPart part);
 
 }  // namespace torsion

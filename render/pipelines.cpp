@@ -47,8 +47,7 @@ struct Recipe {
   bool test_depth = true;
   bool blend = false;
   bool depth_bias = false;
-  bool quick =
-      false;  // constant 0 of the shaders: the overlay's whole pixels, the light's few taps
+  bool quick = false;  // constant 0 of the shaders: the overlay's whole pixels, less work a pixel
 };
 
 vk::PipelineColorBlendAttachmentState blend_state(const Recipe& recipe) {
@@ -194,7 +193,7 @@ void make_layouts(const Gpu& gpu, Pipelines& pipelines) {
       {draw_binding::kUniforms, Type::eUniformBuffer, 1, Stage::eVertex | Stage::eFragment},
       {draw_binding::kShadowMap, Type::eCombinedImageSampler, 1, Stage::eFragment},
       {draw_binding::kColorMaps, Type::eCombinedImageSampler, 1, Stage::eFragment},
-      {draw_binding::kContacts, Type::eStorageBuffer, 1, Stage::eFragment},
+      {draw_binding::kContacts, Type::eStorageBuffer, 1, Stage::eVertex | Stage::eFragment},
       {draw_binding::kGlyphs, Type::eCombinedImageSampler, 1, Stage::eFragment},
   }};
   pipelines.draw_bindings = make_bindings(gpu, draw);

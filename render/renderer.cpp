@@ -11,12 +11,12 @@
 
 #include "render/arrows.hpp"
 #include "render/barriers.hpp"
-#include "render/colormap.hpp"
 #include "render/frame_view.hpp"
 #include "render/offscreen_target.hpp"
 #include "render/passes.hpp"
 #include "render/pipelines.hpp"
 #include "render/scene_buffers.hpp"
+#include "render/surfaces.hpp"
 #include "render/window_target.hpp"
 
 namespace torsion {
@@ -25,7 +25,6 @@ namespace {
 constexpr std::uint32_t kSlots = Renderer::kFramesInFlight;
 constexpr std::uint32_t kTimestamps = 9;  // one before and after each pass of PassTimes
 constexpr double kArrowLength = 0.6;      // of the longest, as a part of the bodies' largest side
-constexpr std::uint32_t kColorMapWidth = 256;
 constexpr std::uint32_t kLargestSide =
     16384;  // pixels: what every Vulkan 1.3 desktop driver allows
 
@@ -53,63 +52,6 @@ std::optional<Error> check(const RendererOptions& options) {
   return std::nullopt;
 }
 
-/// A row for each signed and unsigned heat map, at the places that frame_uniforms() gives in
-/// heat_scale.z.
-Image2d make_color_maps(const Gpu& gpu) {
-  std::vector<std::uint8_t> texels;
-  for (const HeatMap map : {HeatMap::kTwist, HeatMap::kPressure}) {
-    for (std::uint32_t i = 0; i < kColorMapWidth; ++i) {
-      const glm::dvec3 color = heat_color(map, i / (kColorMapWidth - 1.0));
-      for (const double part : {color.x, color.y, color.z, 1.0}) {
-        texels.push_back(static_cast<std::uint8_t>(std::lround(255.0 * part)));
-      }
-    }
-  }
-  return make_constant_image(gpu, {kColorMapWidth, 2}, vk::Format::eR8G8B8A8Srgb,
-                             std::as_bytes(std::span(texels)));
-}
-
-/// What has the size of the scene's picture.
-void fit_surfaces(const Gpu& gpu, vk::Extent2D extent, vk::Format color_format,
-                  vk::SampleCountFlagBits samples, Surfaces& surfaces) {
-  using Usage = vk::ImageUsageFlagBits;
-  if (samples != vk::SampleCountFlagBits::e1) {
-    surfaces.color = make_image(gpu, extent, color_format, samples,
-                                Usage::eColorAttachment | Usage::eTransientAttachment);
-  }
-  surfaces.depth = make_image(gpu, extent, kDepthFormat, samples, Usage::eDepthStencilAttachment);
-}
-
-Surfaces make_surfaces(const Gpu& gpu, const RendererOptions& options) {
-  using Usage = vk::ImageUsageFlagBits;
-  Surfaces surfaces;
-  surfaces.shadow_map =
-      make_image(gpu, {2 * options.shadow_size, options.shadow_size}, kDepthFormat,
-                 vk::SampleCountFlagBits::e1, Usage::eDepthStencilAttachment | Usage::eSampled);
-  surfaces.color_maps = make_color_maps(gpu);
-  if (options.overlay_atlas != nullptr) {
-    const OverlayAtlas& atlas = *options.overlay_atlas;
-    surfaces.glyphs = make_constant_image(gpu, {atlas.width, atlas.height}, vk::Format::eR8Unorm,
-                                          std::as_bytes(std::span(atlas.alpha)));
-  }
-  vk::SamplerCreateInfo sampler{
-      .magFilter = vk::Filter::eLinear,
-      .minFilter = vk::Filter::eLinear,
-      .addressModeU = vk::SamplerAddressMode::eClampToEdge,
-      .addressModeV = vk::SamplerAddressMode::eClampToEdge,
-      .addressModeW = vk::SamplerAddressMode::eClampToEdge,
-  };
-  surfaces.linear_sampler = {gpu.device, sampler};
-  // Outside the shadow map everything is lit.
-  sampler.addressModeU = vk::SamplerAddressMode::eClampToBorder;
-  sampler.addressModeV = vk::SamplerAddressMode::eClampToBorder;
-  sampler.borderColor = vk::BorderColor::eFloatOpaqueWhite;
-  sampler.compareEnable = VK_TRUE;
-  sampler.compareOp = vk::CompareOp::eLessOrEqual;
-  surfaces.shadow_sampler = {gpu.device, sampler};
-  return surfaces;
-}
-
 }  // namespace
 
 /// Members are in the order of creation.
@@ -126,6 +68,7 @@ struct Renderer::Impl {
 
   vk::SampleCountFlagBits samples = vk::SampleCountFlagBits::e1;
   std::uint64_t drawn = 0;  // frames so far
+  bool redraw_panels = true;
   ArrowMesh arrows;
   std::vector<shared::ContactSpot> contacts;
   std::vector<Range> contact_ranges;
@@ -149,6 +92,7 @@ struct Renderer::Impl {
   void write_arrows(const Snapshot& snapshot, const Camera& camera, const DrawOptions& options,
                     SlotBuffers& slot);
   void write_overlay(const OverlayDrawList* overlay, SlotBuffers& slot) const;
+  void record_window_overlay(const Frame& frame, const FrameInputs& inputs);
   void record(const Frame& frame, const FrameInputs& inputs, SlotBuffers& slot);
   void draw(const Frame& target, const FrameWorld& frame, const Snapshot& snapshot,
             const Camera& camera, const DrawOptions& draw_options, const OverlayDrawList* overlay);
@@ -204,6 +148,20 @@ void Renderer::Impl::write_overlay(const OverlayDrawList* overlay, SlotBuffers& 
   slot.overlay_indices.write(0, indices);
 }
 
+/// Marks over the scene; over them panels, which are drawn anew only where that is wanted.
+void Renderer::Impl::record_window_overlay(const Frame& frame, const FrameInputs& inputs) {
+  const vk::Extent2D outer = window->window_extent();
+  record_overlay(*frame.commands, window->window_view(), outer, window_overlay, inputs,
+                 OverlayPart::kMarks);
+  if (redraw_panels) {
+    window->begin_panels(frame);
+    record_overlay(*frame.commands, window->panels_view(), outer, window_overlay, inputs,
+                   OverlayPart::kPanels);
+    window->end_panels(frame);
+  }
+  window->place_panels(frame);
+}
+
 void Renderer::Impl::record(const Frame& frame, const FrameInputs& inputs, SlotBuffers& slot) {
   const vk::raii::CommandBuffer& commands = *frame.commands;
   const vk::QueryPool queries = *timestamps[frame.slot];
@@ -228,8 +186,7 @@ void Renderer::Impl::record(const Frame& frame, const FrameInputs& inputs, SlotB
   }
   stamp();
   if (window) {
-    record_overlay(commands, window->window_view(), window->window_extent(), window_overlay,
-                   inputs);
+    record_window_overlay(frame, inputs);
   }
   stamp();
   target().finish(frame);
@@ -249,10 +206,11 @@ void Renderer::Impl::draw(const Frame& target, const FrameWorld& frame, const Sn
   slot.contacts.write(0, std::as_bytes(std::span(contacts)));
   write_arrows(snapshot, camera, draw_options, slot);
   write_overlay(overlay, slot);
+  const vk::Rect2D part = window ? window->visible() : vk::Rect2D{{0, 0}, target.extent};
   record(target,
          {gpu, pipelines, buffers, surfaces, extent, frame, draw_options, slot, uniforms.background,
           contact_ranges, static_cast<std::uint32_t>(arrows.positions.size()), overlay,
-          window.has_value()},
+          window.has_value(), part},
          slot);
   this->target().submit(target);
   ++drawn;
@@ -300,7 +258,7 @@ Result<Renderer> Renderer::create(const RendererOptions& options, const FrameWor
   impl->samples = options.samples == 4 || (options.samples == 0 && !on_processor)
                       ? vk::SampleCountFlagBits::e4
                       : vk::SampleCountFlagBits::e1;
-  impl->surfaces = make_surfaces(impl->gpu, options);
+  impl->surfaces = make_surfaces(impl->gpu, options.shadow_size, options.overlay_atlas);
   if (options.window != nullptr) {
     impl->window.emplace(impl->gpu, *options.window, kSlots);
   } else {
@@ -364,6 +322,10 @@ Result<bool> Renderer::show(const FrameWorld& frame, const Snapshot& snapshot, c
   }
   if (showing.keep) {
     impl.window->keep_next();
+  }
+  impl.redraw_panels = showing.redraw_panels || !impl.window->has_panels();
+  if (impl.redraw_panels) {
+    impl.window->set_panels(overlay == nullptr ? std::span<const OverlayPanel>{} : overlay->panels);
   }
   impl.draw(target, frame, snapshot, camera, options, overlay);
   return true;

@@ -96,6 +96,7 @@ class Renderer {
     double share = 1.0;  // of these, along each side, in which the scene is drawn; the overlay is
                          // always sharp
     bool keep = false;   // screenshot() gets this picture
+    bool redraw_panels = true;  // else they are as they were in the picture before
   };
 
   /// As draw(), into the window. Blocks until the picture is handed over, which on a processor's

@@ -125,6 +125,9 @@ void WindowTarget::make_swapchain(std::uint32_t width, std::uint32_t height) {
     shown.drawn = {gpu_->device, vk::SemaphoreCreateInfo{}};
     shown_.push_back(std::move(shown));
   }
+  panels_ = make_image(*gpu_, outer_, surface_format_.format, vk::SampleCountFlagBits::e1,
+                       Usage::eColorAttachment | Usage::eTransferSrc);
+  has_panels_ = false;
   kept_slot_.reset();
   kept_ = make_buffer(*gpu_, vk::DeviceSize{4} * outer_.width * outer_.height,
                       vk::BufferUsageFlagBits::eTransferDst, Home::kReadBack);
@@ -201,28 +204,94 @@ void WindowTarget::stretch(const Frame& frame) {
   const vk::Image window_image = shown_[current_].image;
   color_target_to_blit_source(*frame.commands, frame.image);
   acquired_to_blit_target(*frame.commands, window_image);
-  const auto corner = [](vk::Extent2D extent) {
-    return vk::Offset3D{static_cast<std::int32_t>(extent.width),
-                        static_cast<std::int32_t>(extent.height), 1};
+  // What shows of the scene, to where it shows; its edges lie under panels, so that they may be
+  // rounded.
+  const vk::Rect2D seen = visible();
+  const auto column = [&](std::int32_t inner) {
+    return static_cast<std::int32_t>(
+        std::lround(static_cast<double>(inner) * outer_.width / inner_.width));
+  };
+  const std::int32_t end = seen.offset.x + static_cast<std::int32_t>(seen.extent.width);
+  const auto height = [](vk::Extent2D extent) {
+    return static_cast<std::int32_t>(extent.height);
   };
   const vk::ImageSubresourceLayers layers{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
   if (inner_ == outer_) {
-    frame.commands->copyImage(frame.image, vk::ImageLayout::eTransferSrcOptimal, window_image,
-                              vk::ImageLayout::eTransferDstOptimal,
-                              vk::ImageCopy{.srcSubresource = layers,
-                                            .dstSubresource = layers,
-                                            .extent = {inner_.width, inner_.height, 1}});
-    copy_target_to_color_target(*frame.commands, window_image);
+    const vk::Offset3D at{seen.offset.x, 0, 0};
+    frame.commands->copyImage(
+        frame.image, vk::ImageLayout::eTransferSrcOptimal, window_image,
+        vk::ImageLayout::eTransferDstOptimal,
+        vk::ImageCopy{layers, at, layers, at, {seen.extent.width, seen.extent.height, 1}});
+  } else {
+    const vk::ImageBlit region{
+        .srcSubresource = layers,
+        .srcOffsets =
+            std::array{vk::Offset3D{seen.offset.x, 0, 0}, vk::Offset3D{end, height(inner_), 1}},
+        .dstSubresource = layers,
+        .dstOffsets = std::array{vk::Offset3D{column(seen.offset.x), 0, 0},
+                                 vk::Offset3D{column(end), height(outer_), 1}},
+    };
+    frame.commands->blitImage(frame.image, vk::ImageLayout::eTransferSrcOptimal, window_image,
+                              vk::ImageLayout::eTransferDstOptimal, region, vk::Filter::eLinear);
+  }
+  copy_target_to_color_target(*frame.commands, window_image);
+}
+
+void WindowTarget::begin_panels(const Frame& frame) {
+  to_color_target(*frame.commands, *panels_.handle);
+}
+
+void WindowTarget::end_panels(const Frame& frame) {
+  color_target_to_blit_source(*frame.commands, *panels_.handle);
+  has_panels_ = true;
+}
+
+void WindowTarget::set_panels(std::span<const OverlayPanel> places) {
+  panel_places_.clear();
+  visible_from_ = 0;
+  visible_to_ = outer_.width;
+  constexpr vk::ImageSubresourceLayers kColor{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
+  for (const OverlayPanel& place : places) {
+    const auto end = [](std::int32_t from, std::uint32_t size, std::uint32_t whole) {
+      return std::clamp<std::int64_t>(std::int64_t{from} + size, 0, whole);
+    };
+    const std::int64_t left = end(place.left, 0, outer_.width);
+    const std::int64_t top = end(place.top, 0, outer_.height);
+    const std::int64_t right = end(place.left, place.width, outer_.width);
+    const std::int64_t bottom = end(place.top, place.height, outer_.height);
+    if (right > left && bottom > top) {
+      const vk::Offset3D corner{static_cast<std::int32_t>(left), static_cast<std::int32_t>(top), 0};
+      panel_places_.push_back({kColor, corner, kColor, corner,
+                               vk::Extent3D{static_cast<std::uint32_t>(right - left),
+                                            static_cast<std::uint32_t>(bottom - top), 1}});
+    }
+    if (top == 0 && bottom == outer_.height) {
+      visible_from_ = left == 0 ? static_cast<std::uint32_t>(right) : visible_from_;
+      visible_to_ = right == outer_.width ? static_cast<std::uint32_t>(left) : visible_to_;
+    }
+  }
+  if (visible_from_ >= visible_to_) {  // nothing is left to see: as if all were
+    visible_from_ = 0;
+    visible_to_ = outer_.width;
+  }
+}
+
+vk::Rect2D WindowTarget::visible() const {
+  const double share = static_cast<double>(inner_.width) / outer_.width;
+  const auto from = static_cast<std::uint32_t>(std::floor(visible_from_ * share));
+  const auto to =
+      std::min(inner_.width, static_cast<std::uint32_t>(std::ceil(visible_to_ * share)));
+  return {{static_cast<std::int32_t>(from), 0}, {to - from, inner_.height}};
+}
+
+void WindowTarget::place_panels(const Frame& frame) {
+  if (panel_places_.empty() || !has_panels_) {
     return;
   }
-  const vk::ImageBlit region{
-      .srcSubresource = layers,
-      .srcOffsets = std::array{vk::Offset3D{}, corner(inner_)},
-      .dstSubresource = layers,
-      .dstOffsets = std::array{vk::Offset3D{}, corner(outer_)},
-  };
-  frame.commands->blitImage(frame.image, vk::ImageLayout::eTransferSrcOptimal, window_image,
-                            vk::ImageLayout::eTransferDstOptimal, region, vk::Filter::eLinear);
+  const vk::Image window_image = shown_[current_].image;
+  color_target_to_copy_target(*frame.commands, window_image);
+  frame.commands->copyImage(*panels_.handle, vk::ImageLayout::eTransferSrcOptimal, window_image,
+                            vk::ImageLayout::eTransferDstOptimal, panel_places_);
   copy_target_to_color_target(*frame.commands, window_image);
 }
 

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "render/image.hpp"
 #include "render/memory.hpp"
+#include "render/overlay_draw_list.hpp"
 #include "render/target.hpp"
 #include "render/window.hpp"
 
@@ -35,6 +37,20 @@ class WindowTarget final : public Target {
 
   /// Records the scene's way into the window's image, which is then a colour attachment.
   void stretch(const Frame& frame);
+
+  /// Where panels are drawn, to be kept; they have to be after a change of size.
+  [[nodiscard]] vk::ImageView panels_view() const { return *panels_.view; }
+  [[nodiscard]] bool has_panels() const { return has_panels_; }
+  /// Where those are that are to be drawn anew. @pre fit() was true
+  void set_panels(std::span<const OverlayPanel> places);
+  /// Before and after that.
+  void begin_panels(const Frame& frame);
+  void end_panels(const Frame& frame);
+  /// Of the scene's picture, what lies between panels from top to bottom of the window.
+  [[nodiscard]] vk::Rect2D visible() const;
+  /// Copies the panels over the window's image, which is a colour attachment before and after.
+  void place_panels(const Frame& frame);
+
   void finish(const Frame& frame) override;
   /// Also shows the picture.
   void submit(const Frame& frame) override;
@@ -84,6 +100,11 @@ class WindowTarget final : public Target {
   vk::raii::SwapchainKHR swapchain_ = nullptr;
   std::vector<Shown> shown_;
   std::vector<Slot> slots_;
+  Image2d panels_;
+  std::vector<vk::ImageCopy> panel_places_;
+  std::uint32_t visible_from_ = 0;  // columns of the window
+  std::uint32_t visible_to_ = 0;
+  bool has_panels_ = false;
   std::uint32_t next_ = 0;
   std::uint32_t current_ = 0;  // of shown_
   vk::Extent2D outer_;

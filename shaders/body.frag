@@ -3,12 +3,12 @@
 
 #include "frame.glsl"
 #include "light.glsl"
+#include "openness.glsl"
 
 layout(set = 0, binding = 2) uniform sampler2D color_maps;
-layout(std430, set = 0, binding = 3) readonly buffer Contacts { ContactSpot contacts[]; };
 
-layout(location = 0) in vec3 world_position;
-layout(location = 1) in vec3 world_normal;
+layout(location = 0) in vec3 world_position;  // with kQuick: linear rgb of the light from all around
+layout(location = 1) in vec3 world_normal;    // with kQuick: x is the cosine toward the key light
 layout(location = 2) in vec4 rest_position;
 layout(location = 3) in float heat;
 layout(location = 4) in vec3 in_shadow_map;
@@ -24,35 +24,24 @@ float material_lines() {
   vec3 along_x = dFdx(at);
   vec3 along_y = dFdy(at);
   vec3 pixel = abs(along_x) + abs(along_y);
-  vec3 face = cross(along_x, along_y);
-  vec3 flatness = face * face / max(dot(face, face), 1e-20);
   vec3 away = abs(at - round(at));
   vec3 major = step(abs(at * 0.2 - round(at * 0.2)), vec3(0.1));
   vec3 half_width = max(vec3(0.02), 0.75 * pixel) * (1.0 + 0.8 * major);
-  vec3 line = 1.0 - smoothstep(half_width - 0.5 * pixel, half_width + 0.5 * pixel, away);
+  vec3 line = kQuick ? clamp(0.5 + (half_width - away) / max(pixel, 1e-9), 0.0, 1.0)
+                     : 1.0 - smoothstep(half_width - 0.5 * pixel, half_width + 0.5 * pixel, away);
   line = mix(line, 2.0 * half_width, smoothstep(0.2, 0.5, pixel)) * (0.72 + 0.28 * major);
-  line *= 1.0 - smoothstep(0.85, 0.97, flatness);
+  if (kQuick) {
+    // A set lies along the surface where its planes are met slowest.
+    line *= clamp(4.0 * pixel / max(pixel.x, max(pixel.y, pixel.z)) - 0.8, 0.0, 1.0);
+  } else {
+    vec3 face = cross(along_x, along_y);
+    vec3 flatness = face * face / max(dot(face, face), 1e-20);
+    line *= 1.0 - smoothstep(0.85, 0.97, flatness);
+  }
   return clamp(max(line.x, max(line.y, line.z)), 0.0, 1.0);
 }
 
-// Share of the light from all around that the tools and the floor leave: a tool overhangs the body outside each
-// contact, most at its edge and no more one and a half radii further out.
-float openness(vec3 normal) {
-  float open = 1.0;
-  for (uint i = 0; i < draw.rows.y; ++i) {
-    vec4 spot = contacts[draw.rows.x + i].center_and_radius;
-    float away = distance(rest_position.xyz, spot.xyz) / spot.w;
-    open *= 1.0 - 0.3 * (1.0 - smoothstep(0.7, 2.5, away));
-  }
-  float height = (world_position.y - frame.floor_level.x) / frame.floor_level.y;
-  float downward = 0.5 - 0.5 * normal.y;
-  return open * (1.0 - 0.6 * downward * (1.0 - smoothstep(0.0, 0.5, height)));
-}
-
 void main() {
-  vec3 normal = normalize(world_normal);
-  vec3 to_eye = normalize(frame.eye.xyz - world_position);
-
   vec3 base = draw.color.rgb;
   if (draw.rows.z != kHeatNone) {
     float at = clamp((heat - frame.heat_scale.x) * frame.heat_scale.y, 0.0, 1.0);
@@ -70,8 +59,17 @@ void main() {
     base = mix(base, line, material_lines());
   }
 
+  if (kQuick) {
+    float facing = max(world_normal.x, 0.0);
+    float share = facing > 0.0 ? key_light_share(in_shadow_map) : 0.0;
+    color = vec4(base * (world_position + frame.key_light.rgb * facing * share), 1.0);
+    return;
+  }
+  vec3 normal = normalize(world_normal);
+  vec3 to_eye = normalize(frame.eye.xyz - world_position);
   float facing = max(dot(normal, frame.to_key_light.xyz), 0.0);
   float share = facing > 0.0 ? key_light_share(in_shadow_map) : 0.0;
-  vec3 light = ambient_light(normal, to_eye, openness(normal)) + frame.key_light.rgb * facing * share;
+  vec3 around = ambient_light(normal, to_eye, openness(rest_position.xyz, world_position.y, normal));
+  vec3 light = around + frame.key_light.rgb * facing * share;
   color = vec4(base * light + frame.key_light.rgb * share * 0.03 * highlight(normal, to_eye, 30.0), 1.0);
 }

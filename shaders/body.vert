@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "frame.glsl"
+#include "openness.glsl"
 
 layout(location = 0) in vec4 position;  // m, body; w what the heat map shows
 layout(location = 1) in vec4 normal;    // body
@@ -19,5 +20,14 @@ void main() {
   rest_position = rest;
   heat = position.w;
   in_shadow_map = shadow_lookup(world_position, world_normal);
+  if (kQuick) {
+    vec3 to_eye = normalize(frame.eye.xyz - world_position);
+    float facing = dot(world_normal, frame.to_key_light.xyz);
+    vec3 around = ambient_light(world_normal, to_eye, openness(rest.xyz, world_position.y, world_normal));
+    gl_Position = frame.clip_from_world * vec4(world_position, 1.0);
+    world_position = around;
+    world_normal = vec3(facing, 0.0, 0.0);
+    return;
+  }
   gl_Position = frame.clip_from_world * vec4(world_position, 1.0);
 }

@@ -19,3 +19,14 @@ vec3 direction_to_world(vec3 direction) {
   return vec3(dot(draw.to_world[0].xyz, direction), dot(draw.to_world[1].xyz, direction),
               dot(draw.to_world[2].xyz, direction));
 }
+
+// For pictures that must come quickly: on a processor most of the time goes into pixels of bodies. Fewer samples of the
+// shadow map, light from all around at the corners of triangles, no highlight on bodies.
+layout(constant_id = 0) const bool kQuick = false;
+
+// Light from all around and a little from the eye, which brightens what faces it; `open` is the share of it that
+// nothing near by takes away.
+vec3 ambient_light(vec3 normal, vec3 to_eye, float open) {
+  vec3 around = mix(frame.ground_light.rgb, frame.sky_light.rgb, 0.5 + 0.5 * normal.y);
+  return (around + frame.sky_light.w * max(dot(normal, to_eye), 0.0)) * open;
+}

@@ -13,6 +13,10 @@ layout(location = 0) out vec4 color;
 // the shade that the bodies' box casts around its foot show.
 void main() {
   vec2 from_center = world_position.xz - frame.floor_box.xy;
+  if (dot(from_center, from_center) > frame.floor_level.z * frame.floor_level.z) {
+    color = vec4(frame.background.rgb, 1.0);  // as what is below comes to there
+    return;
+  }
   // From a box of 0.6 of the bodies' size, so that the corners that a round body leaves free are not shaded flat.
   vec2 outside = max(abs(from_center) - 0.6 * frame.floor_box.zw, 0.0) / frame.floor_level.y;
   float shade = 0.5 * exp(-3.5 * length(outside));

@@ -2,9 +2,6 @@
 
 layout(set = 0, binding = 1) uniform sampler2DShadow shadow_map;
 
-// Fewer samples of the shadow map, for pictures that must come quickly.
-layout(constant_id = 0) const bool kQuick = false;
-
 // Share of the key light that passes what the map holds at two places, of which each is a comparison that the sampler
 // blends over the four nearest texels. A place costs about 3 ms of a 720p picture on lavapipe.
 float passing(vec2 at, float depth, vec2 step) {
@@ -33,13 +30,6 @@ float key_light_share(vec3 in_shadow_map) {
   float bodies = 0.5 * (passing(at, depth, step) + passing(at, depth, vec2(step.x, -step.y)));
   float tools = passing(at + vec2(0.5, 0.0), depth, step);
   return bodies * (1.0 - frame.floor_level.w * (1.0 - tools));
-}
-
-// Light from all around and a little from the eye, which brightens what faces it; `open` is the share of it that
-// nothing near by takes away.
-vec3 ambient_light(vec3 normal, vec3 to_eye, float open) {
-  vec3 around = mix(frame.ground_light.rgb, frame.sky_light.rgb, 0.5 + 0.5 * normal.y);
-  return (around + frame.sky_light.w * max(dot(normal, to_eye), 0.0)) * open;
 }
 
 // A soft highlight (Blinn 1977, normalised so that a wider one is dimmer): share of the key light sent to the eye.

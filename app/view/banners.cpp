@@ -61,7 +61,7 @@ void draw_banners(const ViewState& state, const LiveSession& session, double now
     banner("##lost", "Inputs were lost: this recording cannot be replayed. Restart.", top, kRed);
   }
   if (now < state.message_until && !state.wants_screenshot) {
-    banner("##message", state.message, top, IM_COL32(40, 100, 60, 240));
+    banner("##message", state.message, top, IM_COL32(40, 100, 60, 255));
   }
 }
 

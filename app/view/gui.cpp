@@ -36,10 +36,14 @@ void set_style() {
   ImGui::StyleColorsLight();
   ImGuiStyle& style = ImGui::GetStyle();
   style.AntiAliasedLinesUseTex = false;  // the overlay takes texels as they are
-  style.WindowRounding = 4.0F;
+  // Panels are opaque rectangles, so that they can be kept and laid over a picture.
+  style.WindowRounding = 0.0F;
+  style.PopupRounding = 0.0F;
+  style.PopupBorderSize = 0.0F;
   style.FrameRounding = 3.0F;
   style.WindowBorderSize = 0.0F;
-  style.Colors[ImGuiCol_WindowBg] = ImVec4(1.0F, 1.0F, 1.0F, 0.88F);
+  style.Colors[ImGuiCol_WindowBg] = ImVec4(0.98F, 0.98F, 0.985F, 1.0F);
+  style.Colors[ImGuiCol_PopupBg] = ImVec4(1.0F, 1.0F, 1.0F, 1.0F);
   style.Colors[ImGuiCol_FrameBg] = ImVec4(0.87F, 0.89F, 0.92F, 1.0F);
   style.Colors[ImGuiCol_TextDisabled] = ImVec4(0.36F, 0.38F, 0.42F, 1.0F);
   style.Colors[ImGuiCol_Text] = ImVec4(0.10F, 0.11F, 0.13F, 1.0F);
@@ -91,21 +95,52 @@ void Gui::append(const ImDrawCmd& command, const ImDrawList& from, std::uint32_t
   }
 }
 
+/// A window of ImGui's covers a rectangle, which its first command fills: set_style() sees to it.
+void Gui::append_panel(const ImDrawList& from) {
+  ImVec2 lowest(1e9F, 1e9F);
+  ImVec2 highest(-1e9F, -1e9F);
+  for (const ImDrawCmd& command : from.CmdBuffer) {
+    for (unsigned i = 0; i < command.ElemCount; ++i) {
+      const ImDrawIdx index = from.IdxBuffer[static_cast<int>(command.IdxOffset + i)];
+      const ImVec2& at = from.VtxBuffer[static_cast<int>(command.VtxOffset + index)].pos;
+      const float x = std::clamp(at.x, command.ClipRect.x, command.ClipRect.z);
+      const float y = std::clamp(at.y, command.ClipRect.y, command.ClipRect.w);
+      lowest = ImVec2(std::min(lowest.x, x), std::min(lowest.y, y));
+      highest = ImVec2(std::max(highest.x, x), std::max(highest.y, y));
+    }
+  }
+  const auto left = static_cast<std::int32_t>(std::lround(lowest.x));
+  const auto top = static_cast<std::int32_t>(std::lround(lowest.y));
+  const auto right = static_cast<std::int32_t>(std::lround(highest.x));
+  const auto bottom = static_cast<std::int32_t>(std::lround(highest.y));
+  if (right > left && bottom > top) {
+    list_.panels.push_back({left, top, static_cast<std::uint32_t>(right - left),
+                            static_cast<std::uint32_t>(bottom - top)});
+  }
+}
+
 const OverlayDrawList& Gui::end() {
   ImGui::Render();
   const ImDrawData& data = *ImGui::GetDrawData();
   list_.vertices.clear();
   list_.indices.clear();
   list_.clips.clear();
+  list_.panels.clear();
+  std::size_t marks = 0;
   for (int i = 0; i < data.CmdListsCount; ++i) {
     const ImDrawList& from = *data.CmdLists[i];
+    if (&from != ImGui::GetBackgroundDrawList()) {
+      append_panel(from);
+    }
     const auto base_vertex = static_cast<std::uint32_t>(list_.vertices.size());
     const auto* vertices = reinterpret_cast<const OverlayVertex*>(from.VtxBuffer.Data);
     list_.vertices.insert(list_.vertices.end(), vertices, vertices + from.VtxBuffer.Size);
     for (const ImDrawCmd& command : from.CmdBuffer) {
       append(command, from, base_vertex);
     }
+    marks = list_.panels.empty() ? list_.clips.size() : marks;
   }
+  list_.panel_clips = list_.clips.size() - marks;
   return list_;
 }
 

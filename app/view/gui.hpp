@@ -34,6 +34,7 @@ class Gui {
 
  private:
   void append(const ImDrawCmd& command, const ImDrawList& from, std::uint32_t base_vertex);
+  void append_panel(const ImDrawList& from);
   OverlayAtlas atlas_;
   OverlayDrawList list_;
 };

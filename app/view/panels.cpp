@@ -184,11 +184,12 @@ void shown_things(ViewState& state) {
 }
 
 void left_panel(ViewState& state, LiveSession& session) {
-  ImGui::SetNextWindowPos(ImVec2(8.0F, 8.0F));
-  ImGui::SetNextWindowSize(ImVec2(318.0F, 0.0F));
+  // From top to bottom, as the one on the right: what panels hide so is not drawn.
+  ImGui::SetNextWindowPos(ImVec2(0.0F, 0.0F));
+  ImGui::SetNextWindowSize(ImVec2(326.0F, ImGui::GetIO().DisplaySize.y));
   const std::string title =
       std::filesystem::path(session.scene().path).filename().string() + "###session";
-  if (ImGui::Begin(title.c_str(), nullptr, kFixed | ImGuiWindowFlags_AlwaysAutoResize)) {
+  if (ImGui::Begin(title.c_str(), nullptr, kFixed)) {
     state_lines(state, session);
     ImGui::Separator();
     controls(state);
@@ -279,9 +280,10 @@ void device_plot(const History& history) {
 
 void right_panel(ViewState& state, LiveSession& session) {
   const float width = 330.0F;
-  ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - width - 8.0F, 8.0F));
-  ImGui::SetNextWindowSize(ImVec2(width, 0.0F));
-  if (ImGui::Begin("What is felt", nullptr, kFixed | ImGuiWindowFlags_AlwaysAutoResize)) {
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos(ImVec2(display.x - width, 0.0F));
+  ImGui::SetNextWindowSize(ImVec2(width, display.y));
+  if (ImGui::Begin("What is felt", nullptr, kFixed)) {
     const std::vector<ToolDescription>& tools = session.scene().tools;
     if (tools.size() > 1 && ImGui::BeginCombo("tool", tools[state.tool].node.c_str())) {
       for (std::uint32_t i = 0; i < tools.size(); ++i) {

@@ -20,6 +20,7 @@ namespace {
 constexpr std::uint32_t kWidth = 1280;
 constexpr std::uint32_t kHeight = 720;
 constexpr double kFramePeriod = 1.0 / 60.0;  // s: no faster than that
+constexpr double kPanelPeriod = 0.1;         // s: between drawings of panels that nobody touches
 constexpr double kHiddenPeriod = 0.1;        // s: while nothing can be seen
 constexpr double kLookPeriod = 0.3;          // s: between looks at the scene's files
 constexpr double kSlowFrame = 1.0 / 28.0;    // s: over that the inner resolution goes down
@@ -237,15 +238,29 @@ void Viewer::fit_share(double frame_seconds) {
   }
 }
 
+/// Panels are drawn ten times a second, and where a person acts on them at once.
+bool Viewer::panels_due(const WindowInput& input) {
+  const glm::dvec2 mouse(input.mouse_x, input.mouse_y);
+  const bool used = Gui::has_mouse() && (mouse != panels_mouse_ || input.wheel != 0.0 ||
+                                         std::ranges::count(input.buttons, true) > 0);
+  if (now() < next_panels_ && !used && input.pressed.empty()) {
+    return false;
+  }
+  next_panels_ = now() + kPanelPeriod;
+  panels_mouse_ = mouse;
+  return true;
+}
+
 Result<Done> Viewer::show(const WindowInput& input, const OverlayDrawList& overlay) {
   Generation& shown = session_->shown();
   const Snapshot& snapshot = session_->frame().snapshot;
   surface_field(shown.simulation.world, snapshot, shown.frame);
   widen_scales(snapshot, state_.draw, twist_scale_, pressure_scale_);
   const bool keep = state_.wants_screenshot;
+  const bool redraw = panels_due(input) || keep;
   const Result<bool> drawn =
       renderer_->show(shown.frame, snapshot, camera(), state_.draw, &overlay,
-                      {input.width, input.height, keep ? 1.0 : state_.share, keep});
+                      {input.width, input.height, keep ? 1.0 : state_.share, keep, redraw});
   if (!drawn) {
     return drawn.error();
   }
@@ -359,7 +374,7 @@ Result<ViewerOutcome> Viewer::finish() {
     Generation& shown = session_->shown();
     const Result<bool> drawn =
         renderer_->show(shown.frame, session_->frame().snapshot, camera(), state_.draw, &overlay,
-                        {input.width, input.height, 1.0, true});
+                        {input.width, input.height, 1.0, true, true});
     const Result<Done> written =
         drawn ? write_screenshot(options_.screenshot) : Result<Done>(drawn.error());
     if (!written) {

@@ -65,6 +65,7 @@ class Viewer {
   Result<Done> begin(Session session);
   Result<Done> make_renderer();
   Result<Done> frame();
+  [[nodiscard]] bool panels_due(const WindowInput& input);
   Result<Done> show(const WindowInput& input, const OverlayDrawList& overlay);
   void add_passes();
   Result<Done> write_screenshot(const std::string& path);
@@ -99,6 +100,8 @@ class Viewer {
   double last_frame_ = 0.0;        // s
   double next_look_ = 0.0;         // s: at the file
   double next_fit_ = 0.0;          // s: of the share
+  double next_panels_ = 0.0;       // s: until then they stay as they are
+  glm::dvec2 panels_mouse_{0.0};   // where the mouse was when they were drawn
   double shown_frame_time_ = 0.0;  // s, smoothed
   double missed_since_ = 0.0;      // s
   double twist_scale_ = 0.0;       // rad, the largest so far

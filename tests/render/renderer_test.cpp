@@ -39,6 +39,8 @@ OverlayDrawList rectangle(float left, float top, float right, float bottom, std:
            {right, bottom, 0.5F, 0.5F, rgba},
            {left, bottom, 0.5F, 0.5F, rgba}},
           {0, 1, 2, 0, 2, 3},
+          {},
+          0,
           {}};
 }
 

@@ -63,7 +63,11 @@ void controls(ViewState& state) {
     state.wants_screenshot = true;
   }
   ImGui::SameLine();
-  if (ImGui::Button("Save recording (O)")) {
+  if (ImGui::Button(state.filming ? "End video (V)" : "Video (V)")) {
+    state.wants_video = true;
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("Recording (O)")) {
     state.wants_saved_recording = true;
   }
   text("Speed (S)");
@@ -183,6 +187,13 @@ void shown_things(ViewState& state) {
   ImGui::Checkbox("glass tool", &state.draw.transparent_tools);
 }
 
+void keys() {
+  dim("G let go of the tool    H hide panels");
+  dim("Space pause   N step   R restart");
+  dim("S speed   M switch models   Esc close");
+  dim("P screenshot   V video   O recording");
+}
+
 void left_panel(ViewState& state, LiveSession& session) {
   // From top to bottom, as the one on the right: what panels hide so is not drawn.
   ImGui::SetNextWindowPos(ImVec2(0.0F, 0.0F));
@@ -199,6 +210,9 @@ void left_panel(ViewState& state, LiveSession& session) {
     }
     if (ImGui::CollapsingHeader("Shown", ImGuiTreeNodeFlags_DefaultOpen)) {
       shown_things(state);
+    }
+    if (ImGui::CollapsingHeader("Keys", ImGuiTreeNodeFlags_DefaultOpen)) {
+      keys();
     }
     ImGui::PopItemWidth();
   }
@@ -309,21 +323,21 @@ void right_panel(ViewState& state, LiveSession& session) {
   ImGui::End();
 }
 
-void keys_line(const ViewState& state, bool on_device) {
+/// What the mouse does now, below the scene.
+void mouse_line(const ViewState& state, bool on_device) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(size.x / 2.0F, size.y - 8.0F), ImGuiCond_Always,
-                          ImVec2(0.5F, 1.0F));
-  if (ImGui::Begin("##keys", nullptr,
+  ImGui::SetNextWindowPos(ImVec2(size.x / 2.0F, size.y), ImGuiCond_Always, ImVec2(0.5F, 1.0F));
+  if (ImGui::Begin("##mouse", nullptr,
                    kFixed | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize |
                        ImGuiWindowFlags_NoInputs)) {
-    text(on_device ? "The device holds the tool   Left = orbit, right = pan, wheel = zoom"
-         : state.grabbed
-             ? "You hold the tool: move = across   Shift = push along the view   Alt or wheel = "
-               "turn it about the contact's normal"
-             : "Take the tool with the left mouse button and press it on the body   "
-               "Elsewhere: left = orbit, right = pan, wheel = zoom");
-    dim("G let go of the tool   H hide panels   Space pause   N step   R restart   S speed   "
-        "P screenshot   O recording   Esc close");
+    if (state.grabbed) {
+      text("You hold the tool: move = across   Shift = push along the view");
+      text("Alt or wheel = turn it about the contact's normal");
+    } else {
+      text(on_device ? "The device holds the tool."
+                     : "Take the tool with the left mouse button and press it on the body.");
+      dim("Elsewhere: left = orbit, right = pan, wheel = zoom");
+    }
   }
   ImGui::End();
 }
@@ -343,7 +357,7 @@ void draw_panels(ViewState& state, LiveSession& session, double now) {
   }
   left_panel(state, session);
   right_panel(state, session);
-  keys_line(state, session.on_device(state.tool));
+  mouse_line(state, session.on_device(state.tool));
 }
 
 }  // namespace torsion

@@ -33,6 +33,7 @@ struct ViewState {
   bool wants_screenshot = false;
   bool wants_saved_recording = false;
   bool wants_release = false;
+  bool wants_video = false;  // begins one, or ends the one under way
 
   OrbitCamera camera;
   std::vector<History> histories;  // (tools)
@@ -40,8 +41,9 @@ struct ViewState {
   double message_until = 0.0;      // s, of the window's clock
   std::string scene_error;         // why the file on disk cannot be shown; empty: it can
   double frames_per_second = 0.0;
-  double share = 1.0;    // of the window's pixels along each side in which the scene is drawn
-  bool grabbed = false;  // the mouse has a tool
+  double share = 1.0;  // of the window's pixels along each side in which the scene is drawn
+  bool filming = false;
+  bool grabbed = false;             // the mouse has a tool
   std::uint32_t missed_lately = 0;  // deadlines in the last second
 };
 

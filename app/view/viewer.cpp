@@ -166,6 +166,11 @@ void Viewer::take_wishes() {
                                 session_->recording().rate)
               : saved.error().text);
   }
+  if (state_.wants_video) {
+    begin_or_end_film();
+  }
+  state_.filming = film_.writer.has_value();
+  state_.wants_video = false;
   state_.wants_step = false;
   state_.wants_release = false;
   state_.wants_restart = false;
@@ -256,11 +261,12 @@ Result<Done> Viewer::show(const WindowInput& input, const OverlayDrawList& overl
   const Snapshot& snapshot = session_->frame().snapshot;
   surface_field(shown.simulation.world, snapshot, shown.frame);
   widen_scales(snapshot, state_.draw, twist_scale_, pressure_scale_);
-  const bool keep = state_.wants_screenshot;
-  const bool redraw = panels_due(input) || keep;
-  const Result<bool> drawn =
-      renderer_->show(shown.frame, snapshot, camera(), state_.draw, &overlay,
-                      {input.width, input.height, keep ? 1.0 : state_.share, keep, redraw});
+  const bool filmed = film_due();
+  const bool keep = state_.wants_screenshot || filmed;
+  const bool redraw = panels_due(input) || state_.wants_screenshot;
+  const Result<bool> drawn = renderer_->show(
+      shown.frame, snapshot, camera(), state_.draw, &overlay,
+      {input.width, input.height, state_.wants_screenshot ? 1.0 : state_.share, keep, redraw});
   if (!drawn) {
     return drawn.error();
   }
@@ -271,7 +277,10 @@ Result<Done> Viewer::show(const WindowInput& input, const OverlayDrawList& overl
   if (drawn.value() && outcome_.frames == 1) {
     outcome_.opened_after = now();
   }
-  if (drawn.value() && keep) {
+  if (drawn.value() && filmed) {
+    add_to_film();
+  }
+  if (drawn.value() && state_.wants_screenshot) {
     state_.wants_screenshot = false;
     const std::string name = file_name(".png");
     const Result<Done> written = write_screenshot(name);
@@ -364,6 +373,9 @@ Result<ViewerOutcome> Viewer::run() {
 
 /// Writes what was asked for at the end.
 Result<ViewerOutcome> Viewer::finish() {
+  if (film_.writer) {
+    end_film("");
+  }
   if (!options_.screenshot.empty()) {
     state_.wants_screenshot = true;
     const WindowInput& input = window_->look();

@@ -15,6 +15,7 @@
 #include "app/view/tool_drag.hpp"
 #include "app/view/view_state.hpp"
 #include "render/renderer.hpp"
+#include "render/video.hpp"
 #include "render/window.hpp"
 
 namespace torsion {
@@ -62,12 +63,26 @@ class Viewer {
     glm::dvec2 mouse{0.0};
   };
 
+  /// A video under way.
+  struct Film {
+    std::optional<VideoWriter> writer;
+    std::string name;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    double begun = 0.0;  // s
+    std::uint64_t pictures = 0;
+  };
+
   Result<Done> begin(Session session);
   Result<Done> make_renderer();
   Result<Done> frame();
   [[nodiscard]] bool panels_due(const WindowInput& input);
   Result<Done> show(const WindowInput& input, const OverlayDrawList& overlay);
   void add_passes();
+  void begin_or_end_film();
+  [[nodiscard]] bool film_due() const;
+  void add_to_film();
+  void end_film(const std::string& why);
   Result<Done> write_screenshot(const std::string& path);
   Result<ViewerOutcome> finish();
   void take_keys(const WindowInput& input);
@@ -96,6 +111,7 @@ class Viewer {
   Grab grab_;
   std::vector<Pose> handles_;  // (tools) where they are held
   std::optional<SceneWatch> watch_;
+  Film film_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   double last_frame_ = 0.0;        // s
   double next_look_ = 0.0;         // s: at the file

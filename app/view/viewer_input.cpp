@@ -44,6 +44,9 @@ void Viewer::take_keys(const WindowInput& input) {
       case 'P':
         state_.wants_screenshot = true;
         break;
+      case 'V':
+        state_.wants_video = true;
+        break;
       case 'O':
         state_.wants_saved_recording = true;
         break;

@@ -79,21 +79,37 @@ TEST_F(WindowTest, TheMousePressesTheToolAndItIsFelt) {
 }
 
 TEST_F(WindowTest, DraggingBesideTheToolTurnsTheView) {
-  EXPECT_GT(changed(shot(2), shot(3), 340, 400, 930, 640), 0.2);
+  EXPECT_GT(changed(shot(2), shot(4), 340, 400, 930, 640), 0.2);
+}
+
+TEST_F(WindowTest, AVideoHasTheTimeThatPassedAndTheWindowsSize) {
+  const std::string facts = *folder_ / "video.json";
+  const std::string command =
+      "ffprobe -v error -count_frames -show_entries stream=width,height,nb_read_frames "
+      "-of json " +
+      (*folder_ / "ball_on_cube_soft_3.mp4") + " > " + facts;
+  ASSERT_EQ(std::system(command.c_str()), 0);  // NOLINT(cert-env33-c,concurrency-mt-unsafe)
+  const auto stream = nlohmann::json::parse(read_text(facts))["streams"][0];
+  EXPECT_EQ(stream["width"].get<int>(), 1280);
+  EXPECT_EQ(stream["height"].get<int>(), 720);
+  // Two seconds at 25 pictures a second, and what xdotool takes.
+  const int pictures = std::stoi(stream["nb_read_frames"].get<std::string>());
+  EXPECT_GE(pictures, 40);
+  EXPECT_LE(pictures, 120);
 }
 
 TEST_F(WindowTest, SurvivesBeingTakenAwayAndAnotherSize) {
-  const Image image = shot(4);
+  const Image image = shot(5);
   EXPECT_EQ(image.width, 900U);
   EXPECT_EQ(image.height, 600U);
 }
 
 TEST_F(WindowTest, ABadSceneFileIsSaidAndTheOldSceneStaysUntilItIsGoodAgain) {
-  EXPECT_FALSE(has_red_banner(shot(4)));
-  EXPECT_TRUE(has_red_banner(shot(5)));
-  EXPECT_FALSE(has_red_banner(shot(6)));
+  EXPECT_FALSE(has_red_banner(shot(5)));
+  EXPECT_TRUE(has_red_banner(shot(6)));
+  EXPECT_FALSE(has_red_banner(shot(7)));
   // The body in the middle is still drawn.
-  EXPECT_LT(changed(shot(4), shot(5), 350, 300, 550, 400), 0.9);
+  EXPECT_LT(changed(shot(5), shot(6), 350, 300, 550, 400), 0.9);
 }
 
 TEST_F(WindowTest, ItsRecordingPlaysBack) {

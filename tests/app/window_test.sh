@@ -41,11 +41,16 @@ xdotool click 4 click 4 click 4 click 4
 sleep 0.7
 shot 2
 xdotool mouseup 1
+# A video of two seconds.
+xdotool key v
+sleep 2
+xdotool key v
+wait_for "${name}_3.mp4"
 # Turns the view beside the body, and comes nearer.
 xdotool mousemove 480 600 mousedown 1 mousemove 520 590 mousemove 600 560 mouseup 1
 xdotool mousemove 480 600 click 4 click 4
 sleep 0.3
-shot 3
+shot 4
 # Switches the model on the run, is taken away and comes back, changes its size.
 xdotool windowunmap "$id"
 sleep 0.3
@@ -53,14 +58,14 @@ xdotool windowmap "$id"
 xdotool windowsize "$id" 900 600
 sleep 1
 xdotool windowfocus "$id"
-shot 4
+shot 5
 # The file changes on disk: to something bad, and back.
 cp "$name.gltf" good.gltf
 head -c 500 good.gltf >"$name.gltf"
 sleep 1.6
-shot 5
+shot 6
 cp good.gltf "$name.gltf"
 sleep 3
-shot 6
+shot 7
 xdotool key Escape
 wait $session

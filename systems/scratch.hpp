@@ -12,6 +12,7 @@
 #include "ecs/world.hpp"
 #include "systems/body_models/main_beam.hpp"
 #include "systems/contact_models/mdr_layers.hpp"
+#include "systems/contact_models/patch_cells.hpp"
 #include "systems/contact_models/patch_solver.hpp"
 #include "systems/distance.hpp"
 #include "systems/group_points.hpp"
@@ -117,8 +118,9 @@ struct Scratch {
   MdrTables mdr_tables;  // constant; empty without contact model mdr
   // patch_forces
   PatchColumns patch_columns;           // (cells of one region)
+  PatchPlaces patch_places;             // likewise
   SupportColumns support_columns;       // (cells of one region)
-  std::vector<double> patch_support;    // (kSupportColumns x cells of one region)
+  std::vector<double> patch_support;    // (kSupportTerms x cells of one region)
   PatchWork patch_work;                 // likewise
   std::vector<PatchCell> patch_before;  // (cells of one region) while its grid moves
   std::vector<CellTraction> tractions_before;

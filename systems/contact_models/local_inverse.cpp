@@ -50,25 +50,4 @@ LocalInverse local_inverse(const InfluenceTables& tables, InfluenceKind kind) {
   return {here, along_x, along_y, corner};
 }
 
-void apply_local_inverse(const LocalInverse& inverse, double scale, std::uint32_t side,
-                         std::span<const double> wanted, std::span<double> asked) {
-  const double here = inverse.here * scale;
-  const double along_x = inverse.along_x * scale;
-  const double along_y = inverse.along_y * scale;
-  const double corner = inverse.corner * scale;
-  const std::size_t width = std::size_t{side} + 2;
-  for (std::uint32_t j = 0; j < side; ++j) {
-    const double* const low = wanted.data() + j * width;
-    const double* const middle = low + width;
-    const double* const high = middle + width;
-    double* __restrict const to = asked.data() + std::size_t{j} * side;
-    for (std::uint32_t i = 0; i < side; ++i) {
-      // Sums in pairs, so that a mirror image has the same bits.
-      to[i] = here * middle[i + 1] + along_x * (middle[i] + middle[i + 2]) +
-              along_y * (low[i + 1] + high[i + 1]) +
-              corner * ((low[i] + high[i + 2]) + (low[i + 2] + high[i]));
-    }
-  }
-}
-
 }  // namespace torsion

@@ -3,9 +3,6 @@
 // A cheap stand-in for the inverse of an influence table: which tractions a displacement asks for,
 // by a cell and its eight neighbours.
 
-#include <cstdint>
-#include <span>
-
 #include "systems/contact_models/influence.hpp"
 
 namespace torsion {
@@ -23,11 +20,5 @@ struct LocalInverse {
 /// approximate inverse (Benson and Frederickson, Utilitas Mathematica 22 (1982) 127; on Toeplitz
 /// matrices, Chan and Ng, SIAM Review 38 (1996) 427). In the tables' units.
 LocalInverse local_inverse(const InfluenceTables& tables, InfluenceKind kind);
-
-/// asked = inverse times scale times wanted.
-/// @param wanted  ((side + 2) x (side + 2)): a border of zeros around the cells
-/// @param asked   (side x side) out
-void apply_local_inverse(const LocalInverse& inverse, double scale, std::uint32_t side,
-                         std::span<const double> wanted, std::span<double> asked);
 
 }  // namespace torsion

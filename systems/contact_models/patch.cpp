@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "systems/contact_models/friction_decay.hpp"
+#include "systems/contact_models/patch_cells.hpp"
+#include "systems/contact_models/patch_passes.hpp"
 #include "systems/contact_models/region_influences.hpp"
 #include "systems/frames.hpp"
 #include "systems/patch_grid.hpp"
@@ -13,11 +15,14 @@
 namespace torsion {
 namespace {
 
-constexpr double kNoContact = -1e30;       // m: depth of a cell that cannot touch
-constexpr std::uint32_t kSweepsAnew = 40;  // at most, of a region that begins or whose grid moved
-constexpr std::uint32_t kRoundsAnew = 8;   // likewise, of pressures and tractions in turn
-constexpr double kSkipAnew = 1e-5;         // the residual that will do then
-constexpr double kMostForesight = 1.5;     // of the last step's change
+// Of a region that begins or whose grid moved, at most: sweeps of either, of both in all rounds
+// together, and rounds of pressures and tractions in turn. What is left to do then is done in the
+// next steps, of which each has its own sweeps.
+constexpr std::uint32_t kSweepsAnew = 16;
+constexpr std::uint32_t kSweepsOfRounds = 24;
+constexpr std::uint32_t kRoundsAnew = 8;
+constexpr double kSkipAnew = 1e-5;      // the residual that will do then
+constexpr double kMostForesight = 1.5;  // of the last step's change
 // A body that gives way takes more sweeps: its motions have compliances of their own, beside those
 // that the local inverse knows. Steps that end early must then not foresee more than the last
 // change: an error that a step's sweeps leave to the share r comes back as r (1 + s) and -r s of
@@ -30,16 +35,14 @@ constexpr double kMostOnSoftBody = 1.0;
 struct Patch {
   World& world;
   const PatchColumns& columns;
+  const PatchPlaces& places;
   const SupportColumns& support;
   PatchWork& work;
   std::uint32_t region = 0;
   std::uint32_t side = 0;
   RegionFrame frame;
   RegionMotion motion;
-  std::span<const CellGeometry> geometry;
-  std::span<CellTraction> tractions;
-  std::span<PatchCell> cells;
-  std::span<PatchChange> changes;
+  PatchRows rows;
   PatchState& state;
   PatchProblem problem;
 };
@@ -59,23 +62,27 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
   problem.compliance = 2.0 * frame.half_size.x /
                        (static_cast<double>(settings.grid_side) * elasticity.shear_modulus());
   problem.coupled = influences.coupled;
-  problem.support = patch_support(world, region, context.scratch.patch_support);
+  const PatchPlaces& places = context.scratch.patch_places;
+  find_places(frame, settings.grid_side, places);
+  problem.support =
+      patch_support(world, region, {places.x, places.y}, context.scratch.patch_support);
   problem.sweeps = settings.sweeps;
   if (problem.support.soft) {
     problem.sweeps *= kSweepsOnSoftBody;
   }
   return {world,
           context.scratch.patch_columns,
+          context.scratch.patch_places,
           context.scratch.support_columns,
           context.scratch.patch_work,
           region,
           settings.grid_side,
           frame,
           world.regions.at<RegionMotion>(region),
-          world.cells.rows<CellGeometry>(identity.cells),
-          world.cells.rows<CellTraction>(identity.cells),
-          world.patch_cells.rows<PatchCell>(identity.cells),
-          world.patch_cells.rows<PatchChange>(identity.cells),
+          {world.cells.rows<CellGeometry>(identity.cells),
+           world.cells.rows<CellTraction>(identity.cells),
+           world.patch_cells.rows<PatchCell>(identity.cells),
+           world.patch_cells.rows<PatchChange>(identity.cells)},
           world.regions.at<PatchState>(region),
           problem};
 }
@@ -94,41 +101,16 @@ double foresight(const Patch& patch, double deepened) {
   return square > 0.0 ? std::clamp(along / square, 0.0, most) : 0.0;
 }
 
-double friction_of(const Friction& friction, double kinetic_share) {
-  return friction.static_friction +
-         kinetic_share * (friction.dynamic_friction - friction.static_friction);
-}
-
 double deepest(const Patch& patch) {
   double depth = 0.0;
-  for (const CellGeometry& cell : patch.geometry) {
+  for (const CellGeometry& cell : patch.rows.geometry) {
     depth = std::max(depth, cell.coverage > 0.0 ? cell.depth : 0.0);
   }
   return depth;
 }
 
-/// Fills the columns: what the last step left, carried on by `share` of what it changed.
-void load(Patch& patch, double share) {
-  const PatchColumns& columns = patch.columns;
-  const std::uint32_t body = patch.world.regions.at<RegionIdentity>(patch.region).body;
-  const Friction& friction = patch.world.bodies.at<Friction>(body);
-  for (std::size_t cell = 0; cell < patch.cells.size(); ++cell) {
-    const CellGeometry& geometry = patch.geometry[cell];
-    const CellTraction& traction = patch.tractions[cell];
-    const PatchCell& held = patch.cells[cell];
-    const PatchChange& change = patch.changes[cell];
-    columns.depth[cell] = geometry.coverage >= 0.5 ? geometry.depth : kNoContact;
-    columns.friction[cell] = friction_of(friction, traction.kinetic_share);
-    patch.problem.foreseen_pressure += std::abs(share * change.pressure);
-    patch.problem.foreseen_traction +=
-        std::abs(share * change.traction.x) + std::abs(share * change.traction.y);
-    columns.pressure[cell] = traction.pressure + share * change.pressure;
-    columns.traction_x[cell] = share * change.traction.x - traction.traction.x;
-    columns.traction_y[cell] = share * change.traction.y - traction.traction.y;
-    columns.depression[cell] = held.depression + share * change.depression;
-    columns.moved_x[cell] = held.displacement.x + share * change.displacement.x;
-    columns.moved_y[cell] = held.displacement.y + share * change.displacement.y;
-  }
+bool has_support(const Patch& patch) {
+  return patch.problem.support.response != nullptr;
 }
 
 /// The body's own motion at every cell beyond what the tool's overlap has of it already.
@@ -138,7 +120,7 @@ void find_support(const Patch& patch) {
   for (const std::span<double>& each : {moved.x, moved.y, moved.z}) {
     std::ranges::fill(each, 0.0);
   }
-  if (patch.problem.support.response == nullptr) {
+  if (!has_support(patch)) {
     return;
   }
   SupportPolynomials polynomials =
@@ -152,38 +134,25 @@ void find_support(const Patch& patch) {
 
 /// Adds it, `sign` times, to the half-space's displacements.
 void add_motion_of_body(const Patch& patch, double sign) {
-  const PatchColumns& columns = patch.columns;
-  for (std::size_t cell = 0; cell < patch.cells.size(); ++cell) {
-    columns.moved_x[cell] += sign * patch.support.x[cell];
-    columns.moved_y[cell] += sign * patch.support.y[cell];
-    columns.target_x[cell] += sign * patch.support.x[cell];
-    columns.target_y[cell] += sign * patch.support.y[cell];
-    columns.depression[cell] += sign * patch.support.z[cell];
+  if (!has_support(patch)) {
+    return;
   }
-}
-
-/// Where the cells go if they stick: on from where they are held, with the tool.
-void set_targets(const Patch& patch) {
   const PatchColumns& columns = patch.columns;
-  std::uint32_t cell = 0;
-  for (std::uint32_t j = 0; j < patch.side; ++j) {
-    for (std::uint32_t i = 0; i < patch.side; ++i, ++cell) {
-      const PatchCell& at = patch.cells[cell];
-      // What holds is the displacement with the body's; the half-space's alone is sought.
-      const glm::dvec2 support(patch.support.x[cell], patch.support.y[cell]);
-      const glm::dvec2 held = at.known != 0 ? at.held - support : at.displacement;
-      const glm::dvec2 arm = cell_center(patch.frame, patch.side, i, j) - patch.motion.pivot;
-      columns.target_x[cell] = held.x + patch.motion.slide.x - patch.motion.spin * arm.y;
-      columns.target_y[cell] = held.y + patch.motion.slide.y + patch.motion.spin * arm.x;
-    }
-  }
+  const auto add = [sign](std::span<const double> motion, std::span<double> to) {
+    add_scaled(motion.size(), sign, motion.data(), to.data());
+  };
+  add(patch.support.x, columns.moved_x);
+  add(patch.support.y, columns.moved_y);
+  add(patch.support.x, columns.target_x);
+  add(patch.support.y, columns.target_y);
+  add(patch.support.z, columns.depression);
 }
 
 /// After the grid has moved, or at a region's beginning: displacements of the tractions that are
 /// there.
 void start_anew(Patch& patch) {
   const PatchColumns& columns = patch.columns;
-  for (std::uint32_t cell = 0; cell < patch.cells.size(); ++cell) {
+  for (std::uint32_t cell = 0; cell < patch.rows.cells.size(); ++cell) {
     if (columns.pressure[cell] <= 0.0 || columns.depth[cell] == kNoContact) {
       columns.pressure[cell] = 0.0;
       columns.traction_x[cell] = 0.0;
@@ -191,14 +160,19 @@ void start_anew(Patch& patch) {
     }
   }
   displace_patch(patch.problem, columns, patch.work);
-  for (std::size_t cell = 0; cell < patch.cells.size(); ++cell) {
-    patch.cells[cell].displacement = {columns.moved_x[cell], columns.moved_y[cell]};
-    patch.cells[cell].depression = columns.depression[cell];
-    patch.tractions[cell].pressure = columns.pressure[cell];
-    patch.tractions[cell].traction =
+  for (std::size_t cell = 0; cell < patch.rows.cells.size(); ++cell) {
+    patch.rows.cells[cell].displacement = {columns.moved_x[cell], columns.moved_y[cell]};
+    if (patch.rows.cells[cell].known == 0) {
+      patch.places.from_x[cell] = columns.moved_x[cell];
+      patch.places.from_y[cell] = columns.moved_y[cell];
+    }
+    patch.rows.cells[cell].depression = columns.depression[cell];
+    patch.rows.tractions[cell].pressure = columns.pressure[cell];
+    patch.rows.tractions[cell].traction =
         -glm::dvec2(columns.traction_x[cell], columns.traction_y[cell]);
   }
   patch.problem.sweeps = std::max(patch.problem.sweeps, kSweepsAnew);
+  patch.problem.sweeps_of_rounds = std::max(patch.problem.sweeps, kSweepsOfRounds);
   patch.problem.rounds = kRoundsAnew;
   patch.problem.skip = kSkipAnew;
   patch.problem.settled = 0.0;
@@ -235,8 +209,8 @@ void update_kinetic_shares(const Patch& patch, double force) {
   const double inverse =
       inverse_of(stiffness > 0.0 ? friction.static_friction * force / stiffness : 0.0);
   const PatchColumns& columns = patch.columns;
-  for (std::size_t cell = 0; cell < patch.cells.size(); ++cell) {
-    double& share = patch.tractions[cell].kinetic_share;
+  for (std::size_t cell = 0; cell < patch.rows.cells.size(); ++cell) {
+    double& share = patch.rows.tractions[cell].kinetic_share;
     const glm::dvec2 moved(columns.moved_x[cell], columns.moved_y[cell]);
     if (columns.pressure[cell] <= 0.0) {
       share = 0.0;
@@ -244,86 +218,9 @@ void update_kinetic_shares(const Patch& patch, double force) {
       const glm::dvec2 target(columns.target_x[cell], columns.target_y[cell]);
       share += (1.0 - share) * travelled(glm::distance(target, moved), inverse / kSlipLength);
     } else if (share > 0.0) {
-      share *= 1.0 - travelled(glm::distance(moved, patch.cells[cell].displacement), inverse);
+      share *= 1.0 - travelled(glm::distance(moved, patch.rows.cells[cell].displacement), inverse);
     }
   }
-}
-
-/// Puts the columns back into the tables.
-void store(const Patch& patch) {
-  const PatchColumns& columns = patch.columns;
-  for (std::size_t cell = 0; cell < patch.cells.size(); ++cell) {
-    PatchCell& at = patch.cells[cell];
-    CellTraction& traction = patch.tractions[cell];
-    const glm::dvec2 on_body(columns.traction_x[cell], columns.traction_y[cell]);
-    const glm::dvec2 moved(columns.moved_x[cell], columns.moved_y[cell]);
-    const bool sticks = columns.slips[cell] == 0.0;
-    patch.changes[cell] = {on_body + traction.traction, columns.pressure[cell] - traction.pressure,
-                           moved - at.displacement, columns.depression[cell] - at.depression};
-    at.displacement = moved;
-    at.depression = columns.depression[cell];
-    at.held = (sticks ? glm::dvec2(columns.target_x[cell], columns.target_y[cell]) : moved) +
-              glm::dvec2(patch.support.x[cell], patch.support.y[cell]);
-    at.known = 1;
-    traction.traction = -on_body;
-    traction.pressure = columns.pressure[cell];
-    traction.coverage = columns.pressure[cell] > 0.0 ? 1.0 : 0.0;
-    traction.sticks = sticks ? 1U : 0U;
-  }
-}
-
-/// Sums over the cells with pressure, in the grid's frame.
-struct PatchSums {
-  double force = 0.0;            // N
-  glm::dvec3 first_moment{0.0};  // N m: pressure times place on the tool
-  double depth_moment = 0.0;     // N m: pressure times depth
-  glm::dvec2 friction{0.0};      // N, on the tool
-  double couple = 0.0;           // N m about the grid's origin
-  double area = 0.0;             // m^2
-  double stuck_area = 0.0;       // m^2
-  glm::dvec2 moved{0.0};         // N m: pressure times displacement
-};
-
-PatchSums sum_cells(const Patch& patch) {
-  PatchSums sums;
-  const double area = cell_area(patch.frame, patch.side);
-  std::uint32_t cell = 0;
-  for (std::uint32_t j = 0; j < patch.side; ++j) {
-    for (std::uint32_t i = 0; i < patch.side; ++i, ++cell) {
-      const double load = patch.columns.pressure[cell] * area;
-      if (load <= 0.0) {
-        continue;
-      }
-      const glm::dvec2 place = cell_center(patch.frame, patch.side, i, j);
-      const glm::dvec2 friction = area * patch.tractions[cell].traction;
-      sums.force += load;
-      sums.first_moment += load * glm::dvec3(place, patch.geometry[cell].height);
-      sums.depth_moment += load * patch.geometry[cell].depth;
-      sums.friction += friction;
-      sums.couple += place.x * friction.y - place.y * friction.x;
-      sums.area += area;
-      sums.stuck_area += patch.tractions[cell].sticks != 0 ? area : 0.0;
-      sums.moved += load * patch.cells[cell].displacement;
-    }
-  }
-  return sums;
-}
-
-/// Mean turn of the surface under the pressure about `center`, rad.
-double mean_turn(const Patch& patch, const glm::dvec2& center, const glm::dvec2& moved) {
-  double moment = 0.0;
-  double second_moment = 0.0;
-  std::uint32_t cell = 0;
-  for (std::uint32_t j = 0; j < patch.side; ++j) {
-    for (std::uint32_t i = 0; i < patch.side; ++i, ++cell) {
-      const double load = patch.columns.pressure[cell];
-      const glm::dvec2 arm = cell_center(patch.frame, patch.side, i, j) - center;
-      const glm::dvec2 relative = patch.cells[cell].displacement - moved;
-      moment += load * (arm.x * relative.y - arm.y * relative.x);
-      second_moment += load * glm::dot(arm, arm);
-    }
-  }
-  return second_moment > 0.0 ? moment / second_moment : 0.0;
 }
 
 /// What the region's components become.
@@ -340,25 +237,25 @@ void summarize(const Patch& patch, const PatchSums& sums) {
   }
   RegionGeometry& geometry = world.regions.at<RegionGeometry>(patch.region);
   const std::uint32_t body = world.regions.at<RegionIdentity>(patch.region).body;
-  const glm::dvec3 center = sums.first_moment / sums.force;
-  const glm::dvec2 moved = sums.moved / sums.force;
+  const glm::dvec3 center(sums.center, sums.height);
+  const double cell = cell_area(patch.frame, patch.side);
   geometry.equivalent_point = grid_to_body(patch.frame, center);
-  geometry.area = sums.area;
-  geometry.radius = std::sqrt(sums.area / std::numbers::pi);
-  geometry.mean_depth = sums.depth_moment / sums.force;
+  geometry.area = sums.loaded_cells * cell;
+  geometry.radius = std::sqrt(geometry.area / std::numbers::pi);
+  geometry.mean_depth = sums.depth;
   geometry.rest_point = geometry.equivalent_point + patch.frame.normal * geometry.mean_depth;
   normal.force = sums.force;
   normal.stiffness = 2.0 * world.bodies.at<Elasticity>(body).contact_modulus() * geometry.radius;
   friction.force = sums.friction;
   friction.couple = sums.couple - (center.x * sums.friction.y - center.y * sums.friction.x);
-  friction.stick_share = sums.stuck_area / sums.area;
-  friction.stick_radius = std::sqrt(sums.stuck_area / std::numbers::pi);
-  friction.stick_turn = mean_turn(patch, glm::dvec2(center), moved);
+  friction.stick_share = sums.stuck_cells / sums.loaded_cells;
+  friction.stick_radius = std::sqrt(sums.stuck_cells * cell / std::numbers::pi);
+  friction.stick_turn = sums.turn;
   const double turn = friction.stick_turn;
   // About the grid's origin, which is not the pressure's centre.
   const glm::dvec2 turned(std::cos(turn) * center.x - std::sin(turn) * center.y,
                           std::sin(turn) * center.x + std::cos(turn) * center.y);
-  const glm::dvec2 of_origin = moved - (turned - glm::dvec2(center));
+  const glm::dvec2 of_origin = sums.moved - (turned - sums.center);
   carrier.translation = tangent_to_body(patch.frame, of_origin);
   carrier.rotation = patch.frame.normal * turn;
 }
@@ -368,28 +265,29 @@ void solve_region(StepContext& context, std::uint32_t region) {
   const double depth = deepest(patch);
   const double deepened = depth - patch.state.depth;
   const bool anew = patch.state.started == 0 || patch.state.moved != 0;
-  load(patch, anew ? 0.0 : foresight(patch, deepened));
+  const std::uint32_t body = patch.world.regions.at<RegionIdentity>(region).body;
+  load_cells(patch.rows, patch.world.bodies.at<Friction>(body),
+             anew ? 0.0 : foresight(patch, deepened), patch.columns, patch.places, patch.work,
+             patch.problem);
   if (anew) {
     start_anew(patch);
   } else {
     let_go_cells(patch.problem, patch.columns, patch.work, kNoContact);
   }
   find_support(patch);
-  set_targets(patch);
+  set_targets(patch.motion, patch.places, patch.support.x, patch.support.y, patch.columns);
   add_motion_of_body(patch, 1.0);
   patch.problem.reference = reference_pressure(patch, depth);
   const PatchOutcome outcome = solve_patch(patch.problem, patch.columns, patch.work);
   find_support(patch);
   add_motion_of_body(patch, -1.0);
   const bool started = patch.state.started != 0;
-  double force = 0.0;
-  for (const double pressure : patch.columns.pressure) {
-    force += pressure * cell_area(patch.frame, patch.side);
-  }
-  update_kinetic_shares(patch, force);
-  store(patch);
+  const PatchSums sums =
+      sum_cells(patch.columns, patch.places, cell_area(patch.frame, patch.side), patch.work);
+  update_kinetic_shares(patch, sums.force);
+  store_cells(patch.columns, patch.support.x, patch.support.y, patch.rows);
   if (!started) {
-    std::ranges::fill(patch.changes, PatchChange{});
+    std::ranges::fill(patch.rows.changes, PatchChange{});
   }
   patch.state = {patch.motion.slide,
                  patch.motion.spin,
@@ -400,7 +298,7 @@ void solve_region(StepContext& context, std::uint32_t region) {
                  1,
                  0,
                  0};
-  summarize(patch, sum_cells(patch));
+  summarize(patch, sums);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // The pressures of the contact model `patch`.
 
 #include <algorithm>
-#include <cmath>
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -12,124 +11,87 @@
 namespace torsion {
 namespace {
 
+/// Brings the columns into those with a border.
+void begin(const PatchProblem& problem, const PatchColumns& columns, PatchWork& work) {
+  const std::uint32_t side = problem.influences.side;
+  to_border(side, columns.depth, work.depth);
+  to_border(side, columns.depression, work.depression);
+  to_border(side, columns.pressure, work.pressure);
+  std::ranges::fill(work.step, 0.0);
+}
+
+void end(const PatchProblem& problem, const PatchWork& work, const PatchColumns& columns) {
+  const std::uint32_t side = problem.influences.side;
+  from_border(side, work.depression, columns.depression);
+  from_border(side, work.pressure, columns.pressure);
+}
+
+/// The rigid motions of all cells: sinking, and tilting about the grid's axes.
+void find_rigid_motions(const PatchProblem& problem, PatchWork& work) {
+  const std::uint32_t side = problem.influences.side;
+  std::ranges::fill(work.moves_x, 1.0);
+  to_border(side, work.moves_x, work.rigid_x[0]);
+  to_border(side, problem.support.place_x, work.rigid_x[1]);
+  to_border(side, problem.support.place_y, work.rigid_x[2]);
+}
+
 /// Takes back what of `asked` the body as a whole gives way by, so that a soft body is not asked
 /// for more than it needs: with B the local inverse, Z the rigid motions and C their compliance,
 /// the inverse of B^-1 + Z C Z' (Woodbury's formula). Golub and Van Loan, Matrix Computations, 2.1.
 void yield_to_rigid_motions(const PatchProblem& problem, const LocalInverse& inverse,
                             PatchWork& work) {
-  const std::uint32_t side = problem.influences.side;
+  const std::size_t count = work.asked_x.size();
   glm::dmat3 stiffness(0.0);  // Z' B Z
   glm::dvec3 asked(0.0);      // Z' B times the residual
-  const auto motion = [&problem](std::size_t k, std::size_t cell) {
-    return k == 0 ? 1.0 : (k == 1 ? problem.support.place_x : problem.support.place_y)[cell];
-  };
   for (std::size_t k = 0; k < 3; ++k) {
-    std::size_t cell = 0;
-    for (std::uint32_t j = 0; j < side; ++j) {
-      const std::size_t row = std::size_t{j + 1} * (side + 2) + 1;
-      for (std::uint32_t i = 0; i < side; ++i, ++cell) {
-        work.rigid_x[row + i] = work.residual_x[row + i] != 0.0 ? motion(k, cell) : 0.0;
-      }
-    }
-    apply_local_inverse(inverse, 1.0 / problem.compliance, side, work.rigid_x,
-                        work.rigid_asks_x[k]);
-    cell = 0;
-    for (std::uint32_t j = 0; j < side; ++j) {
-      const std::size_t row = std::size_t{j + 1} * (side + 2) + 1;
-      for (std::uint32_t i = 0; i < side; ++i, ++cell) {
-        const double residual = work.residual_x[row + i];
-        const double asks = residual != 0.0 ? work.rigid_asks_x[k][cell] : 0.0;
-        const auto column = static_cast<int>(k);
-        asked[column] += asks * residual;
-        stiffness[column] +=
-            asks * glm::dvec3(1.0, problem.support.place_x[cell], problem.support.place_y[cell]);
-      }
+    std::vector<double>& asks = work.rigid_asks_x[k];
+    std::vector<double>& motion = work.rigid_y[k];  // of the cells that count
+    std::ranges::copy(work.rigid_x[k], motion.begin());
+    keep_asked(count, work.residual_x.data(), motion.data());
+    apply_local_inverse(inverse, 1.0 / problem.compliance, problem.influences.side, motion.data(),
+                        asks.data());
+    const auto column = static_cast<int>(k);
+    asked[column] = keep_asked(count, work.residual_x.data(), asks.data());
+    for (std::size_t other = 0; other <= k; ++other) {
+      const auto row = static_cast<int>(other);
+      stiffness[column][row] = stiffness[row][column] =
+          dot(count, asks.data(), work.rigid_x[other].data());
     }
   }
   const glm::dmat3& yields = problem.support.sinks;
   const glm::dvec3 back = glm::inverse(glm::dmat3(1.0) + yields * stiffness) * (yields * asked);
-  for (std::size_t cell = 0; cell < work.asked_x.size(); ++cell) {
-    work.asked_x[cell] -= back.x * work.rigid_asks_x[0][cell] +
-                          back.y * work.rigid_asks_x[1][cell] + back.z * work.rigid_asks_x[2][cell];
+  for (std::size_t k = 0; k < 3; ++k) {
+    add_scaled(count, -back[static_cast<int>(k)], work.rigid_asks_x[k].data(), work.asked_x.data());
   }
 }
 
-/// The gap that is left to close, m: where there is pressure, and where the surfaces overlap.
-/// @return the sum of its squares under the preconditioner, after which `asked` holds what it asks
-double ask(const PatchProblem& problem, const PatchColumns& columns, const LocalInverse& inverse,
-           PatchWork& work) {
-  const std::uint32_t side = problem.influences.side;
-  std::uint32_t cell = 0;
-  for (std::uint32_t j = 0; j < side; ++j) {
-    double* const residual = work.residual_x.data() + std::size_t{j + 1} * (side + 2) + 1;
-    for (std::uint32_t i = 0; i < side; ++i, ++cell) {
-      const double overlap = columns.depth[cell] - columns.depression[cell];
-      residual[i] = columns.pressure[cell] > 0.0 || overlap > 0.0 ? overlap : 0.0;
-    }
-  }
-  apply_local_inverse(inverse, 1.0 / problem.compliance, side, work.residual_x, work.asked_x);
+/// @return the sum of the residual's squares under the preconditioner, after which `asked` holds
+/// what it asks
+double ask(const PatchProblem& problem, const LocalInverse& inverse, PatchWork& work) {
+  const std::size_t count = work.residual_x.size();
+  find_overlaps(count, work.depth.data(), work.depression.data(), work.pressure.data(),
+                work.residual_x.data());
+  apply_local_inverse(inverse, 1.0 / problem.compliance, problem.influences.side,
+                      work.residual_x.data(), work.asked_x.data());
   if (problem.support.soft) {
     yield_to_rigid_motions(problem, inverse, work);
   }
-  double square = 0.0;
-  cell = 0;
-  for (std::uint32_t j = 0; j < side; ++j) {
-    const double* const residual = work.residual_x.data() + std::size_t{j + 1} * (side + 2) + 1;
-    for (std::uint32_t i = 0; i < side; ++i, ++cell) {
-      work.asked_x[cell] = residual[i] != 0.0 ? work.asked_x[cell] : 0.0;
-      square += residual[i] * work.asked_x[cell];
-    }
-  }
-  return square;
-}
-
-/// work.step_x = what is asked, and `kept` of the last step.
-/// @return the slope of the energy along it, downhill, Pa m
-double take_step(double kept, const PatchColumns& columns, PatchWork& work) {
-  double slope = 0.0;
-  for (std::size_t cell = 0; cell < columns.pressure.size(); ++cell) {
-    const double asked = work.asked_x[cell];
-    const double change = asked != 0.0 ? asked + kept * work.step_x[cell] : 0.0;
-    work.step_x[cell] = change;
-    slope += (columns.depth[cell] - columns.depression[cell]) * change;
-  }
-  return slope;
-}
-
-double stiffness_along(const PatchWork& work) {
-  double stiffness = 0.0;
-  for (std::size_t cell = 0; cell < work.step_x.size(); ++cell) {
-    stiffness += work.step_x[cell] * work.moves_x[cell];
-  }
-  return stiffness;
+  return keep_asked(count, work.residual_x.data(), work.asked_x.data());
 }
 
 /// Changes pressures by `length` of the step and displaces the surface.
-SweepChange go(const PatchColumns& columns, double length, PatchWork& work) {
-  SweepChange change;
-  for (std::size_t cell = 0; cell < columns.pressure.size(); ++cell) {
-    work.step_x[cell] *= length;
-    change.largest = std::max(change.largest, std::abs(work.step_x[cell]));
-    change.sum += std::abs(work.step_x[cell]);
-    columns.pressure[cell] += work.step_x[cell];
-    columns.depression[cell] += length * work.moves_x[cell];
-  }
-  return change;
+/// @param pull  the largest that there is then, Pa
+SweepChange go(double length, PatchWork& work, double& pull) {
+  return change_pressures(work.step.size(), length, work.moves.data(), work.step.data(),
+                          work.pressure.data(), work.depression.data(), pull);
 }
 
 /// Lets the cells go that pull.
-/// @return the largest pull, Pa
-double let_go(const PatchProblem& problem, const PatchColumns& columns, PatchWork& work) {
-  double largest = 0.0;
-  for (std::size_t cell = 0; cell < columns.pressure.size(); ++cell) {
-    work.step_x[cell] = std::max(0.0, -columns.pressure[cell]);
-    largest = std::max(largest, work.step_x[cell]);
-  }
-  if (largest > 0.0) {
-    move_by_pressure(problem, work);
-    go(columns, 1.0, work);
-  }
-  return largest;
+void let_go(const PatchProblem& problem, PatchWork& work) {
+  find_pulls(work.step.size(), work.pressure.data(), work.step.data());
+  move_by_pressure(problem, work);
+  double none = 0.0;
+  go(1.0, work, none);
 }
 
 }  // namespace
@@ -137,20 +99,29 @@ double let_go(const PatchProblem& problem, const PatchColumns& columns, PatchWor
 PatchOutcome relax_pressures(const PatchProblem& problem, const PatchColumns& columns,
                              PatchWork& work) {
   const LocalInverse inverse = local_inverse(problem.influences, InfluenceKind::kZZ);
+  begin(problem, columns, work);
+  if (problem.support.soft) {
+    find_rigid_motions(problem, work);
+  }
   PatchOutcome outcome;
   double before = 0.0;  // the residual's square, 0: no direction to keep
   double whole = problem.foreseen_pressure;
+  const std::size_t count = work.step.size();
   while (outcome.sweeps < problem.sweeps) {
-    const double square = ask(problem, columns, inverse, work);
-    const double slope = take_step(before > 0.0 ? square / before : 0.0, columns, work);
+    const double square = ask(problem, inverse, work);
+    const double slope = mix_pressures(count, work.residual_x.data(), work.asked_x.data(),
+                                       before > 0.0 ? square / before : 0.0, work.step.data());
     move_by_pressure(problem, work);
-    const double stiffness = stiffness_along(work);
+    const double stiffness = dot(count, work.step.data(), work.moves.data());
     if (stiffness <= 0.0) {
       outcome.residual = 0.0;
       break;
     }
-    SweepChange change = go(columns, slope / stiffness, work);
-    const double pull = let_go(problem, columns, work);
+    double pull = 0.0;
+    SweepChange change = go(slope / stiffness, work, pull);
+    if (pull > 0.0) {
+      let_go(problem, work);
+    }
     before = pull > 0.0 ? 0.0 : square;
     change.largest = std::max(change.largest, pull);
     whole = std::max(whole, change.sum);
@@ -160,6 +131,7 @@ PatchOutcome relax_pressures(const PatchProblem& problem, const PatchColumns& co
       break;
     }
   }
+  end(problem, work, columns);
   return outcome;
 }
 

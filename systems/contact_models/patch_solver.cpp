@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "systems/contact_models/patch_passes.hpp"
 #include "systems/contact_models/patch_sums.hpp"
 
 namespace torsion {
@@ -54,23 +55,22 @@ PatchOutcome solve_in_turn(const PatchProblem& problem, const PatchColumns& colu
 
 void PatchWork::reserve(std::uint32_t side) {
   const std::size_t count = std::size_t{side} * side;
-  const std::size_t with_border = std::size_t{side + 2} * (side + 2);
-  residual_x.assign(with_border, 0.0);
-  residual_y.assign(with_border, 0.0);
-  rigid_x.assign(with_border, 0.0);
-  rigid_y.assign(with_border, 0.0);
-  for (std::size_t k = 0; k < rigid_asks_x.size(); ++k) {
-    rigid_asks_x[k].assign(count, 0.0);
-    rigid_asks_y[k].assign(count, 0.0);
+  const std::size_t with_border = whole_lanes(std::size_t{side + 2} * (side + 2));
+  for (std::vector<double>* each : {&depth, &depression, &pressure, &residual_x, &residual_y,
+                                    &asked_x, &asked_y, &step, &moves}) {
+    each->assign(with_border, 0.0);
   }
-  for (std::vector<double>* each :
-       {&asked_x, &asked_y, &step_x, &step_y, &moves_x, &moves_y, &limit, &along_x, &along_y,
-        &softened, &change_pressure, &change_x, &change_y, &scales_x, &scales_y}) {
-    each->assign(count, 0.0);
+  for (auto* each : {&rigid_x, &rigid_y, &rigid_asks_x, &rigid_asks_y}) {
+    each->fill(std::vector<double>(with_border, 0.0));
+  }
+  for (std::vector<double>* each : {&step_x, &step_y, &moves_x, &moves_y, &change_pressure,
+                                    &change_x, &change_y, &scales_x, &scales_y}) {
+    each->assign(whole_lanes(count), 0.0);
   }
   places.assign(count, 0);
   bordered.assign(count, 0);
   cells.reserve(count);
+  listed.assign(kTractionColumns * whole_lanes(count), 0.0);
 }
 
 PatchOutcome solve_patch(const PatchProblem& problem, const PatchColumns& columns,
@@ -85,7 +85,7 @@ PatchOutcome solve_patch(const PatchProblem& problem, const PatchColumns& column
     const PatchOutcome turn = solve_in_turn(problem, columns, work);
     outcome.residual = turn.residual;
     outcome.sweeps += turn.sweeps;
-    if (turn.sweeps <= 1) {
+    if (turn.sweeps <= 1 || outcome.sweeps >= problem.sweeps_of_rounds) {
       break;
     }
   }
@@ -102,20 +102,13 @@ void displace_patch(const PatchProblem& problem, const PatchColumns& columns, Pa
 
 void let_go_cells(const PatchProblem& problem, const PatchColumns& columns, PatchWork& work,
                   double least_depth) {
-  bool any = false;
-  for (std::size_t cell = 0; cell < columns.pressure.size(); ++cell) {
-    double& pressure = columns.pressure[cell];
-    const bool keeps = pressure > 0.0 && columns.depth[cell] > least_depth;
-    work.change_pressure[cell] = keeps ? 0.0 : -pressure;
-    work.change_x[cell] = keeps ? 0.0 : -columns.traction_x[cell];
-    work.change_y[cell] = keeps ? 0.0 : -columns.traction_y[cell];
-    any = any || work.change_pressure[cell] != 0.0 || work.change_x[cell] != 0.0 ||
-          work.change_y[cell] != 0.0;
-    if (!keeps) {
-      pressure = columns.traction_x[cell] = columns.traction_y[cell] = 0.0;
-    }
-  }
-  if (any) {
+  lose_cells(columns.pressure.size(), least_depth, columns.depth.data(), columns.pressure.data(),
+             columns.traction_x.data(), columns.traction_y.data(), work.change_pressure.data(),
+             work.change_x.data(), work.change_y.data());
+  const auto any = [](const std::vector<double>& change) {
+    return dot(change.size(), change.data(), change.data()) > 0.0;
+  };
+  if (any(work.change_pressure) || any(work.change_x) || any(work.change_y)) {
     add_pressure(problem, columns, work.change_pressure, work);
     add_tractions(problem, columns, work.change_x, work.change_y, work);
   }

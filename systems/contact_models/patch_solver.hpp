@@ -27,26 +27,26 @@ struct PatchColumns {
   std::span<double> slips;  // 1: at the friction limit or without pressure, 0: sticks
 };
 
-/// What a solution needs while it is sought. (side x side) each unless said otherwise.
+/// What a solution needs while it is sought.
 struct PatchWork {
-  std::vector<double> residual_x,
-      residual_y;                        // m, ((side + 2) x (side + 2)) with a border of zeros
-  std::vector<double> asked_x, asked_y;  // Pa: what the residual asks for
-  std::vector<double> step_x, step_y;    // Pa: the last change
-  std::vector<double> moves_x, moves_y;  // m: what it displaces
-  // A rigid motion of the cells that count, ((side + 2) x (side + 2)) with a border of zeros, and
-  // what three such ask for, Pa/m and Pa
-  std::vector<double> rigid_x, rigid_y;
-  std::array<std::vector<double>, 3> rigid_asks_x, rigid_asks_y;
-  std::vector<double> limit;               // Pa: of the friction
-  std::vector<double> along_x, along_y;    // unit: of the friction of a cell that slips
-  std::vector<double> softened;            // of what turns it: 1 where nothing slips
-  std::vector<double> change_pressure;     // Pa, in this solution
-  std::vector<double> change_x, change_y;  // Pa, likewise
-  std::vector<double> scales_x, scales_y;  // (sources)
-  std::vector<std::uint32_t> places;       // (sources) as in InfluenceSources
-  std::vector<std::uint32_t> cells;        // those that can carry a load
-  std::vector<std::uint32_t> bordered;     // (cells) their rows in the residuals
+  // ((side + 2) x (side + 2)): the cells with a border of zeros, and zeros up to whole lanes of
+  // patch_passes.hpp, for passes over all cells
+  std::vector<double> depth, depression, pressure;  // as in PatchColumns
+  std::vector<double> residual_x, residual_y;       // m
+  std::vector<double> asked_x, asked_y;             // Pa: what the residual asks for
+  std::vector<double> step, moves;                  // Pa: the last change; m: what it displaces
+  // Rigid motions of the cells that count, and what three such ask for, Pa/m and Pa
+  std::array<std::vector<double>, 3> rigid_x, rigid_y, rigid_asks_x, rigid_asks_y;
+  // (side x side), and zeros up to whole lanes
+  std::vector<double> step_x, step_y;                       // Pa: the last change
+  std::vector<double> moves_x, moves_y;                     // m: what it displaces
+  std::vector<double> change_pressure, change_x, change_y;  // Pa, in this solution
+  // Cells with a traction
+  std::vector<double> scales_x, scales_y;
+  std::vector<std::uint32_t> places;    // as in InfluenceSources
+  std::vector<std::uint32_t> cells;     // those that can carry a load
+  std::vector<std::uint32_t> bordered;  // (cells) their rows among those with a border
+  std::vector<double> listed;           // what TractionColumns are in
   void reserve(std::uint32_t side);
 };
 
@@ -64,6 +64,7 @@ struct PatchProblem {
   double foreseen_traction = 0.0;  // the cells, both components
   std::uint32_t sweeps = 2;        // at most, of the pressures and then of the tractions
   std::uint32_t rounds = 1;        // at most, of the two in turn where they are coupled
+  std::uint32_t sweeps_of_rounds = 0;  // no further round after so many
 };
 
 /// What became of it.

@@ -1,5 +1,7 @@
 #include "systems/contact_models/patch_sums.hpp"
 
+#include <cstring>
+
 namespace torsion {
 namespace {
 
@@ -18,8 +20,20 @@ void sum_tractions(const PatchProblem& problem, const InfluenceSources& sources,
        work.scales_x.data(), work.scales_y.data(), work.moves_x.data(), work.moves_y.data()});
 }
 
-}  // namespace
+/// So short that a call of memcpy would take longer.
+void copy_row(std::uint32_t side, const double* from, double* to) {
+  constexpr std::uint32_t kFew = 4;
+  std::uint32_t i = 0;
+  for (; i + kFew <= side; i += kFew) {
+    std::memcpy(to + i, from + i, kFew * sizeof(double));
+  }
+  for (; i < side; ++i) {
+    to[i] = from[i];
+  }
+}
 
+/// Gathers the cells where one of the changes is not zero; scales become displacements per table.
+/// @param change_x, change_y  Pa, (side x side)
 InfluenceSources gather_sources(const PatchProblem& problem, std::span<const double> change_x,
                                 std::span<const double> change_y, PatchWork& work) {
   const std::uint32_t side = problem.influences.side;
@@ -35,6 +49,20 @@ InfluenceSources gather_sources(const PatchProblem& problem, std::span<const dou
     }
   }
   return {work.places.data(), count};
+}
+
+}  // namespace
+
+void to_border(std::uint32_t side, std::span<const double> cells, std::span<double> bordered) {
+  for (std::size_t j = 0; j < side; ++j) {
+    copy_row(side, &cells[j * side], &bordered[(j + 1) * (side + 2) + 1]);
+  }
+}
+
+void from_border(std::uint32_t side, std::span<const double> bordered, std::span<double> cells) {
+  for (std::size_t j = 0; j < side; ++j) {
+    copy_row(side, &bordered[(j + 1) * (side + 2) + 1], &cells[j * side]);
+  }
 }
 
 void add_sideways(const PatchProblem& problem, const PatchColumns& columns,
@@ -88,14 +116,41 @@ void add_tractions(const PatchProblem& problem, const PatchColumns& columns,
 
 void move_by_pressure(const PatchProblem& problem, PatchWork& work) {
   const InfluenceTables& tables = problem.influences;
-  const InfluenceSources sources = gather_sources(problem, work.step_x, work.step_x, work);
-  sum_influence(block_of(tables), sources, tables.of(InfluenceKind::kZZ), work.scales_x.data(),
-                work.moves_x.data());
-  add_support(problem.support, {{}, {}, work.step_x}, {{}, {}, work.moves_x});
+  const std::uint32_t side = tables.side;
+  const auto width = static_cast<std::uint32_t>(tables.width());
+  std::uint32_t count = 0;
+  for (std::uint32_t j = 0; j < side; ++j) {
+    const double* const step = work.step.data() + std::size_t{j + 1} * (side + 2) + 1;
+    for (std::uint32_t i = 0; i < side; ++i) {
+      work.places[count] = j * width + i;
+      work.scales_x[count] = problem.compliance * step[i];
+      count += step[i] != 0.0 ? 1U : 0U;
+    }
+  }
+  GridBlock block = block_of(tables);
+  block.pitch = side + 2;
+  sum_influence(block, {work.places.data(), count}, tables.of(InfluenceKind::kZZ),
+                work.scales_x.data(), work.moves.data() + side + 3);
+  if (problem.support.response != nullptr) {
+    from_border(side, work.step, work.step_x);
+    from_border(side, work.moves, work.moves_x);
+    add_support(problem.support, {{}, {}, work.step_x}, {{}, {}, work.moves_x});
+    to_border(side, work.moves_x, work.moves);
+  }
 }
 
 void move_by_traction(const PatchProblem& problem, PatchWork& work) {
-  sum_tractions(problem, gather_sources(problem, work.step_x, work.step_y, work), work);
+  const InfluenceTables& tables = problem.influences;
+  const std::uint32_t side = tables.side;
+  const std::uint32_t beside = static_cast<std::uint32_t>(tables.width()) - side;
+  std::uint32_t count = 0;
+  for (const std::uint32_t cell : work.cells) {
+    work.places[count] = cell + cell / side * beside;
+    work.scales_x[count] = problem.compliance * work.step_x[cell];
+    work.scales_y[count] = problem.compliance * work.step_y[cell];
+    ++count;
+  }
+  sum_tractions(problem, {work.places.data(), count}, work);
   add_support(problem.support, {work.step_x, work.step_y, {}}, {work.moves_x, work.moves_y, {}});
 }
 

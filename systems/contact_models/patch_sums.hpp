@@ -5,16 +5,11 @@
 
 #include <span>
 
+#include "systems/contact_models/patch_passes.hpp"
 #include "systems/contact_models/patch_solver.hpp"
 #include "systems/contact_models/sum_influence.hpp"
 
 namespace torsion {
-
-/// How much a sweep changes, Pa.
-struct SweepChange {
-  double largest = 0.0;
-  double sum = 0.0;  // over the cells, both components
-};
 
 /// True when a sweep changes so little that it can be the last.
 inline bool ends(const PatchProblem& problem, const SweepChange& change, double whole) {
@@ -22,14 +17,14 @@ inline bool ends(const PatchProblem& problem, const SweepChange& change, double 
          change.sum <= problem.settled * whole;
 }
 
+/// For displacements (side x side).
 inline GridBlock block_of(const InfluenceTables& tables) {
-  return {tables.side, tables.width(), tables.index(0, 0, 0, 0)};
+  return {tables.side, tables.side, tables.width(), tables.index(0, 0, 0, 0)};
 }
 
-/// Gathers the cells where one of the changes is not zero; scales become displacements per table.
-/// @param change_x, change_y  Pa, (side x side)
-InfluenceSources gather_sources(const PatchProblem& problem, std::span<const double> change_x,
-                                std::span<const double> change_y, PatchWork& work);
+/// Cells (side x side) into the middle of ((side + 2) x (side + 2)), and back.
+void to_border(std::uint32_t side, std::span<const double> cells, std::span<double> bordered);
+void from_border(std::uint32_t side, std::span<const double> bordered, std::span<double> cells);
 
 /// Adds to the displacements what changes of the pressure do.
 void add_pressure(const PatchProblem& problem, const PatchColumns& columns,
@@ -50,10 +45,11 @@ void add_depression(const PatchProblem& problem, const PatchColumns& columns,
                     std::span<const double> change_x, std::span<const double> change_y,
                     PatchWork& work);
 
-/// work.moves_x = depression by work.step_x.
+/// work.moves = depression by work.step.
 void move_by_pressure(const PatchProblem& problem, PatchWork& work);
 
-/// work.moves_x, moves_y = displacement along the surface by work.step_x, step_y.
+/// work.moves_x, moves_y = displacement along the surface by work.step_x, step_y, which only the
+/// cells of work.cells have.
 void move_by_traction(const PatchProblem& problem, PatchWork& work);
 
 /// Sweeps over the pressures until they change by less than what ends it.

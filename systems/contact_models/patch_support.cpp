@@ -1,6 +1,8 @@
 #include "systems/contact_models/patch_support.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 
 #include <glm/geometric.hpp>
 #include <glm/mat2x2.hpp>
@@ -8,6 +10,8 @@
 #include "systems/body_models/contact_load.hpp"
 #include "systems/body_models/footing_response.hpp"
 #include "systems/body_models/support_field.hpp"
+#include "systems/contact_models/patch_passes.hpp"
+#include "systems/distance_shapes.hpp"
 #include "systems/frames.hpp"
 #include "systems/widest.hpp"
 
@@ -15,27 +19,28 @@ namespace torsion {
 namespace {
 
 constexpr std::size_t kColumn = kSupportColumn;
-constexpr std::size_t kLanes = 8;  // partial sums, the same ones in vectors of any width
+using Wide = double __attribute__((vector_size(sizeof(double) * kPatchLanes)));
 
 /// Moments of tractions with the terms, sums over the cells.
+/// @param cells    a multiple of kPatchLanes, of terms and tractions
 /// @param moments  (kColumn) out
 TORSION_WIDEST
 void find_moments(const double* __restrict terms, const double* __restrict traction,
                   std::size_t cells, double* __restrict moments) {
+  Wide sums[kSupportTerms] = {};
+  for (std::size_t cell = 0; cell < cells; cell += kPatchLanes) {
+    Wide load;
+    std::memcpy(&load, traction + cell, sizeof load);
+#pragma GCC unroll 15
+    for (std::size_t k = 0; k < kSupportTerms; ++k) {
+      Wide term;
+      std::memcpy(&term, terms + k * cells + cell, sizeof term);
+      sums[k] += term * load;
+    }
+  }
   for (std::size_t k = 0; k < kSupportTerms; ++k) {
-    const double* const term = terms + k * cells;
-    std::array<double, kLanes> sums{};
-    std::size_t cell = 0;
-    for (; cell + kLanes <= cells; cell += kLanes) {
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        sums[lane] += term[cell + lane] * traction[cell + lane];
-      }
-    }
-    for (std::size_t lane = 0; cell < cells; ++cell, ++lane) {
-      sums[lane] += term[cell] * traction[cell];
-    }
-    moments[k] =
-        ((sums[0] + sums[1]) + (sums[2] + sums[3])) + ((sums[4] + sums[5]) + (sums[6] + sums[7]));
+    const Wide& of = sums[k];
+    moments[k] = ((of[0] + of[1]) + (of[2] + of[3])) + ((of[4] + of[5]) + (of[6] + of[7]));
   }
 }
 
@@ -59,35 +64,68 @@ void respond(const double* __restrict response, const double* __restrict moments
 TORSION_WIDEST
 void add_terms(const double* __restrict terms, const double* __restrict values, std::size_t cells,
                double* __restrict displacements) {
-  for (std::size_t k = 0; k < kSupportTerms; ++k) {
-    const double* const term = terms + k * cells;
-    const double value = values[k];
-    for (std::size_t cell = 0; cell < cells; ++cell) {
-      displacements[cell] += value * term[cell];
+  for (std::size_t cell = 0; cell < cells; cell += kPatchLanes) {
+    Wide sum;
+    std::memcpy(&sum, displacements + cell, sizeof sum);
+#pragma GCC unroll 15
+    for (std::size_t k = 0; k < kSupportTerms; ++k) {
+      Wide term;
+      std::memcpy(&term, terms + k * cells + cell, sizeof term);
+      sum += values[k] * term;
     }
+    std::memcpy(displacements + cell, &sum, sizeof sum);
   }
 }
 
-/// The terms at the centres of the region's cells, and these.
-void find_columns(const Footing& footing, const RegionFrame& frame, std::uint32_t side,
+/// The terms (support_terms) at places of the grid, whose coordinates are origin + turn times
+/// place.
+/// @param cells  rows from one term to the next
+TORSION_WIDEST
+void find_terms(const glm::dvec2& origin, const glm::dmat2& turn, std::size_t cells,
+                const double* __restrict place_x, const double* __restrict place_y,
+                double* __restrict terms) {
+  const glm::dvec2 from = origin;
+  const glm::dmat2 by = turn;
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    const double at_x = from.x + (by[0].x * place_x[cell] + by[1].x * place_y[cell]);
+    const double at_y = from.y + (by[0].y * place_x[cell] + by[1].y * place_y[cell]);
+    const double inside = 1.0 / larger(std::sqrt(at_x * at_x + at_y * at_y), 1.0);
+    const double x = at_x * inside;
+    const double y = at_y * inside;
+    const double xx = x * x;
+    const double xy = x * y;
+    const double yy = y * y;
+    double* const to = terms + cell;
+    to[0] = 1.0;
+    to[cells] = x;
+    to[2 * cells] = y;
+    to[3 * cells] = xx;
+    to[4 * cells] = xy;
+    to[5 * cells] = yy;
+    to[6 * cells] = xx * x;
+    to[7 * cells] = xx * y;
+    to[8 * cells] = yy * x;
+    to[9 * cells] = yy * y;
+    to[10 * cells] = xx * xx;
+    to[11 * cells] = xx * xy;
+    to[12 * cells] = xx * yy;
+    to[13 * cells] = xy * yy;
+    to[14 * cells] = yy * yy;
+  }
+}
+
+/// The terms at the centres of the region's cells.
+void find_columns(const Footing& footing, const RegionFrame& frame, std::size_t cells,
                   const PatchSupport& support) {
   const glm::dvec3 from = frame.origin - footing.origin;
   const glm::dvec2 origin(glm::dot(footing.tangent_x, from), glm::dot(footing.tangent_y, from));
   const glm::dmat2 turn(
       glm::dot(footing.tangent_x, frame.tangent_x), glm::dot(footing.tangent_y, frame.tangent_x),
       glm::dot(footing.tangent_x, frame.tangent_y), glm::dot(footing.tangent_y, frame.tangent_y));
-  std::size_t cell = 0;
-  for (std::uint32_t j = 0; j < side; ++j) {
-    for (std::uint32_t i = 0; i < side; ++i, ++cell) {
-      const glm::dvec2 center = cell_center(frame, side, i, j);
-      const glm::dvec2 at = (origin + turn * center) / footing.reach;
-      const auto values = support_terms(support_coordinates(at));
-      for (std::size_t k = 0; k < kSupportTerms; ++k) {
-        support.terms[k * support.cells + cell] = values[k];
-      }
-      support.place_x[cell] = center.x;
-      support.place_y[cell] = center.y;
-    }
+  find_terms(origin / footing.reach, turn / footing.reach, support.cells, support.place_x.data(),
+             support.place_y.data(), support.terms.data());
+  for (std::size_t k = 0; cells < support.cells && k < kSupportTerms; ++k) {
+    std::fill_n(&support.terms[k * support.cells + cells], support.cells - cells, 0.0);
   }
 }
 
@@ -146,7 +184,8 @@ void find_yielding(const Footing& footing, const RegionFrame& frame, PatchSuppor
 
 }  // namespace
 
-PatchSupport patch_support(World& world, std::uint32_t region, std::span<double> columns) {
+PatchSupport patch_support(World& world, std::uint32_t region, const PatchCenters& centers,
+                           std::span<double> terms) {
   PatchSupport support;
   const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
   if (world.footings.empty()) {
@@ -166,12 +205,12 @@ PatchSupport patch_support(World& world, std::uint32_t region, std::span<double>
   support.response = &response;
   support.to_body = {frame.tangent_x, frame.tangent_y, -frame.normal};
   support.area = cell_area(frame, side);
-  support.cells = std::size_t{side} * side;
+  support.cells = whole_lanes(centers.x.size());
   support.soft = yields_much(world, identity, footing);
-  support.terms = columns.first(kSupportTerms * support.cells);
-  support.place_x = columns.subspan(kSupportTerms * support.cells, support.cells);
-  support.place_y = columns.subspan((kSupportTerms + 1) * support.cells, support.cells);
-  find_columns(footing, frame, side, support);
+  support.terms = terms.first(kSupportTerms * support.cells);
+  support.place_x = centers.x;
+  support.place_y = centers.y;
+  find_columns(footing, frame, centers.x.size(), support);
   if (support.soft) {
     find_yielding(footing, frame, support);
   }

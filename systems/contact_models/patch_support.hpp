@@ -21,16 +21,21 @@ struct PatchSupport {
   glm::dmat3 to_body{1.0};                    // from x, y, z of the columns
   double area = 0.0;                          // m^2, of a cell
   bool soft = false;                          // gives way by much beside the contact itself
-  std::size_t cells = 0;
-  std::span<double> terms;             // (kSupportTerms x cells)
-  std::span<double> place_x, place_y;  // m, grid: the cells' centres
+  std::size_t cells = 0;  // rows of a term: those of the cells and zeros up to whole lanes, which
+                          // all columns that tractions come from or displacements go to have, too
+  std::span<double> terms;                   // (kSupportTerms x cells)
+  std::span<const double> place_x, place_y;  // m, grid: the cells' centres
   // Of what is soft: what moves the cells as one, and yields, m/N times a cell's area: along z by
   // the moments of tractions along z with 1, x, y; and along the surface by those of the sideways
   // ones, x, y, turning about the grid's origin.
   glm::dmat3 sinks{0.0};
   glm::dmat3 slides{0.0};
 };
-inline constexpr std::size_t kSupportColumns = kSupportTerms + 2;  // of a PatchSupport
+
+/// The cells' centres.
+struct PatchCenters {
+  std::span<const double> x, y;  // m, grid, (side x side)
+};
 
 /// One grid's tractions or displacements; an empty column is zero or not asked for.
 struct PatchField {
@@ -41,8 +46,9 @@ struct PatchField {
 using SupportPolynomials = std::array<double, std::size_t{3} * kSupportColumn>;
 
 /// The region's, or none. Finds the footing's response anew when it has been laid anew.
-/// @param columns  (kSupportColumns x cells) out
-PatchSupport patch_support(World& world, std::uint32_t region, std::span<double> columns);
+/// @param terms  (kSupportTerms x whole lanes of cells) out
+PatchSupport patch_support(World& world, std::uint32_t region, const PatchCenters& centers,
+                           std::span<double> terms);
 
 /// What tractions move, m.
 SupportPolynomials support_by(const PatchSupport& support, const PatchField& tractions);

@@ -1,9 +1,8 @@
 // The tangential tractions of the contact model `patch`.
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 
-#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
@@ -27,214 +26,201 @@ struct Inverses {
 
 /// What one sweep finds.
 struct Sweep {
-  double square = 0.0;   // of the residual under the preconditioner
-  double slope = 0.0;    // Pa m: of the energy, downhill
-  bool slips = false;    // somewhere
-  bool clipped = false;  // a cell that has stuck
+  double square = 0.0;  // of the residual under the preconditioner
+  TractionStep step;
 };
 
-/// Where a cell is at its limit, of what is left of its way only the part across its friction turns
-/// it. That part is held back by the slip that there is, |s| / (mu p), on top of the cell's own
-/// compliance: the curvature of the disc (Newton's method on the disc's rim).
-void soften_slip(const PatchColumns& columns, double stiffness, std::uint32_t cell,
-                 const glm::dvec2& left, const glm::dvec2& trial, PatchWork& work,
-                 glm::dvec2& residual) {
-  const double limit = work.limit[cell];
-  const glm::dvec2 traction(columns.traction_x[cell], columns.traction_y[cell]);
-  const double square = glm::dot(traction, traction);
-  const glm::dvec2 along =
-      square > 0.25 * limit * limit ? traction / std::sqrt(square) : glm::normalize(trial);
-  const double slip = std::max(0.0, glm::dot(left, along));
-  const double softened = limit > 0.0 ? 1.0 / std::sqrt(1.0 + slip * stiffness / limit) : 0.0;
-  const double across = (along.x * left.y - along.y * left.x) * softened;
-  residual = across * glm::dvec2(-along.y, along.x);
-  work.along_x[cell] = along.x;
-  work.along_y[cell] = along.y;
-  work.softened[cell] = softened;
+TractionColumns columns_of(PatchWork& work) {
+  TractionColumns cells{};
+  cells.count = whole_lanes(work.cells.size());
+  std::array<double**, kTractionColumns> each{
+      &cells.traction_x, &cells.traction_y, &cells.target_x, &cells.target_y,   &cells.moved_x,
+      &cells.moved_y,    &cells.limit,      &cells.slips,    &cells.residual_x, &cells.residual_y,
+      &cells.asked_x,    &cells.asked_y,    &cells.along_x,  &cells.along_y,    &cells.softened,
+      &cells.step_x,     &cells.step_y,     &cells.clips,    &cells.moves_x,    &cells.moves_y};
+  for (std::size_t k = 0; k < each.size(); ++k) {
+    *each[k] = work.listed.data() + k * cells.count;
+  }
+  return cells;
 }
 
-/// Of a displacement the part that a cell answers: all of it, or what is across its friction.
-glm::dvec2 answered(const PatchColumns& columns, const PatchWork& work, std::uint32_t cell,
-                    const glm::dvec2& displacement) {
-  if (columns.slips[cell] == 0.0) {
-    return displacement;
+/// Listed values to their cells among those with a border.
+void spread(const PatchWork& work, const double* listed, std::vector<double>& bordered) {
+  for (std::size_t k = 0; k < work.cells.size(); ++k) {
+    bordered[work.bordered[k]] = listed[k];
   }
-  const glm::dvec2 across(-work.along_y[cell], work.along_x[cell]);
-  return across * (work.softened[cell] * glm::dot(across, displacement));
+}
+
+/// Values of cells (by number, or by their rows among those with a border) to the list.
+void gather(const PatchWork& work, const std::vector<std::uint32_t>& rows,
+            std::span<const double> values, double* listed) {
+  for (std::size_t k = 0; k < work.cells.size(); ++k) {
+    listed[k] = values[rows[k]];
+  }
+}
+
+/// What a displacement of the listed cells asks for, at all cells with a border.
+void ask_for(const PatchProblem& problem, const Inverses& inverses, const double* x,
+             const double* y, PatchWork& work, std::vector<double>& asked_x,
+             std::vector<double>& asked_y) {
+  const std::uint32_t side = problem.influences.side;
+  spread(work, x, work.residual_x);
+  spread(work, y, work.residual_y);
+  apply_local_inverse(inverses.x, 1.0 / problem.compliance, side, work.residual_x.data(),
+                      asked_x.data());
+  apply_local_inverse(inverses.y, 1.0 / problem.compliance, side, work.residual_y.data(),
+                      asked_y.data());
 }
 
 /// As for the pressures (patch_pressures.cpp): to sliding along x and y, and turning.
-void yield_to_rigid_motions(const PatchProblem& problem, const PatchColumns& columns,
-                            const Inverses& inverses, PatchWork& work) {
-  const std::uint32_t side = problem.influences.side;
-  std::ranges::fill(work.rigid_x, 0.0);
-  std::ranges::fill(work.rigid_y, 0.0);
-  const auto motion = [&problem](int k, std::uint32_t cell) {
-    return k == 0   ? glm::dvec2(1.0, 0.0)
-           : k == 1 ? glm::dvec2(0.0, 1.0)
-                    : glm::dvec2(-problem.support.place_y[cell], problem.support.place_x[cell]);
-  };
+void yield_to_rigid_motions(const PatchProblem& problem, const Inverses& inverses,
+                            const TractionColumns& cells, PatchWork& work) {
   glm::dmat3 stiffness(0.0);
   glm::dvec3 asked(0.0);
-  for (int k = 0; k < 3; ++k) {
-    std::vector<double>& asks_x = work.rigid_asks_x[static_cast<std::size_t>(k)];
-    std::vector<double>& asks_y = work.rigid_asks_y[static_cast<std::size_t>(k)];
-    for (std::size_t c = 0; c < work.cells.size(); ++c) {
-      const std::uint32_t cell = work.cells[c];
-      const glm::dvec2 moved = answered(columns, work, cell, motion(k, cell));
-      work.rigid_x[work.bordered[c]] = moved.x;
-      work.rigid_y[work.bordered[c]] = moved.y;
+  // Lists in columns that the pressures no longer need.
+  const auto motion_x = [&work](std::size_t k) {
+    return work.rigid_x[k].data();
+  };
+  const auto motion_y = [&work](std::size_t k) {
+    return work.rigid_y[k].data();
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t row = 0; row < work.cells.size(); ++row) {
+      const std::uint32_t cell = work.cells[row];
+      motion_x(k)[row] = k == 2 ? -problem.support.place_y[cell] : (k == 0 ? 1.0 : 0.0);
+      motion_y(k)[row] = k == 2 ? problem.support.place_x[cell] : (k == 1 ? 1.0 : 0.0);
     }
-    apply_local_inverse(inverses.x, 1.0 / problem.compliance, side, work.rigid_x, asks_x);
-    apply_local_inverse(inverses.y, 1.0 / problem.compliance, side, work.rigid_y, asks_y);
-    for (std::size_t c = 0; c < work.cells.size(); ++c) {
-      const std::uint32_t cell = work.cells[c];
-      const std::uint32_t at = work.bordered[c];
-      const glm::dvec2 asks = answered(columns, work, cell, glm::dvec2(asks_x[cell], asks_y[cell]));
-      asked[k] += asks_x[cell] * work.residual_x[at] + asks_y[cell] * work.residual_y[at];
-      for (int other = 0; other < 3; ++other) {
-        stiffness[k][other] += glm::dot(asks, motion(other, cell));
-      }
+    std::fill_n(motion_x(k) + work.cells.size(), cells.count - work.cells.size(), 0.0);
+    std::fill_n(motion_y(k) + work.cells.size(), cells.count - work.cells.size(), 0.0);
+    std::copy_n(motion_x(k), cells.count, cells.moves_x);
+    std::copy_n(motion_y(k), cells.count, cells.moves_y);
+    keep_answered(cells, cells.moves_x, cells.moves_y);
+    ask_for(problem, inverses, cells.moves_x, cells.moves_y, work, work.asked_x, work.asked_y);
+    double* const asks_x = work.rigid_asks_x[k].data();
+    double* const asks_y = work.rigid_asks_y[k].data();
+    gather(work, work.bordered, work.asked_x, asks_x);
+    gather(work, work.bordered, work.asked_y, asks_y);
+    std::fill_n(asks_x + work.cells.size(), cells.count - work.cells.size(), 0.0);
+    std::fill_n(asks_y + work.cells.size(), cells.count - work.cells.size(), 0.0);
+    const auto column = static_cast<int>(k);
+    asked[column] =
+        dot(cells.count, asks_x, cells.residual_x) + dot(cells.count, asks_y, cells.residual_y);
+    std::copy_n(asks_x, cells.count, cells.moves_x);
+    std::copy_n(asks_y, cells.count, cells.moves_y);
+    keep_answered(cells, cells.moves_x, cells.moves_y);
+    for (std::size_t other = 0; other <= k; ++other) {
+      const auto row = static_cast<int>(other);
+      stiffness[column][row] = stiffness[row][column] =
+          dot(cells.count, cells.moves_x, motion_x(other)) +
+          dot(cells.count, cells.moves_y, motion_y(other));
     }
   }
   const glm::dmat3& yields = problem.support.slides;
   const glm::dvec3 back = glm::inverse(glm::dmat3(1.0) + yields * stiffness) * (yields * asked);
-  for (const std::uint32_t cell : work.cells) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double share = back[static_cast<int>(k)];
-      work.asked_x[cell] -= share * work.rigid_asks_x[k][cell];
-      work.asked_y[cell] -= share * work.rigid_asks_y[k][cell];
-    }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double share = -back[static_cast<int>(k)];
+    add_scaled(cells.count, share, work.rigid_asks_x[k].data(), cells.asked_x);
+    add_scaled(cells.count, share, work.rigid_asks_y[k].data(), cells.asked_y);
   }
 }
 
 /// What is left of every loaded cell's way, and what it asks for.
-Sweep ask(const PatchProblem& problem, const PatchColumns& columns, const Inverses& inverses,
-          PatchWork& work) {
-  Sweep sweep;
-  const std::uint32_t side = problem.influences.side;
-  for (std::size_t k = 0; k < work.cells.size(); ++k) {
-    const std::uint32_t cell = work.cells[k];
-    const glm::dvec2 left(columns.target_x[cell] - columns.moved_x[cell],
-                          columns.target_y[cell] - columns.moved_y[cell]);
-    const glm::dvec2 trial =
-        glm::dvec2(columns.traction_x[cell], columns.traction_y[cell]) + inverses.stiffness * left;
-    glm::dvec2 residual = left;
-    const bool slips = glm::dot(trial, trial) > work.limit[cell] * work.limit[cell];
-    columns.slips[cell] = slips ? 1.0 : 0.0;
-    work.softened[cell] = 1.0;
-    if (slips) {
-      soften_slip(columns, inverses.stiffness, cell, left, trial, work, residual);
-      sweep.slips = true;
-    }
-    const std::uint32_t at = work.bordered[k];
-    work.residual_x[at] = residual.x;
-    work.residual_y[at] = residual.y;
-  }
-  apply_local_inverse(inverses.x, 1.0 / problem.compliance, side, work.residual_x, work.asked_x);
-  apply_local_inverse(inverses.y, 1.0 / problem.compliance, side, work.residual_y, work.asked_y);
+/// @return the sum of the residual's squares under the preconditioner
+double ask(const PatchProblem& problem, const Inverses& inverses, const TractionColumns& cells,
+           PatchWork& work) {
+  find_ways(cells, inverses.stiffness);
+  ask_for(problem, inverses, cells.residual_x, cells.residual_y, work, work.asked_x, work.asked_y);
+  gather(work, work.bordered, work.asked_x, cells.asked_x);
+  gather(work, work.bordered, work.asked_y, cells.asked_y);
   if (problem.support.soft) {
-    yield_to_rigid_motions(problem, columns, inverses, work);
+    yield_to_rigid_motions(problem, inverses, cells, work);
   }
-  for (std::size_t k = 0; k < work.cells.size(); ++k) {
-    const std::uint32_t cell = work.cells[k];
-    const std::uint32_t at = work.bordered[k];
-    sweep.square +=
-        work.residual_x[at] * work.asked_x[cell] + work.residual_y[at] * work.asked_y[cell];
-  }
-  return sweep;
+  return dot(cells.count, cells.residual_x, cells.asked_x) +
+         dot(cells.count, cells.residual_y, cells.asked_y);
 }
 
 /// What every cell asks for if its neighbours stay.
-void ask_alone(const Inverses& inverses, PatchWork& work) {
+void ask_alone(const Inverses& inverses, const TractionColumns& cells) {
+  for (std::size_t k = 0; k < cells.count; ++k) {
+    cells.asked_x[k] = inverses.stiffness * cells.residual_x[k];
+    cells.asked_y[k] = inverses.stiffness * cells.residual_y[k];
+  }
+}
+
+/// What the step displaces.
+/// @return the energy's curvature along it, Pa m
+double move(const PatchProblem& problem, const TractionColumns& cells, PatchWork& work) {
   for (std::size_t k = 0; k < work.cells.size(); ++k) {
-    work.asked_x[work.cells[k]] = inverses.stiffness * work.residual_x[work.bordered[k]];
-    work.asked_y[work.cells[k]] = inverses.stiffness * work.residual_y[work.bordered[k]];
+    work.step_x[work.cells[k]] = cells.step_x[k];
+    work.step_y[work.cells[k]] = cells.step_y[k];
   }
-}
-
-/// Shares of what is asked and of the last step.
-struct Mix {
-  double asked = 1.0;
-  double kept = 0.0;
-};
-
-/// Turns what is asked and kept into a step that ends within the discs.
-void take_step(const PatchColumns& columns, const Mix& mix, PatchWork& work, Sweep& sweep) {
-  for (const std::uint32_t cell : work.cells) {
-    const double limit = work.limit[cell];
-    const glm::dvec2 traction(columns.traction_x[cell], columns.traction_y[cell]);
-    glm::dvec2 from = traction;
-    const glm::dvec2 last(work.step_x[cell], work.step_y[cell]);
-    glm::dvec2 step = mix.asked * glm::dvec2(work.asked_x[cell], work.asked_y[cell]);
-    if (columns.slips[cell] != 0.0) {
-      const glm::dvec2 along(work.along_x[cell], work.along_y[cell]);
-      from = limit * along;
-      const glm::dvec2 across(-work.along_y[cell], work.along_x[cell]);
-      step = across *
-             (work.softened[cell] * glm::dot(step, across) + mix.kept * glm::dot(last, across));
-    } else {
-      step += mix.kept * last;
-    }
-    glm::dvec2 to = from + step;
-    const double square = glm::dot(to, to);
-    if (columns.slips[cell] != 0.0 || square > limit * limit) {
-      to *= square > 0.0 ? limit / std::sqrt(square) : 0.0;
-      sweep.clipped = sweep.clipped || columns.slips[cell] == 0.0;
-      sweep.slips = true;
-    }
-    step = to - traction;
-    work.step_x[cell] = step.x;
-    work.step_y[cell] = step.y;
-    sweep.slope += (columns.target_x[cell] - columns.moved_x[cell]) * step.x +
-                   (columns.target_y[cell] - columns.moved_y[cell]) * step.y;
-  }
-}
-
-SweepChange go(const PatchColumns& columns, double length, PatchWork& work) {
-  SweepChange change;
-  for (const std::uint32_t cell : work.cells) {
-    work.step_x[cell] *= length;
-    work.step_y[cell] *= length;
-    columns.traction_x[cell] += work.step_x[cell];
-    columns.traction_y[cell] += work.step_y[cell];
-    const double x = std::abs(work.step_x[cell]);
-    const double y = std::abs(work.step_y[cell]);
-    change.largest = std::max({change.largest, x, y});
-    change.sum += x + y;
-  }
-  for (std::size_t cell = 0; cell < columns.moved_x.size(); ++cell) {
-    columns.moved_x[cell] += length * work.moves_x[cell];
-    columns.moved_y[cell] += length * work.moves_y[cell];
-  }
-  return change;
+  move_by_traction(problem, work);
+  gather(work, work.cells, work.moves_x, cells.moves_x);
+  gather(work, work.cells, work.moves_y, cells.moves_y);
+  return dot(cells.count, cells.step_x, cells.moves_x) +
+         dot(cells.count, cells.step_y, cells.moves_y);
 }
 
 /// Lists the cells that carry a load or have to lose one.
-/// @return true when a traction lies outside its disc
-bool list_cells(const PatchColumns& columns, std::uint32_t side, PatchWork& work) {
-  bool outside = false;
-  work.cells.clear();
-  std::ranges::fill(work.residual_x, 0.0);
-  std::ranges::fill(work.residual_y, 0.0);
+void list_cells(const PatchColumns& columns, std::uint32_t side, PatchWork& work) {
+  work.cells.resize(columns.pressure.size());
+  std::size_t count = 0;
   std::uint32_t cell = 0;
   for (std::uint32_t j = 0; j < side; ++j) {
     for (std::uint32_t i = 0; i < side; ++i, ++cell) {
-      work.limit[cell] = columns.friction[cell] * columns.pressure[cell];
-      work.step_x[cell] = 0.0;
-      work.step_y[cell] = 0.0;
-      columns.slips[cell] = 1.0;
-      if (work.limit[cell] > 0.0 || columns.traction_x[cell] != 0.0 ||
-          columns.traction_y[cell] != 0.0) {
-        work.bordered[work.cells.size()] = (j + 1) * (side + 2) + i + 1;
-        work.cells.push_back(cell);
-        const double square = columns.traction_x[cell] * columns.traction_x[cell] +
-                              columns.traction_y[cell] * columns.traction_y[cell];
-        outside = outside || square > kInside * work.limit[cell] * work.limit[cell];
-      }
+      const bool loaded = columns.friction[cell] * columns.pressure[cell] > 0.0 ||
+                          columns.traction_x[cell] != 0.0 || columns.traction_y[cell] != 0.0;
+      work.bordered[count] = (j + 1) * (side + 2) + i + 1;
+      work.cells[count] = cell;
+      count += loaded ? 1U : 0U;
     }
   }
+  work.cells.resize(count);
+}
+
+/// Fills the list's columns.
+/// @return true when a traction lies outside its disc
+bool load(const PatchColumns& columns, const TractionColumns& cells, PatchWork& work) {
+  std::fill_n(work.listed.begin(), kTractionColumns * cells.count, 0.0);
+  for (std::vector<double>* each :
+       {&work.step_x, &work.step_y, &work.residual_x, &work.residual_y}) {
+    std::ranges::fill(*each, 0.0);
+  }
+  bool outside = false;
+  for (std::size_t k = 0; k < work.cells.size(); ++k) {
+    const std::uint32_t cell = work.cells[k];
+    const double limit = columns.friction[cell] * columns.pressure[cell];
+    const double x = columns.traction_x[cell];
+    const double y = columns.traction_y[cell];
+    cells.limit[k] = limit;
+    cells.traction_x[k] = x;
+    cells.traction_y[k] = y;
+    cells.target_x[k] = columns.target_x[cell];
+    cells.target_y[k] = columns.target_y[cell];
+    cells.moved_x[k] = columns.moved_x[cell];
+    cells.moved_y[k] = columns.moved_y[cell];
+    outside = outside || x * x + y * y > kInside * limit * limit;
+  }
   return outside;
+}
+
+void store(const TractionColumns& cells, const PatchWork& work, const PatchColumns& columns) {
+  std::ranges::fill(columns.slips, 1.0);
+  for (std::size_t k = 0; k < work.cells.size(); ++k) {
+    const std::uint32_t cell = work.cells[k];
+    columns.traction_x[cell] = cells.traction_x[k];
+    columns.traction_y[cell] = cells.traction_y[k];
+    columns.slips[cell] = cells.slips[k];
+  }
+}
+
+/// Goes `length` of the step.
+SweepChange go(const PatchColumns& columns, const TractionColumns& cells, double length,
+               const PatchWork& work) {
+  const std::size_t count = columns.moved_x.size();
+  add_scaled(count, length, work.moves_x.data(), columns.moved_x.data());
+  add_scaled(count, length, work.moves_y.data(), columns.moved_y.data());
+  return change_tractions(cells, length);
 }
 
 }  // namespace
@@ -246,38 +232,38 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
   const Inverses inverses{local_inverse(tables, InfluenceKind::kXX),
                           local_inverse(tables, InfluenceKind::kYY),
                           1.0 / (softest * problem.compliance)};
-  bool outside = list_cells(columns, tables.side, work);
+  list_cells(columns, tables.side, work);
+  const TractionColumns cells = columns_of(work);
+  bool outside = load(columns, cells, work);
   PatchOutcome outcome;
   double before = 0.0;  // the residual's square, 0: no direction to keep
   double whole = problem.foreseen_traction;
   bool alone = false;
   while (outcome.sweeps < problem.sweeps) {
-    Sweep sweep = ask(problem, columns, inverses, work);
+    Sweep sweep;
+    sweep.square = ask(problem, inverses, cells, work);
     const double kept = before > 0.0 ? sweep.square / before : 0.0;
-    take_step(columns, {outside ? kCalm : 1.0, kept}, work, sweep);
-    if (!outside && (alone || sweep.slope <= 0.0)) {
+    sweep.step = mix_tractions(cells, {outside ? kCalm : 1.0, kept});
+    if (!outside && (alone || sweep.step.slope <= 0.0)) {
       // Beside cells that slip the neighbours' share may lead uphill; each cell's own does not.
-      ask_alone(inverses, work);
-      sweep.slope = 0.0;
-      take_step(columns, {1.0, 0.0}, work, sweep);
+      ask_alone(inverses, cells);
+      const double clipped = sweep.step.clipped;
+      sweep.step = mix_tractions(cells, {1.0, 0.0});
+      sweep.step.clipped += clipped;
     }
-    move_by_traction(problem, work);
-    double stiffness = 0.0;
-    for (const std::uint32_t cell : work.cells) {
-      stiffness += work.step_x[cell] * work.moves_x[cell] + work.step_y[cell] * work.moves_y[cell];
-    }
+    const double stiffness = move(problem, cells, work);
     if (stiffness <= 0.0) {
       outcome.residual = 0.0;
       break;
     }
     // A first step brings all tractions into their discs, so it goes all the way. Where something
     // slips, a step ends on the discs' rims: no farther.
-    const double best = outside ? 1.0 : sweep.slope / stiffness;
-    const double length = sweep.slips ? std::clamp(best, 0.0, 1.0) : best;
+    const double best = outside ? 1.0 : sweep.step.slope / stiffness;
+    const double length = sweep.step.slips > 0.0 ? std::clamp(best, 0.0, 1.0) : best;
     alone = length < kShort;
     outside = false;
-    const SweepChange change = go(columns, length, work);
-    before = sweep.clipped ? 0.0 : sweep.square;
+    const SweepChange change = go(columns, cells, length, work);
+    before = sweep.step.clipped > 0.0 ? 0.0 : sweep.square;
     whole = std::max(whole, change.sum);
     outcome.residual = change.largest / problem.reference;
     ++outcome.sweeps;
@@ -285,6 +271,7 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
       break;
     }
   }
+  store(cells, work, columns);
   return outcome;
 }
 

@@ -41,7 +41,7 @@ TORSION_INLINE void sum_block(const Sums& at, const double* table, const double*
     }
   }
   for (std::uint32_t row = 0; row < Rows; ++row) {
-    std::memcpy(displacement + std::size_t{row} * at.block.side, &sums[row], sizeof(Vector));
+    std::memcpy(displacement + std::size_t{row} * at.block.pitch, &sums[row], sizeof(Vector));
   }
 }
 
@@ -66,8 +66,8 @@ TORSION_INLINE void sum_block(const Sums& at, const TangentialSums& of) {
     }
   }
   for (std::uint32_t row = 0; row < Rows; ++row) {
-    std::memcpy(of.moved_x + std::size_t{row} * at.block.side, &sums_x[row], sizeof(Vector));
-    std::memcpy(of.moved_y + std::size_t{row} * at.block.side, &sums_y[row], sizeof(Vector));
+    std::memcpy(of.moved_x + std::size_t{row} * at.block.pitch, &sums_x[row], sizeof(Vector));
+    std::memcpy(of.moved_y + std::size_t{row} * at.block.pitch, &sums_y[row], sizeof(Vector));
   }
 }
 
@@ -77,7 +77,7 @@ TORSION_INLINE void sum_rows(const Sums& at, const double* table, const double* 
                              double* displacement, std::uint32_t first_row) {
   const std::uint32_t side = at.block.side;
   const double* const from = table + at.block.self + first_row * at.block.width;
-  double* const to = displacement + std::size_t{first_row} * side;
+  double* const to = displacement + std::size_t{first_row} * at.block.pitch;
   std::uint32_t column = 0;
   if constexpr (Lanes >= 8) {
     for (; column + 8 <= side; column += 8) {
@@ -103,8 +103,8 @@ TORSION_INLINE TangentialSums shifted(const TangentialSums& of, std::size_t tabl
 template <std::uint32_t Lanes, std::uint32_t Rows>
 TORSION_INLINE void sum_rows(const Sums& at, const TangentialSums& of, std::uint32_t first_row) {
   const std::uint32_t side = at.block.side;
-  const TangentialSums row =
-      shifted(of, at.block.self + first_row * at.block.width, std::size_t{first_row} * side);
+  const TangentialSums row = shifted(of, at.block.self + first_row * at.block.width,
+                                     std::size_t{first_row} * at.block.pitch);
   std::uint32_t column = 0;
   if constexpr (Lanes >= 8) {
     for (; column + 8 <= side; column += 8) {

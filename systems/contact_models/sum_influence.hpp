@@ -10,9 +10,10 @@ namespace torsion {
 
 /// A grid, and where its influence tables hold the displacement of a cell by itself.
 struct GridBlock {
-  std::uint32_t side = 0;  // cells along a side
-  std::size_t width = 0;   // of a row of the tables
-  std::size_t self = 0;    // index in a table
+  std::uint32_t side = 0;   // cells along a side
+  std::uint32_t pitch = 0;  // of a row of the displacements
+  std::size_t width = 0;    // of a row of the tables
+  std::size_t self = 0;     // index in a table
 };
 
 /// Cells with a traction.
@@ -21,7 +22,8 @@ struct InfluenceSources {
   std::uint32_t count = 0;
 };
 
-/// displacement = the sum over the sources of scale times table.
+/// displacement = the sum over the sources of scale times table, at its first of `side` rows and
+/// the next ones, each `pitch` after the one before.
 /// @param scales        (sources.count)
 /// @param displacement  (side x side)
 void sum_influence(const GridBlock& block, const InfluenceSources& sources, const double* table,

@@ -1,0 +1,70 @@
+#pragma once
+
+// The cells of a region with contact model `patch` between the tables, where each is a row, and the
+// columns that the solver works on.
+
+#include <cstdint>
+#include <span>
+
+#include "ecs/components.hpp"
+#include "systems/contact_models/patch_solver.hpp"
+
+namespace torsion {
+
+/// What a step needs of the cells beside PatchColumns, (side x side) each.
+struct PatchPlaces {
+  std::span<double> x, y;            // m, grid: the cells' centres
+  std::span<double> height;          // m, grid: of the tool
+  std::span<double> from_x, from_y;  // m: where friction holds a cell, or how it is displaced
+  std::span<double> known;           // 1: that is with the body's motion, 0: the half-space's alone
+};
+
+inline constexpr double kNoContact = -1e30;  // m: depth of a cell that cannot touch
+
+/// The rows of one region's cells.
+struct PatchRows {
+  std::span<const CellGeometry> geometry;
+  std::span<CellTraction> tractions;
+  std::span<PatchCell> cells;
+  std::span<PatchChange> changes;
+};
+
+/// Fills the columns: what the last step left, carried on by `share` of what it changed. Sets what
+/// of it is foreseen in `problem`.
+void load_cells(const PatchRows& rows, const Friction& friction, double share,
+                const PatchColumns& columns, const PatchPlaces& places, PatchWork& work,
+                PatchProblem& problem);
+
+/// Puts the columns back into the rows.
+/// @param support_x, support_y  m: the body's motion, which what is held is with
+void store_cells(const PatchColumns& columns, std::span<const double> support_x,
+                 std::span<const double> support_y, const PatchRows& rows);
+
+/// The cells' centres.
+void find_places(const RegionFrame& frame, std::uint32_t side, const PatchPlaces& places);
+
+/// Where the cells go if they stick: on from where they are held, with the tool.
+/// @param support_x, support_y  m: the body's motion, which what is sought is without
+void set_targets(const RegionMotion& motion, const PatchPlaces& places,
+                 std::span<const double> support_x, std::span<const double> support_y,
+                 const PatchColumns& columns);
+
+/// Sums over the cells, in the grid's frame. What is weighted with the pressure is zero without.
+struct PatchSums {
+  double force = 0.0;        // N
+  glm::dvec2 center{0.0};    // m: of the pressure
+  double height = 0.0;       // m: the tool's, weighted with the pressure
+  double depth = 0.0;        // m: likewise
+  glm::dvec2 moved{0.0};     // m: displacement, likewise
+  double turn = 0.0;         // rad: of the surface about `center`, likewise
+  glm::dvec2 friction{0.0};  // N, on the tool
+  double couple = 0.0;       // N m about the grid's origin
+  double loaded_cells = 0.0;
+  double stuck_cells = 0.0;
+};
+
+/// @param cell_area  m^2
+PatchSums sum_cells(const PatchColumns& columns, const PatchPlaces& places, double cell_area,
+                    PatchWork& work);
+
+}  // namespace torsion

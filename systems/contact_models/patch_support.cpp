@@ -21,6 +21,8 @@ namespace {
 constexpr std::size_t kColumn = kSupportColumn;
 using Wide = double __attribute__((vector_size(sizeof(double) * kPatchLanes)));
 
+using Half = double __attribute__((vector_size(sizeof(double) * kPatchLanes / 2)));
+
 /// Moments of tractions with the terms, sums over the cells.
 /// @param cells    a multiple of kPatchLanes, of terms and tractions
 /// @param moments  (kColumn) out
@@ -39,25 +41,31 @@ void find_moments(const double* __restrict terms, const double* __restrict tract
     }
   }
   for (std::size_t k = 0; k < kSupportTerms; ++k) {
-    const Wide& of = sums[k];
-    moments[k] = ((of[0] + of[1]) + (of[2] + of[3])) + ((of[4] + of[5]) + (of[6] + of[7]));
+    const Half half = __builtin_shufflevector(sums[k], sums[k], 0, 1, 2, 3) +
+                      __builtin_shufflevector(sums[k], sums[k], 4, 5, 6, 7);
+    moments[k] = (half[0] + half[2]) + (half[1] + half[3]);
   }
 }
 
-/// polynomials += response times moments.
+/// polynomials = response times moments.
 TORSION_WIDEST
 void respond(const double* __restrict response, const double* __restrict moments,
              double* __restrict polynomials) {
-  constexpr std::size_t kRows = 3 * kColumn;
+  constexpr std::size_t kVectors = 3 * kColumn / kPatchLanes;
+  Wide sums[kVectors] = {};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
       const double moment = moments[axis * kColumn + k];
-      const double* const column = response + (axis * kColumn + k) * kRows;
-      for (std::size_t row = 0; row < kRows; ++row) {
-        polynomials[row] += moment * column[row];
+      const double* const column = response + (axis * kColumn + k) * 3 * kColumn;
+#pragma GCC unroll 6
+      for (std::size_t row = 0; row < kVectors; ++row) {
+        Wide value;
+        std::memcpy(&value, column + row * kPatchLanes, sizeof value);
+        sums[row] += moment * value;
       }
     }
   }
+  std::memcpy(polynomials, sums, sizeof sums);
 }
 
 /// displacements += the sum of the terms times their values.

@@ -181,7 +181,12 @@ void list_cells(const PatchColumns& columns, std::uint32_t side, PatchWork& work
 /// Fills the list's columns.
 /// @return true when a traction lies outside its disc
 bool load(const PatchColumns& columns, const TractionColumns& cells, PatchWork& work) {
-  std::fill_n(work.listed.begin(), kTractionColumns * cells.count, 0.0);
+  for (std::size_t k = 0; k < kTractionColumns; ++k) {
+    std::fill_n(work.listed.data() + k * cells.count + work.cells.size(),
+                cells.count - work.cells.size(), 0.0);
+  }
+  std::fill_n(cells.step_x, cells.count, 0.0);
+  std::fill_n(cells.step_y, cells.count, 0.0);
   for (std::vector<double>* each :
        {&work.step_x, &work.step_y, &work.residual_x, &work.residual_y}) {
     std::ranges::fill(*each, 0.0);

@@ -33,7 +33,6 @@ void find_moments(const double* __restrict terms, const double* __restrict tract
   for (std::size_t cell = 0; cell < cells; cell += kPatchLanes) {
     Wide load;
     std::memcpy(&load, traction + cell, sizeof load);
-#pragma GCC unroll 15
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
       Wide term;
       std::memcpy(&term, terms + k * cells + cell, sizeof term);
@@ -57,7 +56,6 @@ void respond(const double* __restrict response, const double* __restrict moments
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
       const double moment = moments[axis * kColumn + k];
       const double* const column = response + (axis * kColumn + k) * 3 * kColumn;
-#pragma GCC unroll 6
       for (std::size_t row = 0; row < kVectors; ++row) {
         Wide value;
         std::memcpy(&value, column + row * kPatchLanes, sizeof value);
@@ -75,7 +73,6 @@ void add_terms(const double* __restrict terms, const double* __restrict values, 
   for (std::size_t cell = 0; cell < cells; cell += kPatchLanes) {
     Wide sum;
     std::memcpy(&sum, displacements + cell, sizeof sum);
-#pragma GCC unroll 15
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
       Wide term;
       std::memcpy(&term, terms + k * cells + cell, sizeof term);

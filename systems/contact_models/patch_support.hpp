@@ -21,9 +21,9 @@ struct PatchSupport {
   glm::dmat3 to_body{1.0};                    // from x, y, z of the columns
   double area = 0.0;                          // m^2, of a cell
   bool soft = false;                          // gives way by much beside the contact itself
-  std::size_t cells = 0;  // rows of a term: those of the cells and zeros up to whole lanes, which
-                          // all columns that tractions come from or displacements go to have, too
-  std::span<double> terms;                   // (kSupportTerms x cells)
+  std::size_t cells = 0;    // rows of a term: those of the cells and zeros up to whole lanes, which
+                            // all columns that tractions come from or displacements go to have, too
+  std::span<double> terms;  // (kSupportTerms x cells)
   std::span<const double> place_x, place_y;  // m, grid: the cells' centres
   // Of what is soft: what moves the cells as one, and yields, m/N times a cell's area: along z by
   // the moments of tractions along z with 1, x, y; and along the surface by those of the sideways

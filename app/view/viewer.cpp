@@ -92,14 +92,22 @@ Result<Done> Viewer::begin(Session session) {
   const bool again = session_ != nullptr;
   renderer_.reset();
   session_.reset();
-  // A device that held a tool of the scene before is closed by now.
-  Result<SceneDevice> device = open_device(options_.device, session.scene);
-  if (!device) {
-    return device.error();
+  // Physics and devices do not inherit that this thread makes way for them.
+  Result<Done> started = Done{};
+  starter_->run([&] {
+    // A device that held a tool of the scene before is closed by now.
+    Result<SceneDevice> device = open_device(options_.device, session.scene);
+    if (!device) {
+      started = device.error();
+      return;
+    }
+    session_ = std::make_unique<LiveSession>(std::move(session), options_.prepare);
+    session_->give(std::move(device).value());
+    session_->start();
+  });
+  if (!started) {
+    return started;
   }
-  session_ = std::make_unique<LiveSession>(std::move(session), options_.prepare);
-  session_->give(std::move(device).value());
-  session_->start();
   if (!session_->mode().fifo) {
     // Before the driver makes its threads, which inherit it.
     make_way_for_realtime();
@@ -209,22 +217,22 @@ void Viewer::watch_scene() {
   }
 }
 
-void Viewer::take_reloaded() {
+/// Fails where the new scene can be read but not shown: then the one before it is gone.
+Result<Done> Viewer::take_reloaded() {
   if (!reloader_.joinable() || !reloaded_done_.load(std::memory_order_acquire)) {
-    return;
+    return Done{};
   }
   reloader_.join();
   if (!*reloaded_) {
     state_.scene_error = reloaded_->error().text;
-    return;
+    return Done{};
   }
   state_.scene_error.clear();
   const Result<Done> begun = begin(std::move(*reloaded_).value());
   if (begun) {
     say("the scene's file has changed: loaded anew");
-  } else {
-    state_.scene_error = begun.error().text;
   }
+  return begun;
 }
 
 /// Holds the frame rate by the inner resolution, in small steps with pauses between.
@@ -319,7 +327,9 @@ Result<Done> Viewer::frame() {
   session_->refresh();
   take_history();
   watch_scene();
-  take_reloaded();
+  if (const Result<Done> taken = take_reloaded(); !taken) {
+    return taken;
+  }
   gui_->begin(input, now() - last_frame_);
   const double started = now();
   last_frame_ = started;
@@ -347,6 +357,7 @@ Result<ViewerOutcome> Viewer::run() {
   }
   interrupt_.emplace();  // before any thread, but not while a scene is prepared for long
   start_ = std::chrono::steady_clock::now();
+  starter_.emplace();
   Result<Window> window = Window::open(
       "Torsion: " + std::filesystem::path(options_.scene).filename().string(), kWidth, kHeight);
   if (!window) {

@@ -10,6 +10,7 @@
 
 #include "app/live/interrupt.hpp"
 #include "app/live/live_session.hpp"
+#include "app/live/thread_starter.hpp"
 #include "app/view/gui.hpp"
 #include "app/view/scene_watch.hpp"
 #include "app/view/tool_drag.hpp"
@@ -92,7 +93,7 @@ class Viewer {
   void take_wishes();
   void take_history();
   void watch_scene();
-  void take_reloaded();
+  Result<Done> take_reloaded();
   void fit_share(double frame_seconds);
   void say(const std::string& text);
   [[nodiscard]] double now() const;
@@ -101,7 +102,8 @@ class Viewer {
   [[nodiscard]] std::string file_name(const std::string& extension);
 
   ViewerOptions options_;
-  std::optional<Interrupt> interrupt_;  // a device is let go of whatever ends the program
+  std::optional<Interrupt> interrupt_;    // a device is let go of whatever ends the program
+  std::optional<ThreadStarter> starter_;  // of threads that drawing makes way for
   std::optional<Window> window_;
   std::unique_ptr<Gui> gui_;
   std::unique_ptr<LiveSession> session_;

@@ -6,8 +6,10 @@
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include "app/live/rebuild.hpp"
+#include "app/live/thread_starter.hpp"
 #include "ecs/hash.hpp"
 #include "tests/app/live_session.hpp"
 #include "tests/support/allocation_guard.hpp"
@@ -53,6 +55,25 @@ TEST(StepScheduleTest, MakesUpForFourPeriodsAndSkipsTheRest) {
   }
   EXPECT_EQ(made_up, 4);
   EXPECT_EQ(schedule.skipped, 6U);
+}
+
+/// The scheduling that a new thread of the calling thread has.
+int policy_of_new_thread() {
+  int policy = -1;
+  std::thread([&policy] { policy = ::sched_getscheduler(0); }).join();
+  return policy;
+}
+
+TEST(ThreadStarterTest, ThreadsItStartsDoNotMakeWayWithTheOneThatDraws) {
+  std::thread draws([] {
+    ThreadStarter starter;
+    make_way_for_realtime();
+    EXPECT_EQ(policy_of_new_thread(), SCHED_IDLE);
+    int policy = -1;
+    starter.run([&policy] { policy = policy_of_new_thread(); });
+    EXPECT_EQ(policy, SCHED_OTHER);
+  });
+  draws.join();
 }
 
 TEST(LiveLoopTest, ATickTakesNothingFromTheHeap) {

@@ -45,7 +45,7 @@ std::vector<std::string> device_lines(const DeviceView& view) {
             std::string(sample.state == DeviceState::kAbsent ? "none is plugged in" : "not ready")};
   }
   const VirtualCoupling& coupling = view.coupling;
-  return {fmt::format("device: {:.0f} Hz, measures {}", sample.rate, sensed_by(sample)),
+  return {fmt::format("held by a device: {:.0f} Hz", sample.rate), "measures " + sensed_by(sample),
           "displays " + actuated_text(sample.actuated),
           fmt::format("coupling {:.4g} N/m, up to {:.3g} N", coupling.stiffness,
                       coupling.largest_force),

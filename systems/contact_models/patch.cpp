@@ -18,8 +18,8 @@ namespace {
 // Of a region that begins or whose grid moved, at most: sweeps of either, of both in all rounds
 // together, and rounds of pressures and tractions in turn. What is left to do then is done in the
 // next steps, of which each has its own sweeps.
-constexpr std::uint32_t kSweepsAnew = 16;
-constexpr std::uint32_t kSweepsOfRounds = 24;
+constexpr std::uint32_t kSweepsAnew = 8;
+constexpr std::uint32_t kSweepsOfRounds = 12;
 constexpr std::uint32_t kRoundsAnew = 8;
 constexpr double kSkipAnew = 1e-5;      // the residual that will do then
 constexpr double kMostForesight = 1.5;  // of the last step's change

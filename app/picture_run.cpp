@@ -8,26 +8,13 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "app/round_up.hpp"
 #include "ecs/state_io.hpp"
 #include "render/auto_camera.hpp"
 #include "systems/surface_field.hpp"
 
 namespace torsion {
 namespace {
-
-/// The next of 1, 2, 5, 10, 20, ... times a power of ten.
-double rounded_up(double value) {
-  if (!(value > 0.0)) {
-    return 1.0;
-  }
-  const double power = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double step : {1.0, 2.0, 5.0}) {
-    if (value <= step * power * (1.0 + 1e-9)) {
-      return step * power;
-    }
-  }
-  return 10.0 * power;
-}
 
 /// In degrees a scale may also end at 15, 30, 45, 60, 90, 120 and 180.
 double rounded_angle(double radians) {
@@ -37,7 +24,7 @@ double rounded_angle(double radians) {
       return end * std::numbers::pi / 180.0;
     }
   }
-  return rounded_up(degrees) * std::numbers::pi / 180.0;
+  return round_up(degrees) * std::numbers::pi / 180.0;
 }
 
 /// What a picture says of a size on a scale: what is left of a sum of rounding errors is zero.
@@ -97,8 +84,8 @@ Result<PictureScales> find_scales(Session& session, std::uint64_t steps, std::ui
     return again.error();
   }
   world = std::move(again).value();
-  return PictureScales{rounded_angle(scales.twist), rounded_up(scales.pressure),
-                       rounded_up(scales.force), rounded_up(scales.torque)};
+  return PictureScales{rounded_angle(scales.twist), round_up(scales.pressure),
+                       round_up(scales.force), round_up(scales.torque)};
 }
 
 Result<Camera> choose_camera(const Session& session, const FrameWorld& frame,

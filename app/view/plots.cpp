@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/round_up.hpp"
+
 namespace torsion {
 namespace {
 
@@ -85,19 +87,6 @@ void draw_frame(ImDrawList& list, const ImVec2& corner, const ImVec2& size, cons
 }
 
 }  // namespace
-
-double round_up(double value) {
-  if (!(value > 0.0)) {
-    return 1.0;
-  }
-  const double power = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double step : {1.0, 2.0, 5.0}) {
-    if (value <= step * power * (1.0 + 1e-9)) {
-      return step * power;
-    }
-  }
-  return 10.0 * power;
-}
 
 void draw_plot(const PlotAxes& axes, std::span<const Curve> curves, float height) {
   const Span y_span = span_of(curves, axes);

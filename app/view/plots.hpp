@@ -28,7 +28,4 @@ struct PlotAxes {
 /// @param height  pixels
 void draw_plot(const PlotAxes& axes, std::span<const Curve> curves, float height);
 
-/// A round number at or above `value`: 1, 2, 5 times a power of ten.
-double round_up(double value);
-
 }  // namespace torsion

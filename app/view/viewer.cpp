@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "app/round_up.hpp"
 #include "app/view/panels.hpp"
-#include "app/view/plots.hpp"
 #include "render/auto_camera.hpp"
 #include "render/image_io.hpp"
 #include "systems/surface_field.hpp"

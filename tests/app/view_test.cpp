@@ -7,9 +7,9 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "app/round_up.hpp"
 #include "app/view/history.hpp"
 #include "app/view/orbit_camera.hpp"
-#include "app/view/plots.hpp"
 #include "app/view/scene_watch.hpp"
 #include "app/view/tool_drag.hpp"
 #include "tests/app/program.hpp"

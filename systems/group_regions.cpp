@@ -6,6 +6,7 @@
 #include "systems/fault.hpp"
 #include "systems/frames.hpp"
 #include "systems/region_grid.hpp"
+#include "systems/region_wrenches.hpp"
 #include "systems/scratch.hpp"
 
 namespace torsion {
@@ -47,7 +48,7 @@ void end_region(World& world, std::uint32_t region, std::uint32_t heir) {
     const RegionWrench& ended = world.regions.at<RegionWrench>(region);
     wrench.on_tool.force += ended.on_tool.force;
     wrench.on_tool.torque += ended.on_tool.torque;
-    wrench.event_now = 1;
+    wrench.event_now = static_cast<std::uint32_t>(RegionEvent::kTakesOver);
   }
 }
 
@@ -103,8 +104,9 @@ void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t c
     std::ranges::fill(world.patch_cells.rows<PatchChange>(cells), PatchChange{});
   }
   place_new_grid(context, row, {pair.points, cluster});
+  // on_tool is zero: what it exerts at birth fades in.
   world.regions.at<RegionWrench>(row).event_now =
-      1;  // on_tool is zero: what it exerts at birth fades in
+      static_cast<std::uint32_t>(RegionEvent::kTakesOver);
 }
 
 bool owns_cluster(const Scratch& scratch, std::uint32_t region) {
@@ -190,7 +192,8 @@ void note_splits(World& world, const Scratch& scratch, std::span<const ContactPo
     }
     for (const ClusterOwner& owner : scratch.owners) {
       if (owner.region != kNoRow && overlap_with(world, owner.region, point.position) >= 1.0) {
-        world.regions.at<RegionWrench>(owner.region).event_now = 1;
+        world.regions.at<RegionWrench>(owner.region).event_now =
+            static_cast<std::uint32_t>(RegionEvent::kTakesOver);
       }
     }
   }
@@ -202,7 +205,7 @@ void group_regions(StepContext& context) {
   World& world = context.world;
   Scratch& scratch = context.scratch;
   for (RegionWrench& wrench : world.regions.column<RegionWrench>()) {
-    wrench.event_now = 0;
+    wrench.event_now = static_cast<std::uint32_t>(RegionEvent::kNone);
   }
   for (const ContactPair& pair : scratch.pairs) {
     const std::span<const ContactPoint> points(scratch.points.data() + pair.points.first,

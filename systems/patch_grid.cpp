@@ -8,6 +8,7 @@
 #include "systems/contact_models/influence.hpp"
 #include "systems/frames.hpp"
 #include "systems/grid_cells.hpp"
+#include "systems/region_wrenches.hpp"
 
 namespace torsion {
 namespace {
@@ -285,7 +286,12 @@ void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints
   }
   const double depth = context.world.regions.at<RegionGeometry>(region).largest_depth;
   const glm::dvec3 origin = grid.frame.origin;
-  move_cells(grid, move_frame(grid, box), depth);
+  const CellMove move = move_frame(grid, box);
+  move_cells(grid, move, depth);
+  std::uint32_t& event = context.world.regions.at<RegionWrench>(region).event_now;
+  if (event == 0 && move.scale != glm::dvec2(1.0)) {
+    event = static_cast<std::uint32_t>(RegionEvent::kGridLaidAnew);
+  }
   // The material's motion is told at the grid's origin, which has moved.
   RegionCarrier& carrier = context.world.regions.at<RegionCarrier>(region);
   const double turn = glm::length(carrier.rotation);

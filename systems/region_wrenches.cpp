@@ -50,6 +50,28 @@ Wrench computed_wrench(const World& world, std::uint32_t region) {
   return {force_in_world, glm::cross(arm, force_in_world) + body.rotation * couple};
 }
 
+/// Lets out what an event changed little by little.
+/// @param faded  share that goes in this step
+void fade_event(RegionWrench& wrench, const Wrench& computed, double faded) {
+  const Wrench before = wrench.on_tool;
+  const auto event = static_cast<RegionEvent>(wrench.event_now);
+  if (event == RegionEvent::kTakesOver) {
+    wrench.event_change = before - computed;
+    wrench.event_share = 1.0;
+  } else if (event == RegionEvent::kGridLaidAnew && wrench.event_share == 0.0) {
+    // All that the last step does not foretell is the grid's. Of grids that follow upon each other
+    // within the fade, while a tool is pressed in fast, only the first: the force must not wait.
+    wrench.event_change = before + wrench.event_change - computed;
+    wrench.event_share = 1.0;
+  } else {
+    wrench.event_share = std::max(0.0, wrench.event_share - faded);
+  }
+  wrench.on_tool = computed + wrench.event_change * wrench.event_share;
+  if (wrench.event_share == 0.0) {
+    wrench.event_change = wrench.on_tool - before;
+  }
+}
+
 /// What the computed wrench of a tool becomes, given whether this step had a fault.
 void let_out(ToolWrench& wrench, const Wrench& computed, bool faulty, double dt) {
   if (faulty && wrench.state != WrenchState::kFalling) {
@@ -84,15 +106,8 @@ void region_wrenches(StepContext& context) {
   World& world = context.world;
   const double dt = world.clock.at<Clock>(0).dt;
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const Wrench computed = computed_wrench(world, region);
     RegionWrench& wrench = world.regions.at<RegionWrench>(region);
-    if (wrench.event_now != 0) {
-      wrench.event_change = wrench.on_tool - computed;
-      wrench.event_share = 1.0;
-    } else {
-      wrench.event_share = std::max(0.0, wrench.event_share - dt / kEventFade);
-    }
-    wrench.on_tool = computed + wrench.event_change * wrench.event_share;
+    fade_event(wrench, computed_wrench(world, region), dt / kEventFade);
   }
 }
 

@@ -181,10 +181,10 @@ struct AnchorTurns {
 /// Written by: region_wrenches.
 struct RegionWrench {
   Wrench on_tool;            // world, about the tool's mass centre, as let out
-  Wrench event_change;       // world: what birth, merge or split would have made jump; fades out
+  Wrench event_change;       // world: what an event would have made jump; none: the last change
   double event_share = 0.0;  // of event_change still let out: 1 at the event, 0 when faded
   std::uint32_t event_now =
-      0;  // 1: on_tool holds what this region takes over; group_regions sets it
+      0;  // a RegionEvent (region_wrenches.hpp); group_regions and region_grids set it
   std::uint32_t padding = 0;
 };
 

@@ -126,7 +126,8 @@ TEST_P(HalfSpaceContinuityTest, RegionsMeetAndPart) {
   expect_continuous(scene({{-0.008, 0.0, 0.0}, {0.008, 2e-5, 0.0}}), press, 2.0, 3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, HalfSpaceContinuityTest, testing::Values(ContactModel::kMdr, ContactModel::kPatch));
+INSTANTIATE_TEST_SUITE_P(Models, HalfSpaceContinuityTest,
+                         testing::Values(ContactModel::kMdr, ContactModel::kPatch));
 
 TEST(ContinuityTest, AxisEntersAndLeavesTheRegion) {
   // The tool's mass centre passes over the contact while it turns: the foot is not under the mass

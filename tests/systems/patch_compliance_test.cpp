@@ -112,6 +112,49 @@ TEST_P(PatchComplianceTest, ComesToRestAfterAnyMotion) {
   EXPECT_EQ(hand.clock().faults_ever, 0U);
 }
 
+/// Largest second difference of the force, N, of a motion in equal steps. Its first two steps do
+/// not count: what was before went another way.
+double largest_bend(Hand& hand, const glm::dvec3& way, double turn, int steps) {
+  glm::dvec3 before = hand.wrench().force;
+  glm::dvec3 added(0.0);
+  double worst = 0.0;
+  for (int k = 0; k < steps; ++k) {
+    hand.move(way / static_cast<double>(steps), kUp, turn / steps, 1);
+    const glm::dvec3 adds = hand.wrench().force - before;
+    worst = k > 1 ? std::max(worst, glm::distance(adds, added)) : 0.0;
+    before = hand.wrench().force;
+    added = adds;
+  }
+  return worst;
+}
+
+// Nothing rattles while the hand moves either: where it goes on as before, a step adds to the force
+// what the step before added, but for cells that come to slip or to touch. All of them together
+// change it by no more than what the contact alone, the stiffest part, makes of a step's motion: a
+// disc pressed in, 2 E* a (Johnson, Contact Mechanics, 1985, (3.36)); along and around it is
+// softer.
+TEST_P(PatchComplianceTest, AddsInAStepWhatTheStepBeforeAdded) {
+  const Ground& ground = GetParam().ground;
+  Hand hand = hand_over(ground, GetParam().side, 2);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  constexpr int kSteps = 50;
+  hand.move(glm::dvec3(0.0, -ground.depth, 0.0), kUp, 0.0, kSteps);
+  const double modulus = hand.world().bodies.at<Elasticity>(0).contact_modulus();
+  for (int leg = 0; leg < 3; ++leg) {
+    const glm::dvec3 way =
+        ground.depth * glm::dvec3(part(random), 0.3 * part(random), part(random));
+    const double turn = 0.3 * part(random);
+    // There and back, so that it stays on the body.
+    for (const double sign : {1.0, -1.0}) {
+      const double bend = largest_bend(hand, sign * way, sign * turn, kSteps);
+      const double radius = hand.world().regions.at<RegionGeometry>(0).radius;
+      const double step = (glm::length(way) + std::abs(turn) * radius) / kSteps;
+      EXPECT_LT(bend, 2.0 * modulus * radius * step) << leg << " " << sign;
+    }
+  }
+}
+
 // A step's sweeps are enough: twenty times as many press and turn to the same wrench.
 TEST_P(PatchComplianceTest, MoreSweepsEndAtTheSameWrench) {
   const Ground& ground = GetParam().ground;

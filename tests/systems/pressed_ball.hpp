@@ -81,9 +81,16 @@ class PressedBall {
   }
 
   // The exact contact at the present depth.
+  /// With the radius and the force of a sphere, which are not quite a paraboloid's: at a / R = 0.1
+  /// to 0.13 Hertz' torque is 0.2 to 0.3 % off, as much as 24 cells a side miss.
   [[nodiscard]] reference::HertzSphere hertz() const {
-    return reference::hertz_sphere_at_depth(
-        kBallRadius, 2.0 * kBallShearModulus / (1.0 - ball_.poisson), depth_);
+    const double modulus = 2.0 * kBallShearModulus / (1.0 - ball_.poisson);
+    reference::HertzSphere contact = reference::hertz_sphere_at_depth(kBallRadius, modulus, depth_);
+    const reference::SneddonSphere sphere =
+        reference::sneddon_sphere_at_depth(kBallRadius, modulus, depth_);
+    contact.force = sphere.force;
+    contact.radius = sphere.radius;
+    return contact;
   }
   [[nodiscard]] reference::LubkinContact lubkin() const {
     const reference::HertzSphere sphere = hertz();

@@ -13,6 +13,7 @@
 #include "systems/distance.hpp"
 #include "systems/frames.hpp"
 #include "systems/group_points.hpp"
+#include "systems/surface_piece.hpp"
 
 namespace torsion {
 namespace {
@@ -38,18 +39,31 @@ struct Touch {
   bool round = true;
 };
 
-/// The kind of that part of a tool on whose surface a point lies.
-ShapeKind kind_at(const World& world, Range parts, const glm::dvec3& point) {
-  ShapeKind kind = ShapeKind::kMesh;
+/// That part on whose surface a point of its owner's frame lies, or next to it.
+const ShapePart& part_at(const World& world, Range parts, const glm::dvec3& point) {
+  std::uint32_t at = parts.first;
   double nearest = 1e300;
   for (std::uint32_t row = parts.first; row < parts.first + parts.count; ++row) {
     const double distance = std::abs(signed_distance(world, {row, 1}, point).value);
     if (distance < nearest) {
       nearest = distance;
-      kind = world.parts.at<ShapePart>(row).kind;
+      at = row;
     }
   }
-  return kind;
+  return world.parts.at<ShapePart>(at);
+}
+
+/// Whether the body's surface has an edge nearer to `point` than the next sample, so that it cuts
+/// off what touches there.
+/// @param point    m, body
+/// @param spacing  m, of the samples
+bool near_edge(const ShapePart& part, const glm::dvec3& point, double spacing) {
+  if (part.kind != ShapeKind::kBox && part.kind != ShapeKind::kCylinder) {
+    return false;
+  }
+  const SurfacePiece piece = piece_at(part, to_inner(part.pose, point));
+  return std::ranges::any_of(
+      piece.ends(), [spacing](const PieceBorder& border) { return border.distance < spacing; });
 }
 
 bool makes_long_contacts(ShapeKind kind) {
@@ -71,9 +85,11 @@ void touch_with_tool(const World& world, std::uint32_t body, std::uint32_t tool,
         touch.depth = -distance.value;
         touch.normal = distance.gradient;
       }
-      const ShapeKind kind = kind_at(world, owned.parts, sample.position);
-      touch.smooth = touch.smooth && (kind == ShapeKind::kSphere || kind == ShapeKind::kEllipsoid ||
-                                      kind == ShapeKind::kCapsule);
+      const ShapeKind kind = part_at(world, owned.parts, sample.position).kind;
+      touch.smooth = touch.smooth &&
+                     !near_edge(part_at(world, parts, point), point, sample.spacing) &&
+                     (kind == ShapeKind::kSphere || kind == ShapeKind::kEllipsoid ||
+                      kind == ShapeKind::kCapsule);
       touch.round = touch.round && kind == ShapeKind::kSphere;
     }
   }

@@ -123,7 +123,7 @@ void deform_body(StepContext& context, std::uint32_t row) {
   find_couplings(body);
   std::array<StiffnessRoot, kMaxRegionsPerBody> roots;
   for (std::size_t i = 0; i < body.count; ++i) {
-    roots[i] = stiffness_root(body, footing_of(body, body.stands[i]));
+    roots[i] = stiffness_root(body, body.stands[i]);
   }
   const std::size_t size = 6 * body.count;
   const auto rows = static_cast<Eigen::Index>(size);

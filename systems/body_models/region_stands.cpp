@@ -13,6 +13,7 @@
 #include "systems/body_models/smooth_compliance.hpp"
 #include "systems/contact_models/layer_coupling.hpp"
 #include "systems/contact_models/layer_thickness.hpp"
+#include "systems/contact_models/stuck_stiffness.hpp"
 #include "systems/patch_grid.hpp"
 #include "systems/scratch.hpp"
 
@@ -27,44 +28,17 @@ Eigen::Vector3d eigen(const glm::dvec3& v) {
 /// and interpolation between ports could bring it below.
 constexpr double kStiffest = -0.75;
 
-/// Stiffness of a contact that sticks, about its point, along tangents and normal. Source: Johnson,
-/// 1985; Reissner & Sagoci, 1944.
-Vector6 contact_stiffness(double radius, const Elasticity& elasticity) {
-  const double g = elasticity.shear_modulus();
-  const double nu = elasticity.poisson_ratio;
-  const double a = radius;
-  const double drag = 8.0 * g * a / (2.0 - nu);
-  const double tilt = 8.0 * g * a * a * a / (3.0 * (1.0 - nu));
-  Vector6 stiffness;
-  stiffness << drag, drag, 4.0 * g * a / (1.0 - nu), tilt, tilt, 16.0 / 3.0 * g * a * a * a;
-  return stiffness;
-}
-
-/// From the body's axes to tangents and normal.
-Matrix6 to_contact(const Footing& footing) {
-  Eigen::Matrix3d rotation;
-  rotation << eigen(footing.tangent_x).transpose(), eigen(footing.tangent_y).transpose(),
-      eigen(footing.normal).transpose();
-  Matrix6 both = Matrix6::Zero();
-  both.topLeftCorner<3, 3>() = rotation;
-  both.bottomRightCorner<3, 3>() = rotation;
-  return both;
-}
-
 /// A symmetric compliance over the contact's own: eigenvalues and what makes them a compliance
 /// again.
 struct RelativeCompliance {
   Eigen::SelfAdjointEigenSolver<Matrix6> solver;
   Matrix6 back;
 
-  RelativeCompliance(const CompliantBody& body, const Footing& footing, const Matrix6& motion) {
-    const Vector6 root =
-        contact_stiffness(footing.radius, body.world.bodies.at<Elasticity>(body.row)).cwiseSqrt();
-    const Matrix6 axes = to_contact(footing);
-    const Matrix6 scaled =
-        root.asDiagonal() * (axes * motion * axes.transpose()) * root.asDiagonal();
+  RelativeCompliance(const CompliantBody& body, const Stand& stand, const Matrix6& motion) {
+    const StiffnessRoot root = stiffness_root(body, stand);
+    const Matrix6 scaled = root.root * motion * root.root;
     solver.compute(0.5 * (scaled + scaled.transpose()));
-    back = axes.transpose() * root.cwiseInverse().asDiagonal() * solver.eigenvectors();
+    back = root.inverse * solver.eigenvectors();
   }
   [[nodiscard]] Matrix6 at_least(double least) const {
     return back * solver.eigenvalues().cwiseMax(least).asDiagonal() * back.transpose();
@@ -74,8 +48,8 @@ struct RelativeCompliance {
 /// What a region's own wrench does to it: the part that yields goes to Newton's matrix. Where the
 /// rest of the body stiffens the half-space (a layer) Newton's method would overshoot as soon as
 /// the contact slips, and plain iteration converges.
-void find_own_motion(const CompliantBody& body, Footing& footing) {
-  const RelativeCompliance relative(body, footing, motion_between(body.ports, footing, footing));
+void find_own_motion(const CompliantBody& body, const Stand& stand, Footing& footing) {
+  const RelativeCompliance relative(body, stand, motion_between(body.ports, footing, footing));
   const double least = relative.solver.eigenvalues()[0];
   footing.share = std::min(1.0, kStiffest / std::min(least, -1e-300));
   footing.on_layer = 0;
@@ -84,15 +58,16 @@ void find_own_motion(const CompliantBody& body, Footing& footing) {
 
 /// On a layer the ports do not count: patch has what the half-space lacks in its own tables
 /// (layer_kernel.hpp), mdr is moved as one.
-void find_motion_on_layer(const CompliantBody& body, const ContactEllipse& contact,
-                          double thickness, bool has_tables, Footing& footing) {
+void find_motion_on_layer(const CompliantBody& body, const Stand& stand,
+                          const ContactEllipse& contact, double thickness, bool has_tables,
+                          Footing& footing) {
   footing.share = 0.0;
   footing.on_layer = 1;
   footing.own = {};
   if (!has_tables && has_layer_kernel(body.world, body.row)) {
     const Matrix6 motion = layer_motion(body.world, body.row, contact, thickness);
     Eigen::Map<Matrix6>(footing.own.data()) =
-        RelativeCompliance(body, footing, motion).at_least(kStiffest);
+        RelativeCompliance(body, stand, motion).at_least(kStiffest);
   }
 }
 
@@ -136,9 +111,9 @@ void lay(const CompliantBody& body, const Stand& stand, const ContactEllipse& co
   const double thickness = layer_thickness(world, body.row, contact.normal, contact.center);
   if (thickness > 0.0) {
     const RegionIdentity& identity = world.regions.at<RegionIdentity>(stand.region);
-    find_motion_on_layer(body, contact, thickness, has_patch(world, identity), footing);
+    find_motion_on_layer(body, stand, contact, thickness, has_patch(world, identity), footing);
   } else {
-    find_own_motion(body, footing);
+    find_own_motion(body, stand, footing);
   }
 }
 
@@ -240,10 +215,20 @@ Footing& footing_of(const CompliantBody& body, const Stand& stand) {
   return body.world.footings.at<Footing>(stand.block);
 }
 
-StiffnessRoot stiffness_root(const CompliantBody& body, const Footing& footing) {
-  const Vector6 root =
-      contact_stiffness(footing.radius, body.world.bodies.at<Elasticity>(body.row)).cwiseSqrt();
-  const Matrix6 axes = to_contact(footing);
+StiffnessRoot stiffness_root(const CompliantBody& body, const Stand& stand) {
+  const RegionFrame& frame = body.world.regions.at<RegionFrame>(stand.region);
+  const StuckStiffness stuck =
+      stuck_stiffness(body.world, stand.region, footing_of(body, stand).radius);
+  Vector6 root;
+  root << stuck.along_tangents, stuck.along_tangents, stuck.along_normal, stuck.about_tangents.x,
+      stuck.about_tangents.y, stuck.about_normal;
+  root = root.cwiseSqrt().eval();
+  Eigen::Matrix3d rotation;
+  rotation << eigen(frame.tangent_x).transpose(), eigen(frame.tangent_y).transpose(),
+      eigen(frame.normal).transpose();
+  Matrix6 axes = Matrix6::Zero();
+  axes.topLeftCorner<3, 3>() = rotation;
+  axes.bottomRightCorner<3, 3>() = rotation;
   return {axes.transpose() * root.asDiagonal() * axes,
           axes.transpose() * root.cwiseInverse().asDiagonal() * axes};
 }

@@ -35,7 +35,7 @@ struct StiffnessRoot {
   Matrix6 root;
   Matrix6 inverse;
 };
-StiffnessRoot stiffness_root(const CompliantBody& body, const Footing& footing);
+StiffnessRoot stiffness_root(const CompliantBody& body, const Stand& stand);
 
 /// So many couplings between regions are found anew in a step at most, for each body: all of one
 /// footing's.

@@ -85,6 +85,13 @@ double bonded_turn_share(double axes, double poisson_ratio) {
   return couple / (axes * square) / (16.0 / 3.0 * axes * std::sqrt(axes));
 }
 
+EllipseShares ellipse_shares(double axes) {
+  const EllipticIntegrals integrals = elliptic_integrals(1.0 - axes * axes);
+  const double stretch = 1.0 / std::sqrt(axes);  // a / sqrt(a b)
+  return {0.5 * std::numbers::pi / integrals.first * stretch,
+          2.0 / std::numbers::pi * integrals.second * stretch};
+}
+
 EllipticContact elliptic_contact(double depth, double curvature_1, double curvature_2) {
   const double small = 0.5 * std::min(curvature_1, curvature_2);
   const double large = 0.5 * std::max(curvature_1, curvature_2);
@@ -94,9 +101,7 @@ EllipticContact elliptic_contact(double depth, double curvature_1, double curvat
   // delta = p0 b K / E* and A + B = p0 E / (E* b).
   contact.minor = std::sqrt(depth * integrals.second / (integrals.first * (small + large)));
   contact.major = contact.minor / axes;
-  const double stretch = 1.0 / std::sqrt(axes);  // a / sqrt(a b)
-  contact.force_share = 0.5 * std::numbers::pi / integrals.first * stretch;
-  contact.torque_share = 2.0 / std::numbers::pi * integrals.second * stretch;
+  contact.shares = ellipse_shares(axes);
   return contact;
 }
 

@@ -12,15 +12,22 @@ struct EllipticIntegrals {
 };
 EllipticIntegrals elliptic_integrals(double m);
 
-struct EllipticContact {
-  double major = 0.0;  // a, m
-  double minor = 0.0;  // b, m
+/// What an ellipse is over a disc of equal area.
+struct EllipseShares {
   // Force over (4/3) E* sqrt(a b) depth, that of a round contact; likewise the normal stiffness of
   // a flat ellipse and, mean over all directions, the compliance of a sliding one (Mindlin, J.
   // Appl. Mech. 16 (1949) 259).
-  double force_share = 1.0;
-  double torque_share =
-      1.0;  // largest couple over (3 pi / 16) mu F sqrt(a b): from (3/8) mu F a E(m)
+  double force = 1.0;
+  double torque = 1.0;  // largest couple over (3 pi / 16) mu F sqrt(a b): from (3/8) mu F a E(m)
+};
+
+/// @param axes  b / a, 0 < axes <= 1
+EllipseShares ellipse_shares(double axes);
+
+struct EllipticContact {
+  double major = 0.0;  // a, m
+  double minor = 0.0;  // b, m
+  EllipseShares shares;
 };
 
 /// Couple over angle of a rigid ellipse bonded to a half-space, over (16/3) G (a b)^(3/2), that of

@@ -30,14 +30,13 @@ struct RoundContact {
 
 /// What does not depend on how the contact was found: stiffnesses of an ellipse that presses with
 /// `round_share` of Hertz' pressure.
-void set_stiffnesses(const EllipticContact& ellipse, double round_share, double poisson_ratio,
-                     RoundContact& contact) {
-  const double axes = ellipse.minor / ellipse.major;
+/// @param axes  b / a
+void set_stiffnesses(double axes, const EllipseShares& shares, double round_share,
+                     double poisson_ratio, RoundContact& contact) {
   contact.pressure.elongation = round_share * (1.0 - axes);
-  contact.slide_stiffness = std::lerp(1.0, ellipse.force_share, round_share);
-  contact.turn_stiffness =
-      axes < 1.0 ? std::lerp(1.0, bonded_turn_share(axes, poisson_ratio), round_share) : 1.0;
-  contact.torque_share = std::lerp(1.0, ellipse.torque_share, round_share);
+  contact.slide_stiffness = shares.force;
+  contact.turn_stiffness = axes < 1.0 ? bonded_turn_share(axes, poisson_ratio) : 1.0;
+  contact.torque_share = shares.torque;
 }
 
 /// Of shapes that are known: Hertz' ellipse, and as much less as their surfaces part beyond the
@@ -61,13 +60,16 @@ RoundContact contact_of_shapes(const SmoothContact& smooth, const Elasticity& el
   contact.depth = depth;
   contact.radius = radius * paraboloid;
   contact.force = 2.0 * elasticity.contact_modulus() * paraboloid * depth * radius *
-                  (1.0 - square / 3.0 - 0.2 * quartic * square * square) * ellipse.force_share;
-  set_stiffnesses(ellipse, 1.0, elasticity.poisson_ratio, contact);
+                  (1.0 - square / 3.0 - 0.2 * quartic * square * square) * ellipse.shares.force;
+  set_stiffnesses(ellipse.minor / ellipse.major, ellipse.shares, 1.0, elasticity.poisson_ratio,
+                  contact);
   return contact;
 }
 
-/// From the cells: a paraboloid's contact, cut off where the overlap ends before its own edge would
-/// be. The rest of the depth then presses like a flat punch.
+/// From the cells: a paraboloid's contact. Where the overlap ends before the contact's own edge
+/// would be, it ends there, and the rest of the depth presses like a flat stamp: a half-space gives
+/// way to a stamp by d at 2 E* a d, to a ball at (4/3) E* a d, and to a cylinder between two edges
+/// in between.
 RoundContact contact_of_cells(const World& world, std::uint32_t region,
                               const Elasticity& elasticity) {
   const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
@@ -82,20 +84,23 @@ RoundContact contact_of_cells(const World& world, std::uint32_t region,
   contact.center = shape.apex;
   contact.depth = shape.depth;
   const double overlap = std::sqrt(geometry.area / std::numbers::pi);
-  // So flat that the edge is out of reach in any case.
-  const double flattest = 1e-4 * shape.depth / (overlap * overlap);
-  const EllipticContact ellipse = elliptic_contact(
-      shape.depth, std::max(shape.curvature_1, flattest), std::max(shape.curvature_2, flattest));
-  const double round = std::sqrt(ellipse.major * ellipse.minor);
-  contact.radius = std::min(round, overlap);
-  const double round_share = contact.radius * contact.radius / (round * round);
-  const double modulus = elasticity.contact_modulus();
-  const double round_force = 4.0 / 3.0 * modulus * contact.radius * shape.depth * round_share *
-                             (1.0 + round_share * (ellipse.force_share - 1.0));
-  const double flat_force = 2.0 * modulus * contact.radius * shape.depth * (1.0 - round_share);
-  contact.force = round_force + flat_force;
-  contact.pressure.flat_share = flat_force / contact.force;
-  set_stiffnesses(ellipse, round_share, elasticity.poisson_ratio, contact);
+  // No paraboloid so flat that its contact would reach beyond the overlap.
+  const double least_1 = shape.depth / (shape.extent_1 * shape.extent_1);
+  const double least_2 = shape.depth / (shape.extent_2 * shape.extent_2);
+  const double bend_1 = std::max(shape.curvature_1, least_1);
+  const double bend_2 = std::max(shape.curvature_2, least_2);
+  const EllipticContact ellipse = elliptic_contact(shape.depth, bend_1, bend_2);
+  const double along = std::min(ellipse.major, bend_1 < bend_2 ? shape.extent_1 : shape.extent_2);
+  const double across = std::min(ellipse.minor, bend_1 < bend_2 ? shape.extent_2 : shape.extent_1);
+  contact.radius = std::min(std::sqrt(along * across), overlap);
+  // How much of each axis' curvature is the shapes' own.
+  const double round_share = 0.5 * (shape.curvature_1 / bend_1 + shape.curvature_2 / bend_2);
+  const double axes = std::clamp(across / along, 0.01, 1.0);
+  const EllipseShares shares = axes < 1.0 ? ellipse_shares(axes) : EllipseShares{};
+  const double of_stamp = 2.0 * elasticity.contact_modulus() * contact.radius * shape.depth;
+  contact.force = of_stamp * shares.force * (1.0 - round_share / 3.0);
+  contact.pressure.flat_share = (1.0 - round_share) / (1.0 - round_share / 3.0);
+  set_stiffnesses(axes, shares, round_share, elasticity.poisson_ratio, contact);
   return contact;
 }
 
@@ -233,7 +238,7 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
   state.kinetic_share *= 1.0 - travelled(std::max(path - forces.slipped, 0.0), inverse);
 
   normal.force = round.force;
-  normal.stiffness = 2.0 * elasticity.contact_modulus() * round.radius;
+  normal.stiffness = 2.0 * elasticity.contact_modulus() * round.radius * round.slide_stiffness;
   tangential.force = forces.force;
   tangential.couple = forces.couple;
   tangential.stick_share = forces.stick_share;

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <glm/geometric.hpp>
 
+#include "systems/contact_models/stuck_stiffness.hpp"
 #include "systems/frames.hpp"
 #include "systems/rotation_vector.hpp"
 
@@ -40,31 +41,22 @@ Matrix6 spring_about(const glm::dvec3& arm, const Eigen::Matrix3d& shifting,
   return stiffness;
 }
 
-/// Of one region that sticks: a disc bonded to a half-space. A long contact tilts the harder: the
-/// place of its force runs from end to end while the tool tilts by its depth over its length.
-/// Source: Johnson, 1985, 3.2 and 3.7; Reissner & Sagoci, 1944.
+/// Of one region that sticks, about the tool's mass centre.
 Matrix6 contact_stiffness(const World& world, std::uint32_t region, const glm::dvec3& center) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
   const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
-  const Pose& body = world.bodies.at<Pose>(identity.body);
-  const double g = elasticity.shear_modulus();
-  const double nu = elasticity.poisson_ratio;
-  const double a = geometry.radius;
+  const Pose& body = world.bodies.at<Pose>(world.regions.at<RegionIdentity>(region).body);
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const double along = world.regions.at<RegionNormal>(region).stiffness;
-  const double tilting = 8.0 / 3.0 * g * a * a * a / (1.0 - nu);
-  const glm::dvec2 half_square = frame.half_size * frame.half_size;
+  const StuckStiffness stuck = stuck_stiffness(world, region, geometry.radius);
   const Eigen::Vector3d axis = eigen(body.rotation * frame.normal);
   const Eigen::Vector3d x = eigen(body.rotation * frame.tangent_x);
   const Eigen::Vector3d y = eigen(body.rotation * frame.tangent_y);
   const Eigen::Matrix3d normal = axis * axis.transpose();
   const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - normal;
+  const double along = world.regions.at<RegionNormal>(region).stiffness;
   return spring_about(to_outer(body, geometry.equivalent_point) - center,
-                      along * normal + 8.0 * g * a / (2.0 - nu) * across,
-                      16.0 / 3.0 * g * a * a * a * normal +
-                          std::max(tilting, along * half_square.y) * (x * x.transpose()) +
-                          std::max(tilting, along * half_square.x) * (y * y.transpose()));
+                      along * normal + stuck.along_tangents * across,
+                      stuck.about_normal * normal + stuck.about_tangents.x * (x * x.transpose()) +
+                          stuck.about_tangents.y * (y * y.transpose()));
 }
 
 /// How much of a step to take that follows `last`, 1/4 to 1. A contact that is stiffer than its

@@ -86,6 +86,10 @@ TEST(ChooseModelsTest, ThePartThatTouchesCounts) {
   const PartDescription pin = test::make_part(ShapeKind::kCapsule, {0.02, 0.04, 0.02},
                                               {stays, glm::angleAxis(1.5708, glm::dvec3(0, 0, 1))});
   EXPECT_EQ(why(pin, stays), "auto: one smooth contact, error of mdr 2.5 %, tolerance 5 %");
+  // Longer than the cube's top of 0.1 m: its edges end the contact, which no paraboloid has.
+  const PartDescription bar = test::make_part(ShapeKind::kCapsule, {0.02, 0.08, 0.02},
+                                              {stays, glm::angleAxis(1.5708, glm::dvec3(0, 0, 1))});
+  EXPECT_EQ(why(bar, stays), "auto: a contact with edges or of a mesh, tolerance 5 %");
 }
 
 }  // namespace

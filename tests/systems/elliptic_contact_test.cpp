@@ -30,8 +30,8 @@ TEST(EllipticContactTest, ARoundContactIsHertzs) {
   const EllipticContact found = elliptic_contact(kDepth, 20.0, 20.0);
   EXPECT_NEAR(found.major / exact.radius, 1.0, 1e-14);
   EXPECT_NEAR(found.minor / exact.radius, 1.0, 1e-14);
-  EXPECT_NEAR(found.force_share, 1.0, 1e-14);
-  EXPECT_NEAR(found.torque_share, 1.0, 1e-14);
+  EXPECT_NEAR(found.shares.force, 1.0, 1e-14);
+  EXPECT_NEAR(found.shares.torque, 1.0, 1e-14);
 }
 
 TEST(EllipticContactTest, AxesForceAndLargestCoupleAreHertzs) {
@@ -47,13 +47,13 @@ TEST(EllipticContactTest, AxesForceAndLargestCoupleAreHertzs) {
       EXPECT_NEAR(found.major / exact.major, 1.0, 1e-6) << ratio;
       EXPECT_NEAR(found.minor / exact.minor, 1.0, 1e-6) << ratio;
       const double round = std::sqrt(found.major * found.minor);
-      EXPECT_NEAR(4.0 / 3.0 * kModulus * round * kDepth * found.force_share / exact.force, 1.0,
+      EXPECT_NEAR(4.0 / 3.0 * kModulus * round * kDepth * found.shares.force / exact.force, 1.0,
                   1e-6)
           << ratio;
       const double couple =
           reference::saturated_torque_ellipse(0.75, exact.force, exact.major, exact.parameter);
       const double of_round = 3.0 / 16.0 * std::numbers::pi * 0.75 * exact.force * round;
-      EXPECT_NEAR(of_round * found.torque_share / couple, 1.0, 1e-6) << ratio;
+      EXPECT_NEAR(of_round * found.shares.torque / couple, 1.0, 1e-6) << ratio;
     }
   }
 }

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+
+#include "ecs/world.hpp"
+
+namespace torsion {
+
+/// Against small motions of a tool, about a region's point and along its frame.
+struct StuckStiffness {
+  double along_tangents = 0.0;     // N/m
+  double along_normal = 0.0;       // N/m
+  glm::dvec2 about_tangents{0.0};  // N m/rad: about tangent_x, tangent_y
+  double about_normal = 0.0;       // N m/rad
+};
+
+/// Of a region that sticks: a rigid ellipse bonded to a half-space, about as long as its overlap
+/// says; Newton's method, for which this is, overshoots where this is half of what it should be,
+/// and the motions of tool and body then feed each other. Source: elliptic_contact.hpp; Johnson,
+/// 1985, 3.2 and 3.7, for the tilt of a disc.
+///
+/// A long contact tilts the harder, for the place of its force runs along it. A tilt by t moves the
+/// apex of a paraboloid of curvature k, and the force F with it, by t / k. Its overlap reaches
+/// h = sqrt(2 d / k) from the apex, d deep there, so F t / k = F t h^2 / (2 d); for a ball this is
+/// the bonded disc's. A flat contact's force goes to t 2 h^2 / (3 d) (contact_shape.hpp). Between
+/// the two: 0.6.
+/// @param radius  m, of the disc of equal area
+StuckStiffness stuck_stiffness(const World& world, std::uint32_t region, double radius);
+
+}  // namespace torsion

@@ -1,0 +1,38 @@
+#pragma once
+
+// A shipped scene in an emulated hand, with no hardware: what the device's thread runs, the step,
+// and the hand, one after the other.
+
+#include <cstdint>
+#include <string>
+
+#include "ecs/components.hpp"
+#include "tests/systems/emulated_hand.hpp"
+
+namespace torsion::test {
+
+struct LoopOutcome {
+  double force = 0.0;        // N: length of the mean over the last half of the hold
+  double ripple = 0.0;       // N: farthest from it
+  double torque = 0.0;       // N m
+  double turn_ripple = 0.0;  // N m
+  double most_gained = 0.0;  // J: the most that the motors had given to the hand at any time
+  double one_sample = 0.0;   // J: the most that they did in one sample
+  std::uint32_t faults = 0;
+};
+
+/// What is held, and with which models instead of those that the scene asks for.
+struct HeldScene {
+  std::string name;  // of a file in scenes/
+  ContactModel contact_model = ContactModel::kAuto;
+  BodyModel body_model = BodyModel::kAuto;
+};
+
+/// When the animation presses hardest, s.
+double hardest(const HeldScene& scene);
+
+/// The person follows the first tool's animation until the time `until`, and holds it there for
+/// `seconds`.
+LoopOutcome hold(const HeldScene& scene, const HandTraits& traits, double until, double seconds);
+
+}  // namespace torsion::test

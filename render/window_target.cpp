@@ -237,7 +237,7 @@ void WindowTarget::stretch(const Frame& frame) {
   copy_target_to_color_target(*frame.commands, window_image);
 }
 
-void WindowTarget::begin_panels(const Frame& frame) {
+void WindowTarget::begin_panels(const Frame& frame) const {
   to_color_target(*frame.commands, *panels_.handle);
 }
 

@@ -44,7 +44,7 @@ class WindowTarget final : public Target {
   /// Where those are that are to be drawn anew. @pre fit() was true
   void set_panels(std::span<const OverlayPanel> places);
   /// Before and after that.
-  void begin_panels(const Frame& frame);
+  void begin_panels(const Frame& frame) const;
   void end_panels(const Frame& frame);
   /// Of the scene's picture, what lies between panels from top to bottom of the window.
   [[nodiscard]] vk::Rect2D visible() const;

@@ -228,7 +228,7 @@ Result<Done> Viewer::take_reloaded() {
     return Done{};
   }
   state_.scene_error.clear();
-  const Result<Done> begun = begin(std::move(*reloaded_).value());
+  Result<Done> begun = begin(std::move(*reloaded_).value());
   if (begun) {
     say("the scene's file has changed: loaded anew");
   }
@@ -327,7 +327,7 @@ Result<Done> Viewer::frame() {
   session_->refresh();
   take_history();
   watch_scene();
-  if (const Result<Done> taken = take_reloaded(); !taken) {
+  if (Result<Done> taken = take_reloaded(); !taken) {
     return taken;
   }
   gui_->begin(input, now() - last_frame_);

@@ -23,6 +23,7 @@ constexpr double kSettle = 0.05;
 constexpr double kDeadline = 1000.0;  // us: later than that and a hand may feel it
 
 void take_sample(LiveTool& tool) {
+  tool.arrived = 0;
   if (tool.slot == nullptr || !tool.slot->sample.refresh()) {
     return;
   }
@@ -35,6 +36,9 @@ void take_sample(LiveTool& tool) {
     tool.coupling = choose_coupling(sample.traits).coupling;
     tool.last_handle = sample.pose;
   }
+  // A device's, and one for each step: it has about the steps' own rate.
+  const bool in_step = sample.epoch != 0 && sample.number == tool.sample + 1;
+  tool.arrived = in_step ? sample.time_ns : 0;
   tool.handle = sample.pose;
   tool.sample = sample.number;
 }
@@ -215,6 +219,11 @@ void step_and_tell(LiveLoop& loop, double late_us) {
   loop.statistics.overruns += 1e3 * step_us > static_cast<double>(loop.schedule.period) ? 1U : 0U;
   for (std::uint32_t row = 0; loop.wants_rows && row < poses.size(); ++row) {
     loop.statistics.lost_rows += loop.rows.push(live_row(loop, row, step_us, late_us)) ? 0U : 1U;
+  }
+  const auto led =
+      std::ranges::find_if(loop.tools, [](const LiveTool& tool) { return tool.arrived != 0; });
+  if (led != loop.tools.end()) {
+    follow_samples(loop.schedule, led->arrived);
   }
   loop.steps_left -= 1;
 }

@@ -34,9 +34,12 @@ struct LiveTool {
   VirtualCoupling coupling;
   PassivityLimits limits;  // of the device; as they are made, the controller adds nothing
   PassivityState books;
-  Pose handle;                    // of the last sample
-  Pose last_handle;               // at the step before
-  std::uint64_t sample = 0;       // its number; 0: there was none
+  Pose handle;               // of the last sample
+  Pose last_handle;          // at the step before
+  std::uint64_t sample = 0;  // its number; 0: there was none
+  // When the sample of this step arrived, if it is a device's and the next after the last step's;
+  // else 0.
+  Nanoseconds arrived = 0;
   std::uint32_t epoch = 0;        // of the device that it is from
   std::uint32_t still_steps = 0;  // for which a held tool stays where it is
 };

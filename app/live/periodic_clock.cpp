@@ -29,6 +29,17 @@ Nanoseconds begin_step(StepSchedule& schedule, Nanoseconds now) {
   return late;
 }
 
+void follow_samples(StepSchedule& schedule, Nanoseconds arrived) {
+  constexpr Nanoseconds kCatchUp = 16;      // steps: a sample's jitter counts that much less
+  constexpr Nanoseconds kLeastShare = 200;  // of a period, moved by in a step
+  const Nanoseconds period = schedule.period;
+  const Nanoseconds after = schedule.due - arrived - period / 10;
+  const Nanoseconds past = ((after % period) + period) % period;
+  const Nanoseconds off = past > period / 2 ? past - period : past;
+  const Nanoseconds most = period / kLeastShare;
+  schedule.due -= std::clamp(off / kCatchUp, -most, most);
+}
+
 void wait_until(Nanoseconds due, bool spin) {
   const Nanoseconds wake = due - (spin ? kSpin : 0);
   const timespec until{wake / kSecond, wake % kSecond};

@@ -23,6 +23,13 @@ struct StepSchedule {
 /// The next step begins at `now`: how late it is [ns, negative: early], and the schedule goes on.
 Nanoseconds begin_step(StepSchedule& schedule, Nanoseconds now);
 
+/// Lets the schedule drift, by at most 0.5 % of the time, so that steps begin a tenth of a period
+/// after the samples of a device of the same rate arrive: the answer is then ready when the next
+/// sample comes. Where both clocks run free, a step that is under way at that moment answers a
+/// whole period later.
+/// @param arrived  when the newest sample did
+void follow_samples(StepSchedule& schedule, Nanoseconds arrived);
+
 /// Sleeps until `due`; with `spin` the last bit of it awake, which takes the wake-up's own delay
 /// away at the cost of 6 % of a core at 1 kHz.
 void wait_until(Nanoseconds due, bool spin);

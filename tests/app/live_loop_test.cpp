@@ -3,6 +3,7 @@
 #include "app/live/live_loop.hpp"
 
 #include <chrono>
+#include <random>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -55,6 +56,35 @@ TEST(StepScheduleTest, MakesUpForFourPeriodsAndSkipsTheRest) {
   }
   EXPECT_EQ(made_up, 4);
   EXPECT_EQ(schedule.skipped, 6U);
+}
+
+TEST(StepScheduleTest, FollowsADevicesClockWithoutHurry) {
+  // A device 0.03 % slow or fast, in any phase to the steps at first; samples arrive up to 50 us
+  // late, as behind a frame of USB.
+  constexpr Nanoseconds kPeriod = 1'000'000;
+  std::minstd_rand random(1);
+  for (const Nanoseconds device : {kPeriod - 300, kPeriod + 300}) {
+    for (const Nanoseconds phase : {0, 90'000, 400'000, 700'000, 999'000}) {
+      StepSchedule schedule{kPeriod, 10 * kPeriod, 0};
+      Nanoseconds number = 0;
+      for (int step = 0; step < 2000; ++step) {
+        const Nanoseconds begun = schedule.due;
+        begin_step(schedule, begun);
+        number = (begun - phase) / device;  // of the newest sample
+        const Nanoseconds arrived =
+            phase + number * device + static_cast<Nanoseconds>(random() % 50'000);
+        if (arrived <= begun) {
+          follow_samples(schedule, arrived);
+        }
+        // No step is longer or shorter than the scheduler's own jitter makes it.
+        EXPECT_NEAR(static_cast<double>(schedule.due - begun), kPeriod, kPeriod / 200);
+        if (step > 500) {
+          // A tenth of a period after the sample, but for its jitter: far from the next one.
+          EXPECT_NEAR(static_cast<double>(begun - (phase + number * device)), 0.1 * kPeriod, 60e3);
+        }
+      }
+    }
+  }
 }
 
 /// The scheduling that a new thread of the calling thread has.

@@ -111,10 +111,10 @@ void draw_plot(const PlotAxes& axes, std::span<const Curve> curves, float height
   const auto write = [&](float x, float y, const std::string& text) {
     list.AddText(ImVec2(x, y), kText, text.c_str());
   };
-  write(at.x, corner.y - 2.0F, fmt::format("{:.3g}", y_span.high));
-  write(at.x, corner.y + size.y - line, fmt::format("{:.3g}", y_span.low));
-  write(corner.x, corner.y + size.y + 1.0F, fmt::format("{:.3g}", x_span.low));
-  const std::string right = fmt::format("{:.3g} {}", x_span.high, axes.x_title);
+  write(at.x, corner.y - 2.0F, fmt::format("{:.5g}", y_span.high));
+  write(at.x, corner.y + size.y - line, fmt::format("{:.5g}", y_span.low));
+  write(corner.x, corner.y + size.y + 1.0F, fmt::format("{:.5g}", x_span.low));
+  const std::string right = fmt::format("{:.5g} {}", x_span.high, axes.x_title);
   write(corner.x + size.x - ImGui::CalcTextSize(right.c_str()).x, corner.y + size.y + 1.0F, right);
   ImGui::Dummy(ImVec2(size.x, size.y + line + 4.0F));
 }

@@ -22,7 +22,6 @@ constexpr std::uint32_t kHeight = 720;
 constexpr double kFramePeriod = 1.0 / 60.0;  // s: no faster than that
 constexpr double kPanelPeriod = 0.1;         // s: between drawings of panels that nobody touches
 constexpr double kHiddenPeriod = 0.1;        // s: while nothing can be seen
-constexpr double kLookPeriod = 0.3;          // s: between looks at the scene's files
 constexpr double kSlowFrame = 1.0 / 28.0;    // s: over that the inner resolution goes down
 constexpr double kFastFrame = 1.0 / 50.0;    // s: under that it goes up
 constexpr double kSmallestShare = 0.4;
@@ -200,39 +199,6 @@ void Viewer::take_history() {
     missed_then_ = missed;
     missed_since_ = now();
   }
-}
-
-void Viewer::watch_scene() {
-  if (now() < next_look_ || reloader_.joinable()) {
-    return;
-  }
-  next_look_ = now() + kLookPeriod;
-  if (watch_->changed()) {
-    reloaded_done_ = false;
-    reloader_ = std::thread([this] {
-      constexpr bool kQuiet = true;
-      reloaded_ = open_session(options_.scene, options_.prepare, kQuiet);
-      reloaded_done_.store(true, std::memory_order_release);
-    });
-  }
-}
-
-/// Fails where the new scene can be read but not shown: then the one before it is gone.
-Result<Done> Viewer::take_reloaded() {
-  if (!reloader_.joinable() || !reloaded_done_.load(std::memory_order_acquire)) {
-    return Done{};
-  }
-  reloader_.join();
-  if (!*reloaded_) {
-    state_.scene_error = reloaded_->error().text;
-    return Done{};
-  }
-  state_.scene_error.clear();
-  Result<Done> begun = begin(std::move(*reloaded_).value());
-  if (begun) {
-    say("the scene's file has changed: loaded anew");
-  }
-  return begun;
 }
 
 /// Holds the frame rate by the inner resolution, in small steps with pauses between.

@@ -14,9 +14,11 @@ namespace torsion {
 namespace {
 
 constexpr double kInside = 1.0 + 1e-9;  // of a limit's square
-constexpr double kCalm = 0.6;    // of what is asked, where there is no telling how far to go: the
-                                 // local inverse asks for too much of what is smooth
-constexpr double kShort = 0.05;  // of a step: so bent that it leads nowhere
+// Of what is asked, where there is no telling how far to go: the local inverse asks for too much of
+// what is smooth, the more so the more cells lie across it.
+constexpr double kCalm = 0.6;
+constexpr double kCalmSide = 16.0;  // cells along a side, beyond which it is less
+constexpr double kShort = 0.05;     // of a step: so bent that it leads nowhere
 
 struct Inverses {
   LocalInverse x;
@@ -244,11 +246,13 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
   double before = 0.0;  // the residual's square, 0: no direction to keep
   double whole = problem.foreseen_traction;
   bool alone = false;
+  const double fewer = std::min(1.0, kCalmSide / static_cast<double>(tables.side));
+  const double calm = kCalm * fewer * fewer;
   while (outcome.sweeps < problem.sweeps) {
     Sweep sweep;
     sweep.square = ask(problem, inverses, cells, work);
     const double kept = before > 0.0 ? sweep.square / before : 0.0;
-    sweep.step = mix_tractions(cells, {outside ? kCalm : 1.0, kept});
+    sweep.step = mix_tractions(cells, {outside ? calm : 1.0, kept});
     if (!outside && (alone || sweep.step.slope <= 0.0)) {
       // Beside cells that slip the neighbours' share may lead uphill; each cell's own does not.
       ask_alone(inverses, cells);

@@ -132,7 +132,7 @@ SceneDescription ball_on_cube() {
 
 Hand::Hand(const SceneDescription& scene, const PrepareOptions& options) {
   PrepareOptions here = options;
-  here.use_cache = has_test_cache();
+  here.use_cache = options.use_cache && has_test_cache();
   Result<Simulation> prepared = prepare(scene, here);
   if (!prepared) {
     throw std::runtime_error(prepared.error().text);

@@ -256,6 +256,7 @@ TEST(ComplianceTest, SaysHowFarItIsWhileItIsFound) {
   scene.bodies.push_back(scene.bodies.front());
   std::vector<double> shares;
   PrepareOptions options;
+  options.use_cache = false;
   options.progress = [&shares](double share) {
     shares.push_back(share);
   };

@@ -88,6 +88,35 @@ TEST_P(BallTest, SlideAndWayBackFollowCattaneoAndMindlin) {
   }
 }
 
+TEST(PatchManyCellsTest, TwoSweepsStayCalmWhereSlipTurnsBack) {
+  // Nearly everything slips, then all sticks again: tractions that were foreseen outside their
+  // discs come back into them, in steps that must not overshoot the more the more cells there are.
+  // 1 %: the staircase of the rim at 24 cells and more, 0.4 %, on its way back.
+  for (const std::uint32_t side : {24U, 32U}) {
+    PressedBall ball({.side = side, .sweeps = 2});
+    ball.press(kBallDepth, 600);
+    const reference::CattaneoMindlin exact = ball.mindlin();
+    const double limit = reference::full_slip_force(exact);
+    const double top = 0.95 * reference::full_slip_displacement(exact);
+    constexpr int kSteps = 560;
+    const auto slide = [&](double way, int steps, const auto& force_at) {
+      for (int step = 1; step <= steps; ++step) {
+        ball.slide({way / steps, 0.0}, 1);
+        ASSERT_NEAR(-ball.friction().x, force_at(static_cast<double>(step) / steps), 0.01 * limit)
+            << side << " " << step;
+      }
+    };
+    slide(top, kSteps,
+          [&](double share) { return reference::tangential_force(exact, share * top); });
+    slide(-2.0 * top, 2 * kSteps, [&](double share) {
+      return reference::tangential_force_after_turn(exact, top, top - 2.0 * share * top);
+    });
+    slide(2.0 * top, 2 * kSteps, [&](double share) {
+      return -reference::tangential_force_after_turn(exact, top, top - 2.0 * share * top);
+    });
+  }
+}
+
 /// A place on a path: of kBallDepth and of the natural turn and slide there.
 struct Leg {
   double depth = 0.0;

@@ -226,8 +226,8 @@ void mix_ways(std::size_t count, const Mix& mix, const double* __restrict tracti
     const double square = from_x * from_x + from_y * from_y;
     const bool outside = square > limit * limit;
     const double scale = limit / std::sqrt(larger(square, kLeast));
-    const double to_x = slip | outside ? from_x * scale : from_x;
-    const double to_y = slip | outside ? from_y * scale : from_y;
+    const double to_x = (slip | outside) ? from_x * scale : from_x;
+    const double to_y = (slip | outside) ? from_y * scale : from_y;
     step_x[k] = to_x - traction_x[k];
     step_y[k] = to_y - traction_y[k];
     clips[k] = outside ? 1.0 : 0.0;

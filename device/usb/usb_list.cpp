@@ -56,7 +56,8 @@ std::string holder_of(const UsbIdentity& identity) {
   for (const fs::directory_entry& process : fs::directory_iterator("/proc", error)) {
     std::error_code hidden;
     for (const fs::directory_entry& file : fs::directory_iterator(process.path() / "fd", hidden)) {
-      if (fs::read_symlink(file.path(), hidden) != node || hidden) {
+      // A container may have the nodes elsewhere: only the end of the path is the device's.
+      if (!fs::read_symlink(file.path(), hidden).string().ends_with(node) || hidden) {
         continue;
       }
       std::string name;

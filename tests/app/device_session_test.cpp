@@ -69,7 +69,7 @@ TEST(DeviceSessionTest, AListedFalconIsUsableAndItsDriverIsNamed) {
   ASSERT_EQ(listed.value().size(), 1U);
   EXPECT_EQ(listed.value()[0].kind, DeviceKind::kFalcon);
   EXPECT_EQ(listed.value()[0].access, DeviceTrouble::kNone);
-  EXPECT_EQ(listed.value()[0].kernel_drivers.size(), 1U);
+  EXPECT_EQ(listed.value()[0].kernel_drivers, std::vector<std::string>{"ftdi_sio"});
 }
 
 TEST(DeviceSessionTest, TheMotorsFeelTheBodyAndNothingOnceItIsPulledOut) {

@@ -1,5 +1,6 @@
 #include "tests/app/program.hpp"
 
+#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -13,12 +14,10 @@
 
 namespace torsion::test {
 
-Ran run_torsion(const std::vector<std::string>& words) {
-  const Folder folder;
-  const std::string out = folder / "out";
-  const std::string err = folder / "err";
-  std::vector<std::string> all = {build_folder() + "/torsion"};
-  all.insert(all.end(), words.begin(), words.end());
+Process::Process(const std::vector<std::string>& words) {
+  const std::string out = folder_ / "out";
+  const std::string err = folder_ / "err";
+  std::vector<std::string> all = words;
   std::vector<char*> arguments;
   arguments.reserve(all.size() + 1);
   for (std::string& word : all) {
@@ -30,17 +29,40 @@ Ran run_torsion(const std::vector<std::string>& words) {
   constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC;
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), kFlags, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), kFlags, 0600);
-  pid_t process = 0;
   const int failed =
-      ::posix_spawn(&process, all[0].c_str(), &actions, nullptr, arguments.data(), environ);
+      ::posix_spawnp(&id_, all[0].c_str(), &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) {
     throw std::runtime_error("cannot run " + all[0]);
   }
+}
+
+Process::~Process() {
+  if (id_ != 0) {
+    send(SIGKILL);
+    wait();
+  }
+}
+
+void Process::send(int signal) const {
+  ::kill(id_, signal);
+}
+
+Ran Process::wait() {
   int status = 0;
-  ::waitpid(process, &status, 0);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), read_text(out),
-          read_text(err)};
+  ::waitpid(id_, &status, 0);
+  id_ = 0;
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), read_text(folder_ / "out"),
+          read_text(folder_ / "err")};
+}
+
+std::vector<std::string> torsion(std::vector<std::string> words) {
+  words.insert(words.begin(), build_folder() + "/torsion");
+  return words;
+}
+
+Ran run_torsion(const std::vector<std::string>& words) {
+  return Process(torsion(words)).wait();
 }
 
 std::string scene(const std::string& name) {

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <sys/types.h>
+
 namespace torsion::test {
 
 /// What a run of the program torsion left.
@@ -12,9 +14,6 @@ struct Ran {
   std::string out;
   std::string err;
 };
-
-/// Runs the built program with these words.
-Ran run_torsion(const std::vector<std::string>& words);
 
 /// A shipped scene.
 std::string scene(const std::string& name);
@@ -37,6 +36,32 @@ class Folder {
  private:
   std::filesystem::path path_;
 };
+
+/// A program that runs beside the test. Ends with the object, however that goes.
+class Process {
+ public:
+  /// @param words  the program's path and what it is told
+  explicit Process(const std::vector<std::string>& words);
+  ~Process();
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+  Process(Process&&) = delete;
+  Process& operator=(Process&&) = delete;
+
+  void send(int signal) const;
+  /// Waits until it ends.
+  Ran wait();
+
+ private:
+  Folder folder_;
+  pid_t id_ = 0;  // 0: it has ended
+};
+
+/// The words of the built program with these behind it.
+std::vector<std::string> torsion(std::vector<std::string> words);
+
+/// Runs the built program with these words.
+Ran run_torsion(const std::vector<std::string>& words);
 
 std::string read_text(const std::string& path);
 void write_text(const std::string& path, const std::string& text);

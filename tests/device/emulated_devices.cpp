@@ -80,6 +80,7 @@ Buffer told(EmulatedFalcon& device, Bytes packet) {
   if (device.baud != kFalconBaud || packet.size() != kFalconPacket) {
     return {};
   }
+  device.packets += 1;
   for (std::size_t motor = 0; motor < 3; ++motor) {
     device.motors[motor] = nibbles_at(packet, 1 + 4 * motor);
   }

@@ -31,7 +31,8 @@ struct EmulatedFalcon {
   Buffer firmware;                       // as it arrived
   std::size_t firmware_size = 0;         // how long it is to be
   bool echoes_wrongly = false;
-  std::uint32_t baud = 0;  // divisor
+  std::uint32_t baud = 0;     // divisor
+  std::uint64_t packets = 0;  // told so far
 };
 
 struct EmulatedWooden {

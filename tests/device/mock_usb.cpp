@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 // usbdevice_fs.h uses what ioctl.h defines.
 #include <linux/ioctl.h>
 #include <linux/usbdevice_fs.h>
@@ -14,6 +16,11 @@ namespace torsion::test {
 namespace {
 
 constexpr std::size_t kSetupSize = 8;
+
+std::string root_of(UMockdevTestbed* bed) {
+  const std::unique_ptr<char, decltype(&g_free)> root(umockdev_testbed_get_root_dir(bed), g_free);
+  return root.get();
+}
 
 gboolean complete(UMockdevIoctlClient* client, int result, int error) {
   umockdev_ioctl_client_complete(client, result, error);
@@ -26,6 +33,15 @@ gboolean granted(UMockdevIoctlClient* client) {
 
 gboolean refused(UMockdevIoctlClient* client, int error) {
   return complete(client, -1, error);
+}
+
+/// The interface that a request names first.
+unsigned interface_in(UMockdevIoctlData* argument) {
+  const std::unique_ptr<UMockdevIoctlData, decltype(&g_object_unref)> data(
+      umockdev_ioctl_data_resolve(argument, 0, sizeof(unsigned), nullptr), g_object_unref);
+  unsigned interface = 0;
+  std::memcpy(&interface, data->data, sizeof interface);
+  return interface;
 }
 
 UsbSetup setup_of(const std::uint8_t* bytes) {
@@ -43,6 +59,7 @@ MockDevice::MockDevice(UMockdevTestbed* bed, int number, EmulatedDevice device, 
       number_(number),
       node_(fmt::format("/dev/bus/usb/001/{:03}", number)),
       sysfs_(fmt::format("/sys/devices/usb1/1-{}", number)),
+      root_(root_of(bed)),
       device_(std::move(device)),
       own_driver_(std::move(driver)) {
   g_signal_connect(handler_, "handle-ioctl", G_CALLBACK(&MockDevice::on_ioctl), this);
@@ -81,18 +98,43 @@ void MockDevice::plug() {
       "H: descriptors={2}\n",
       sysfs_.substr(4), number_, hex);
   umockdev_testbed_add_from_string(bed_, description.c_str(), nullptr);
+  for (const UsbInterface& interface : identity_of(device_).interfaces) {
+    const std::string part = fmt::format(
+        "P: {}/1-{}:1.{}\nE: SUBSYSTEM=usb\n"
+        "E: DEVTYPE=usb_interface\n",
+        sysfs_.substr(4), number_, interface.number);
+    umockdev_testbed_add_from_string(bed_, part.c_str(), nullptr);
+    show_driver(interface.number, own_driver_);
+  }
+}
+
+/// As the kernel's sysfs does. @param driver  empty: none
+void MockDevice::show_driver(unsigned interface, const std::string& driver) const {
+  namespace fs = std::filesystem;
+  const fs::path link = fmt::format("{}{}/1-{}:1.{}/driver", root_, sysfs_, number_, interface);
+  std::error_code ignored;
+  fs::remove(link, ignored);
+  if (!driver.empty()) {
+    fs::create_symlink("../../../../bus/usb/drivers/" + driver, link, ignored);
+  }
 }
 
 void MockDevice::unplug() {
   {
     const std::lock_guard lock(mutex_);
     gone_ = true;
+    claims_.clear();
     while (!reads_.empty()) {  // the kernel gives all back; POLLERR does not come here
       finish(std::move(reads_.front()), -ESHUTDOWN);
       reads_.pop_front();
     }
   }
   umockdev_testbed_uevent(bed_, sysfs_.c_str(), "remove");
+  for (const UsbInterface& interface : identity_of(device_).interfaces) {
+    show_driver(interface.number, "");
+    umockdev_testbed_remove_device(
+        bed_, fmt::format("{}/1-{}:1.{}", sysfs_, number_, interface.number).c_str());
+  }
   umockdev_testbed_remove_device(bed_, sysfs_.c_str());
 }
 
@@ -113,6 +155,11 @@ void MockDevice::refuse_claims(int error) {
   refused_ = error;
 }
 
+void MockDevice::close_node() {
+  constexpr mode_t kMarksACharacterDevice = S_ISVTX;  // to umockdev
+  ::chmod((root_ + node_).c_str(), kMarksACharacterDevice);
+}
+
 bool MockDevice::without_force() {
   const std::lock_guard lock(mutex_);
   return test::without_force(device_);
@@ -120,7 +167,7 @@ bool MockDevice::without_force() {
 
 bool MockDevice::kernel_has_it() {
   const std::lock_guard lock(mutex_);
-  return driver_ == own_driver_;
+  return driver_ == own_driver_ && claims_.empty();
 }
 
 int MockDevice::clears() {
@@ -138,6 +185,7 @@ void MockDevice::on_vanished(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* c
   auto& device = *static_cast<MockDevice*>(self);
   const std::lock_guard lock(device.mutex_);
   device.done_.erase(client);
+  std::erase_if(device.claims_, [client](const auto& claim) { return claim.second == client; });
   std::erase_if(device.reads_, [client](const Urb& urb) { return urb.client == client; });
 }
 
@@ -160,16 +208,8 @@ gboolean MockDevice::answer(UMockdevIoctlClient* client) {
       std::memcpy(data->data, &capabilities, sizeof capabilities);
       return granted(client);
     }
-    case USBDEVFS_GETDRIVER: {
-      if (driver_.empty()) {
-        return refused(client, ENODATA);
-      }
-      const Data data(
-          umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_getdriver), nullptr));
-      auto* out = reinterpret_cast<usbdevfs_getdriver*>(data->data);
-      std::snprintf(out->driver, sizeof out->driver, "%s", driver_.c_str());
-      return granted(client);
-    }
+    case USBDEVFS_GETDRIVER:
+      return driver(client, argument);
     case USBDEVFS_IOCTL: {
       const Data data(umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_ioctl), nullptr));
       const auto* in = reinterpret_cast<const usbdevfs_ioctl*>(data->data);
@@ -178,15 +218,15 @@ gboolean MockDevice::answer(UMockdevIoctlClient* client) {
         return refused(client, ENODATA);
       }
       driver_ = detaches ? "" : own_driver_;
+      show_driver(static_cast<unsigned>(in->ifno), driver_);
       return granted(client);
     }
     case USBDEVFS_DISCONNECT_CLAIM:
-      return claim(client, true);
+      return claim(client, argument, true);
     case USBDEVFS_CLAIMINTERFACE:
-      return claim(client, false);
+      return claim(client, argument, false);
     case USBDEVFS_RELEASEINTERFACE:
-      driver_ = driver_ == "usbfs" ? "" : driver_;
-      return granted(client);
+      return release(client, argument);
     case USBDEVFS_CLEAR_HALT:
       clears_ += 1;
       return granted(client);
@@ -202,14 +242,40 @@ gboolean MockDevice::answer(UMockdevIoctlClient* client) {
   }
 }
 
-gboolean MockDevice::claim(UMockdevIoctlClient* client, bool disconnect) {
+gboolean MockDevice::driver(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
+  const bool claimed = claims_.contains(interface_in(argument));
+  if (!claimed && driver_.empty()) {
+    return refused(client, ENODATA);
+  }
+  const Data data(umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_getdriver), nullptr));
+  auto* out = reinterpret_cast<usbdevfs_getdriver*>(data->data);
+  std::snprintf(out->driver, sizeof out->driver, "%s", claimed ? "usbfs" : driver_.c_str());
+  return granted(client);
+}
+
+gboolean MockDevice::claim(UMockdevIoctlClient* client, UMockdevIoctlData* argument,
+                           bool disconnect) {
   if (refused_ != 0) {
     return refused(client, refused_);
   }
-  if (!disconnect && !driver_.empty() && driver_ != "usbfs") {
+  const unsigned interface = interface_in(argument);
+  const auto held = claims_.find(interface);
+  if ((held != claims_.end() && held->second != client) || (!disconnect && !driver_.empty())) {
     return refused(client, EBUSY);
   }
-  driver_ = "usbfs";
+  driver_.clear();
+  claims_[interface] = client;
+  show_driver(interface, "usbfs");
+  return granted(client);
+}
+
+gboolean MockDevice::release(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
+  const auto held = claims_.find(interface_in(argument));
+  if (held == claims_.end() || held->second != client) {
+    return refused(client, EINVAL);
+  }
+  show_driver(held->first, "");
+  claims_.erase(held);
   return granted(client);
 }
 

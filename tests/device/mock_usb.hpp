@@ -36,8 +36,10 @@ class MockDevice {
   void send(const Buffer& packet);
   /// The next read ends with this, as the kernel says it: -EPIPE, -EOVERFLOW, -EPROTO.
   void fail_next_read(int status);
-  /// Claims end with this errno; 0: they are granted.
+  /// Claims end with this errno; 0: they are granted, but of what another open file has.
   void refuse_claims(int error);
+  /// Nobody but who may open everything may open its node. @pre it is plugged in
+  void close_node();
 
   /// f(device) while no packet is on its way.
   template <class T, class F>
@@ -71,19 +73,24 @@ class MockDevice {
   gboolean submit(UMockdevIoctlClient* client, UMockdevIoctlData* argument);
   gboolean reap(UMockdevIoctlClient* client, UMockdevIoctlData* argument);
   gboolean discard(UMockdevIoctlClient* client, UMockdevIoctlData* argument);
-  gboolean claim(UMockdevIoctlClient* client, bool disconnect);
+  gboolean driver(UMockdevIoctlClient* client, UMockdevIoctlData* argument);
+  gboolean claim(UMockdevIoctlClient* client, UMockdevIoctlData* argument, bool disconnect);
+  gboolean release(UMockdevIoctlClient* client, UMockdevIoctlData* argument);
   void finish(Urb urb, int status, Buffer bytes = {});
   void match();
+  void show_driver(unsigned interface, const std::string& driver) const;
 
   UMockdevTestbed* bed_;
   UMockdevIoctlBase* handler_;
   int number_;
   std::string node_;
   std::string sysfs_;
+  std::string root_;  // of the emulated /dev and /sys
   std::mutex mutex_;
   EmulatedDevice device_;
   const std::string own_driver_;
   std::string driver_;
+  std::map<unsigned, UMockdevIoctlClient*> claims_;  // of an interface, by an open file
   bool gone_ = true;
   bool bound_ = false;
   int refused_ = 0;

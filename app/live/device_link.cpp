@@ -94,6 +94,7 @@ Result<std::unique_ptr<DeviceLink>> DeviceLink::open(const DeviceChoice& choice,
   }
   auto link = std::make_unique<DeviceLink>(tool);
   link->firmware_ = std::move(firmware).value();
+  link->side_.limits.longest_silence = choice.longest_silence;
   UsbBusOptions options;
   options.loop.kinds = kinds.value();
   options.loop.twist_axis = tool.rotation * glm::dvec3(0.0, 1.0, 0.0);

@@ -20,6 +20,8 @@ struct DeviceChoice {
   std::filesystem::path falcon_firmware;  // empty: in the user's data folder, if there
   double largest_knob_torque = 0.2;       // N m
   TurnButtons turn_buttons;               // of a device that senses no turn
+  // s: without a result of the physics, then the force falls
+  double longest_silence = GuardLimits{}.longest_silence;
 };
 
 /// What the device's thread shows of itself.

@@ -169,7 +169,7 @@ struct UsbBus::State {
     execute(port, requests);
   }
 
-  void closed(UsbPort& port) {
+  static void closed(UsbPort& port) {
     free_transfers(port);
     libusb_unref_device(port.device);
     port.device = nullptr;
@@ -337,6 +337,12 @@ UsbBus::~UsbBus() {
     // The system may still write into these buffers: they stay until the program ends.
     static_cast<void>(state_.release());
     return;
+  }
+  for (UsbPort& port : state_->ports) {
+    if (port.state != UsbPortState::kFree) {  // the thread gave up before it was closed
+      close_handle(port);
+      State::closed(port);
+    }
   }
   libusb_exit(state_->context);
 }

@@ -49,14 +49,7 @@ UsbStatus do_job(const KeeperJob& job, const std::function<bool(const UsbIdentit
     case KeeperTask::kOpen:
       return open(port, wanted);
     case KeeperTask::kClose:
-      if (port.handle != nullptr) {
-        for (const UsbInterface& interface : port.identity.interfaces) {
-          // Those never claimed and those of a device that has gone say so: no matter.
-          libusb_release_interface(port.handle, interface.number);
-        }
-        libusb_close(port.handle);
-        port.handle = nullptr;
-      }
+      close_handle(port);
       return UsbStatus::kCompleted;
     case KeeperTask::kClaim:
       return claim(port.handle, job.request.interface);

@@ -95,6 +95,18 @@ void free_transfers(UsbPort& port) {
   }
 }
 
+void close_handle(UsbPort& port) {
+  if (port.handle == nullptr) {
+    return;
+  }
+  for (const UsbInterface& interface : port.identity.interfaces) {
+    // Those never claimed and those of a device that has gone say so: no matter.
+    libusb_release_interface(port.handle, interface.number);
+  }
+  libusb_close(port.handle);
+  port.handle = nullptr;
+}
+
 bool submit(UsbPort& port, const UsbRequest& request) {
   auto* const free = std::ranges::find(port.pool, false, &UsbTransfer::under_way);
   if (free == port.pool.end()) {

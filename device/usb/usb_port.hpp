@@ -65,6 +65,9 @@ void prepare_port(UsbPort& port, void (*on_end)(libusb_transfer*));
 /// Before the device is let go of: libusb looks at it once more. @pre none is under way
 void free_transfers(UsbPort& port);
 
+/// Gives the interfaces back and closes, if it is open. May block.
+void close_handle(UsbPort& port);
+
 /// Submits a read, write or control. What is not taken goes to `refused`.
 /// @return false when the device has gone
 bool submit(UsbPort& port, const UsbRequest& request);

@@ -68,6 +68,10 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
   outcome.distance = glm::length(outcome.handle.position - tool.position);
   input.distance = outcome.distance;
   outcome.wrench = guard_output(side.guard, side.limits, input, period);
+  if (sample.state == DeviceState::kAbsent) {  // nothing displays what falls
+    side.guard = {};
+    outcome.wrench = {};
+  }
   outcome.holds = live && side.guard.state != GuardState::kWaiting;
   side.last = outcome.handle;
   side.last_time = now;

@@ -19,6 +19,10 @@ inline void memory_barrier(const vk::raii::CommandBuffer& commands,
       vk::DependencyInfo{.memoryBarrierCount = 1, .pMemoryBarriers = &barrier});
 }
 
+/// Rows of a column, as texels or from storage.
+inline constexpr vk::AccessFlags2 kReadsRows =
+    Access::eShaderSampledRead | Access::eShaderStorageRead;
+
 /// What a pass does with an image: where, how, and in which layout.
 struct ImageUse {
   vk::PipelineStageFlags2 stages;
@@ -88,7 +92,7 @@ inline void copies_to_frame(const vk::raii::CommandBuffer& commands) {
                                .srcAccessMask = Access::eTransferWrite,
                                .dstStageMask = Stage::eComputeShader | Stage::eVertexInput |
                                                Stage::eVertexShader | Stage::eFragmentShader,
-                               .dstAccessMask = Access::eShaderStorageRead | Access::eUniformRead |
+                               .dstAccessMask = kReadsRows | Access::eUniformRead |
                                                 Access::eVertexAttributeRead | Access::eIndexRead,
                            });
 }
@@ -110,7 +114,7 @@ inline void compute_to_compute(const vk::raii::CommandBuffer& commands) {
                                .srcStageMask = Stage::eComputeShader,
                                .srcAccessMask = Access::eShaderStorageWrite,
                                .dstStageMask = Stage::eComputeShader,
-                               .dstAccessMask = Access::eShaderStorageRead,
+                               .dstAccessMask = kReadsRows,
                            });
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include "render/barriers.hpp"
@@ -8,16 +9,22 @@ namespace {
 
 using Commands = vk::raii::CommandBuffer;
 
-void push_storage(const Commands& commands, const FrameInputs& inputs,
-                  const std::array<vk::DescriptorBufferInfo, kComputeBindings>& buffers) {
-  // Bindings follow one another, so one write fills them all.
-  const vk::WriteDescriptorSet write{
-      .descriptorCount = kComputeBindings,
-      .descriptorType = vk::DescriptorType::eStorageBuffer,
-      .pBufferInfo = buffers.data(),
-  };
+void push_rows(const Commands& commands, const FrameInputs& inputs,
+               const std::array<vk::DescriptorBufferInfo, kStorageBindings>& buffers,
+               const std::array<vk::BufferView, kTexelBindings>& texels) {
+  // Bindings of a kind follow one another, so one write fills them all.
+  const std::array<vk::WriteDescriptorSet, 2> writes = {{
+      {.dstBinding = 0,
+       .descriptorCount = kStorageBindings,
+       .descriptorType = vk::DescriptorType::eStorageBuffer,
+       .pBufferInfo = buffers.data()},
+      {.dstBinding = kStorageBindings,
+       .descriptorCount = kTexelBindings,
+       .descriptorType = vk::DescriptorType::eUniformTexelBuffer,
+       .pTexelBufferView = texels.data()},
+  }};
   commands.pushDescriptorSetKHR(vk::PipelineBindPoint::eCompute, *inputs.pipelines.compute_layout,
-                                0, write);
+                                0, writes);
 }
 
 void dispatch_rows(const Commands& commands, std::uint32_t rows) {
@@ -40,7 +47,6 @@ void record_uploads(const Commands& commands, SlotBuffers& slot) {
 
 void record_deform(const Commands& commands, const FrameInputs& inputs) {
   last_frame_to_compute(commands);
-  commands.bindPipeline(vk::PipelineBindPoint::eCompute, *inputs.pipelines.deform);
   const FrameWorld& frame = inputs.frame;
   for (std::uint32_t body = 0; body < frame.bodies.size(); ++body) {
     const Range vertices = frame.bodies.at<DrawRange>(body).vertices;
@@ -50,10 +56,13 @@ void record_deform(const Commands& commands, const FrameInputs& inputs) {
     const auto& row = frame.bodies.at<FrameBody>(body);
     const BoundRows twist =
         bound_rows(inputs.gpu, twist_rows_in_use(frame, body), sizeof(TwistAngle));
-    push_storage(commands, inputs,
-                 {whole(*inputs.buffers.rest.handle), whole(inputs.slot.displacement.handle()),
-                  vk::DescriptorBufferInfo{inputs.slot.twist.handle(), twist.offset, twist.size},
-                  whole(inputs.slot.axes.handle()), whole(*inputs.buffers.positions.handle)});
+    const std::uint32_t regions = std::min(row.regions_drawn, shared::kManyRegions);
+    commands.bindPipeline(vk::PipelineBindPoint::eCompute, *inputs.pipelines.deform[regions]);
+    push_rows(commands, inputs,
+              {whole(*inputs.buffers.rest.handle), whole(inputs.slot.displacement.handle()),
+               vk::DescriptorBufferInfo{inputs.slot.twist.handle(), twist.offset, twist.size},
+               whole(inputs.slot.axes.handle()), whole(*inputs.buffers.positions.handle)},
+              {*inputs.buffers.rest_texels, *inputs.slot.displacement_texels});
     push_constants(commands, inputs.pipelines.compute_layout, vk::ShaderStageFlagBits::eCompute,
                    shared::DeformConstants{
                        .vertex_first = vertices.first,
@@ -71,10 +80,11 @@ void record_normals(const Commands& commands, const FrameInputs& inputs) {
   compute_to_compute(commands);
   commands.bindPipeline(vk::PipelineBindPoint::eCompute, *inputs.pipelines.normals);
   const SceneBuffers& buffers = inputs.buffers;
-  push_storage(commands, inputs,
-               {whole(*buffers.positions.handle), whole(*buffers.ring_ranges.handle),
-                whole(*buffers.ring_entries.handle), whole(*buffers.rest_normals.handle),
-                whole(*buffers.normals.handle)});
+  push_rows(commands, inputs,
+            {whole(*buffers.positions.handle), whole(*buffers.ring_ranges.handle),
+             whole(*buffers.ring_entries.handle), whole(*buffers.rest_normals.handle),
+             whole(*buffers.normals.handle)},
+            {*buffers.position_texels, *buffers.ring_texels});
   for (std::uint32_t body = 0; body < inputs.frame.bodies.size(); ++body) {
     const Range vertices = inputs.frame.bodies.at<DrawRange>(body).vertices;
     if (vertices.count == 0) {

@@ -224,6 +224,8 @@ Result<Gpu> open_gpu(const GpuOptions& options) {
   gpu.queue = {gpu.device, gpu.queue_family, 0};
   gpu.name = full_name(gpu.physical);
   gpu.limits = gpu.physical.getProperties().limits;
+  gpu.limits.maxTexelBufferElements =
+      std::min(gpu.limits.maxTexelBufferElements, options.most_texels);
   gpu.memory = gpu.physical.getMemoryProperties();
   gpu.writes_device_memory = !options.force_staging && can_write_device_memory(gpu.memory);
   if (gpu.physical.getQueueFamilyProperties()[gpu.queue_family].timestampValidBits > 0) {

@@ -16,6 +16,7 @@ struct GpuOptions {
   std::string device_name;  // part of the name; empty: TORSION_GPU, else the best
   // What a window's surface needs of an instance; empty: no window, and no swapchain either.
   std::vector<std::string> surface_extensions;
+  std::uint32_t most_texels = UINT32_MAX;  // of a texel buffer, where the device has more
 };
 
 /// A device with one queue that does everything. Members are in the order of creation.

@@ -146,14 +146,31 @@ vk::raii::Pipeline make_graphics_pipeline(const Gpu& gpu, vk::PipelineLayout lay
           }};
 }
 
-vk::raii::Pipeline make_compute_pipeline(const Gpu& gpu, vk::PipelineLayout layout, Code code) {
+/// Specialization constants of the compute shaders, by number; normals.comp has the first only.
+struct ComputeConstants {
+  vk::Bool32 texels = VK_TRUE;
+  std::uint32_t regions = shared::kManyRegions;
+};
+
+vk::raii::Pipeline make_compute_pipeline(const Gpu& gpu, vk::PipelineLayout layout, Code code,
+                                         const ComputeConstants& constants) {
   const vk::raii::ShaderModule module = make_module(gpu, code);
-  return {
-      gpu.device, nullptr,
-      vk::ComputePipelineCreateInfo{
-          .stage = {.stage = vk::ShaderStageFlagBits::eCompute, .module = *module, .pName = "main"},
-          .layout = layout,
-      }};
+  const std::array<vk::SpecializationMapEntry, 2> entries = {{
+      {0, offsetof(ComputeConstants, texels), sizeof constants.texels},
+      {1, offsetof(ComputeConstants, regions), sizeof constants.regions},
+  }};
+  const vk::SpecializationInfo specialization{.mapEntryCount = entries.size(),
+                                              .pMapEntries = entries.data(),
+                                              .dataSize = sizeof constants,
+                                              .pData = &constants};
+  return {gpu.device, nullptr,
+          vk::ComputePipelineCreateInfo{
+              .stage = {.stage = vk::ShaderStageFlagBits::eCompute,
+                        .module = *module,
+                        .pName = "main",
+                        .pSpecializationInfo = &specialization},
+              .layout = layout,
+          }};
 }
 
 vk::raii::DescriptorSetLayout make_bindings(
@@ -182,8 +199,9 @@ void make_layouts(const Gpu& gpu, Pipelines& pipelines) {
   using Type = vk::DescriptorType;
   using Stage = vk::ShaderStageFlagBits;
   std::vector<vk::DescriptorSetLayoutBinding> compute;
-  for (std::uint32_t binding = 0; binding < kComputeBindings; ++binding) {
-    compute.push_back({binding, Type::eStorageBuffer, 1, Stage::eCompute});
+  for (std::uint32_t binding = 0; binding < kStorageBindings + kTexelBindings; ++binding) {
+    const Type type = binding < kStorageBindings ? Type::eStorageBuffer : Type::eUniformTexelBuffer;
+    compute.push_back({binding, type, 1, Stage::eCompute});
   }
   pipelines.compute_bindings = make_bindings(gpu, compute);
   pipelines.compute_layout = make_layout(gpu, pipelines.compute_bindings, Stage::eCompute,
@@ -248,11 +266,18 @@ vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, const Pipelines& pipeli
 }
 
 Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCountFlagBits samples,
-                         bool quick) {
+                         bool quick, bool texels) {
   Pipelines pipelines;
   make_layouts(gpu, pipelines);
-  pipelines.deform = make_compute_pipeline(gpu, *pipelines.compute_layout, k_deform_comp);
-  pipelines.normals = make_compute_pipeline(gpu, *pipelines.compute_layout, k_normals_comp);
+  ComputeConstants constants{.texels = texels ? VK_TRUE : VK_FALSE};
+  for (const std::uint32_t regions :
+       {shared::kNoRegion, shared::kOneRegion, shared::kManyRegions}) {
+    constants.regions = regions;
+    pipelines.deform.push_back(
+        make_compute_pipeline(gpu, *pipelines.compute_layout, k_deform_comp, constants));
+  }
+  pipelines.normals =
+      make_compute_pipeline(gpu, *pipelines.compute_layout, k_normals_comp, constants);
 
   const RowInput positions(1);
   const RowInput positions_normals(2);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "render/gpu.hpp"
 
 namespace torsion {
@@ -13,8 +16,9 @@ inline constexpr std::uint32_t kContacts = 3;
 inline constexpr std::uint32_t kGlyphs = 4;
 }  // namespace draw_binding
 
-inline constexpr std::uint32_t kComputeBindings =
-    5;  // storage buffers 0 to 4 of either compute shader
+/// Bindings of either compute shader: storage buffers, then texel buffers.
+inline constexpr std::uint32_t kStorageBindings = 5;
+inline constexpr std::uint32_t kTexelBindings = 2;
 inline constexpr vk::Format kDepthFormat = vk::Format::eD32Sfloat;
 
 /// All pipelines, and the layouts that they share. Members are in the order of creation.
@@ -24,7 +28,7 @@ struct Pipelines {
   vk::raii::PipelineLayout compute_layout = nullptr;
   vk::raii::PipelineLayout draw_layout = nullptr;
 
-  vk::raii::Pipeline deform = nullptr;
+  std::vector<vk::raii::Pipeline> deform;  // kNoRegion, kOneRegion, kManyRegions
   vk::raii::Pipeline normals = nullptr;
   vk::raii::Pipeline shadow = nullptr;
   vk::raii::Pipeline ground = nullptr;
@@ -40,8 +44,9 @@ struct Pipelines {
 vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, const Pipelines& pipelines,
                                          vk::Format color_format);
 
-/// @param quick  harder shadows, for a third of their time. Throws vk::SystemError.
+/// @param quick   harder shadows, for a third of their time
+/// @param texels  compute shaders read rows as texels where they can. Throws vk::SystemError.
 Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCountFlagBits samples,
-                         bool quick);
+                         bool quick, bool texels);
 
 }  // namespace torsion

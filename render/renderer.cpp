@@ -241,7 +241,8 @@ Result<Renderer> Renderer::create(const RendererOptions& options, const FrameWor
   }
   Result<Gpu> gpu =
       open_gpu({options.validation, options.force_staging, options.device_name,
-                options.window == nullptr ? std::vector<std::string>{} : surface_extensions()});
+                options.window == nullptr ? std::vector<std::string>{} : surface_extensions(),
+                options.most_texels});
   if (!gpu) {
     return gpu.error();
   }
@@ -266,8 +267,9 @@ Result<Renderer> Renderer::create(const RendererOptions& options, const FrameWor
     impl->pictures.emplace(impl->gpu, size, kSlots);
     fit_surfaces(impl->gpu, size, impl->pictures->format(), impl->samples, impl->surfaces);
   }
-  impl->pipelines = make_pipelines(impl->gpu, impl->target().format(), impl->samples,
-                                   impl->window.has_value() && on_processor);
+  impl->pipelines =
+      make_pipelines(impl->gpu, impl->target().format(), impl->samples,
+                     impl->window.has_value() && on_processor, impl->buffers.has_texels);
   if (impl->window) {
     impl->window_overlay =
         make_overlay_pipeline(impl->gpu, impl->pipelines, impl->window->window_format());

@@ -32,6 +32,8 @@ struct RendererOptions {
                 // say, also at the renderer's end, so it must outlive it; for tests
   bool force_staging =
       false;  // copy through staging buffers even where the CPU could write the GPU's memory
+  std::uint32_t most_texels = UINT32_MAX;  // read storage where a column has more rows, as on
+                                           // devices with small texel buffers
   std::string
       device_name;  // part of a device's name; empty: the environment's TORSION_GPU, else the best
   const OverlayAtlas* overlay_atlas = nullptr;  // copied; without it no overlay is drawn

@@ -28,11 +28,25 @@ std::optional<Error> check_range(const Gpu& gpu, vk::DeviceSize rows, vk::Device
                " at most. Use coarser meshes."};
 }
 
+/// The first rows of a column as texels, as many as the device takes.
+/// @param row_size  bytes, of the format
+vk::raii::BufferView make_texels(const Gpu& gpu, vk::Buffer buffer, vk::DeviceSize size,
+                                 vk::Format format, vk::DeviceSize row_size) {
+  const vk::DeviceSize most = gpu.limits.maxTexelBufferElements * row_size;
+  return {gpu.device, vk::BufferViewCreateInfo{
+                          .buffer = buffer, .format = format, .range = std::min(size, most)}};
+}
+
+constexpr vk::Format kRowFormat = vk::Format::eR32G32B32A32Sfloat;
+
 SlotBuffers make_slot(const Gpu& gpu, const FrameWorld& frame) {
   const vk::DeviceSize vertices = frame.body_vertices.size();
   const vk::DeviceSize regions = vk::DeviceSize{frame.bodies.size()} * kMaxRegionsPerBody;
   SlotBuffers slot;
-  slot.displacement = {gpu, vertices * sizeof(VertexDisplacement), Usage::eStorageBuffer};
+  slot.displacement = {gpu, vertices * sizeof(VertexDisplacement),
+                       Usage::eStorageBuffer | Usage::eUniformTexelBuffer};
+  slot.displacement_texels = make_texels(gpu, slot.displacement.handle(), slot.displacement.size(),
+                                         kRowFormat, sizeof(VertexDisplacement));
   slot.twist = {gpu, frame.twist.size() * sizeof(TwistAngle), Usage::eStorageBuffer};
   slot.axes = {gpu, frame.axes.size() * sizeof(TwistAxis), Usage::eStorageBuffer};
   slot.uniforms = {gpu, sizeof(shared::FrameUniforms), Usage::eUniformBuffer};
@@ -68,7 +82,7 @@ Result<SceneBuffers> make_scene_buffers(const Gpu& gpu, const FrameWorld& frame,
     normals =
         make_constant_buffer(gpu, std::as_bytes(table.template column<VertexNormal>()), usage);
   };
-  const auto both = Usage::eStorageBuffer | Usage::eVertexBuffer;
+  const auto both = Usage::eStorageBuffer | Usage::eUniformTexelBuffer | Usage::eVertexBuffer;
   vertex_columns(frame.body_vertices, both, buffers.rest, buffers.rest_normals);
   vertex_columns(frame.tool_vertices, both, buffers.tool_positions, buffers.tool_normals);
   buffers.body_indices = make_constant_buffer(
@@ -76,12 +90,21 @@ Result<SceneBuffers> make_scene_buffers(const Gpu& gpu, const FrameWorld& frame,
   buffers.tool_indices = make_constant_buffer(
       gpu, std::as_bytes(frame.tool_triangles.column<Triangle>()), Usage::eIndexBuffer);
   buffers.ring_ranges = make_constant_buffer(gpu, bytes_of(rings.ranges), Usage::eStorageBuffer);
-  buffers.ring_entries = make_constant_buffer(gpu, bytes_of(rings.entries), Usage::eStorageBuffer);
+  buffers.ring_entries = make_constant_buffer(gpu, bytes_of(rings.entries),
+                                              Usage::eStorageBuffer | Usage::eUniformTexelBuffer);
 
   const vk::DeviceSize rows = vk::DeviceSize{frame.body_vertices.size()} * sizeof(shared::vec4);
   const auto computed = both | Usage::eTransferSrc;
   buffers.positions = make_buffer(gpu, rows, computed, Home::kDevice);
   buffers.normals = make_buffer(gpu, rows, computed, Home::kDevice);
+  const auto texels = [&](const Buffer& buffer, vk::Format format, vk::DeviceSize row_size) {
+    return make_texels(gpu, *buffer.handle, buffer.size, format, row_size);
+  };
+  buffers.rest_texels = texels(buffers.rest, kRowFormat, sizeof(VertexRest));
+  buffers.position_texels = texels(buffers.positions, kRowFormat, sizeof(shared::vec4));
+  buffers.ring_texels = texels(buffers.ring_entries, vk::Format::eR32Uint, sizeof(std::uint32_t));
+  buffers.has_texels = std::max<std::size_t>(frame.body_vertices.size(), rings.entries.size()) <=
+                       gpu.limits.maxTexelBufferElements;
   for (std::uint32_t i = 0; i < slots; ++i) {
     buffers.slots.push_back(make_slot(gpu, frame));
   }

@@ -24,6 +24,8 @@ struct SlotBuffers {
   FrameBuffer arrow_colors;      // rows vec4
   FrameBuffer overlay_vertices;  // rows OverlayVertex
   FrameBuffer overlay_indices;   // uint32
+
+  vk::raii::BufferView displacement_texels = nullptr;
 };
 
 /// Everything of a frame world that the device reads or writes. Columns keep their rows.
@@ -41,6 +43,12 @@ struct SceneBuffers {
   Buffer positions;  // vec4 for each vertex of the bodies: m, body; w what the heat map shows
   Buffer normals;    // vec4 for each vertex of the bodies: body, unit
   std::vector<SlotBuffers> slots;
+
+  // The same rows as texels, all of them where has_texels, else as many as the device takes.
+  vk::raii::BufferView rest_texels = nullptr;
+  vk::raii::BufferView position_texels = nullptr;
+  vk::raii::BufferView ring_texels = nullptr;
+  bool has_texels = false;
 };
 
 /// Error: a column is larger than the device lets a shader read at once. Throws vk::SystemError.

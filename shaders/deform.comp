@@ -5,11 +5,17 @@
 // displaced. The CPU twin is deform_vertices() (systems/surface_field.hpp).
 //
 // Sources: Rodrigues' rotation in the form x + sin(t) k x r + (1 - cos(t)) k x (k x r), r from the axis point to x,
-// which leaves x alone, bit for bit, where t = 0. Vulkan promises sin() and cos() only to 2^-11, so both come from
+// which leaves x alone, bit for bit, where t = 0, so nothing asks whether it is. Vulkan promises sin() and cos() only to 2^-11, so both come from
 // their Taylor series here: with t/2 brought to [-pi/4, pi/4] the first terms left out are 1.8e-9 (x^11/11!) and
 // 2.5e-8 (x^10/10!). `precise` keeps the compiler from contracting and reordering.
 
 #include "shared.h"
+#include "texels.glsl"
+
+// How many regions turn: kNoRegion, kOneRegion, or kManyRegions for as many as constants.regions says. Known to the
+// compiler, because a processor's driver reads an axis once for all lanes only outside loops and branches, and goes
+// through the body of a loop even where nothing is left to do.
+layout(constant_id = 1) const uint kRegions = kManyRegions;
 
 layout(local_size_x = kGroupSize) in;
 
@@ -23,6 +29,8 @@ layout(std430, set = 0, binding = 1) readonly buffer Displacement { vec4 displac
 layout(std430, set = 0, binding = 2) readonly buffer Twist { float twist[]; };               // rad, region-major
 layout(std430, set = 0, binding = 3) readonly buffer Axes { Axis axes[]; };
 layout(std430, set = 0, binding = 4) writeonly buffer Position { vec4 position[]; };         // m, body; w heat
+layout(set = 0, binding = 5) uniform samplerBuffer rest_texels;
+layout(set = 0, binding = 6) uniform samplerBuffer displacement_texels;
 layout(push_constant) uniform Constants { DeformConstants constants; };
 
 // sin(angle) and 1 - cos(angle). With h = angle / 2: sin = 2 sin h cos h, 1 - cos = 2 sin^2 h, so that small angles
@@ -43,33 +51,57 @@ void sine_and_versine(float angle, out float sine, out float versine) {
   versine = square;
 }
 
-void main() {
-  uint vertex = gl_GlobalInvocationID.x;
-  if (vertex >= constants.vertex_count) {
-    return;
+vec4 rest_row(uint row) {
+  if (kTexels) {
+    return texelFetch(rest_texels, int(row));
   }
+  return rest[row];
+}
+
+vec4 displacement_row(uint row) {
+  if (kTexels) {
+    return texelFetch(displacement_texels, int(row));
+  }
+  return displacement[row];
+}
+
+// Turns `x` about the axis of a region; `heat` is the sum of the angles so far.
+void turn(uint region, uint vertex, inout vec3 x, inout float heat) {
+  float angle = twist[constants.twist_first + region * constants.vertex_count + vertex];
+  Axis axis = axes[constants.axis_first + region];
+  vec3 k = axis.direction.xyz;
+  precise float sine;
+  precise float versine;
+  sine_and_versine(angle, sine, versine);
+  precise vec3 r = x - axis.point.xyz;
+  precise vec3 across = vec3(k.y * r.z - k.z * r.y, k.z * r.x - k.x * r.z, k.x * r.y - k.y * r.x);
+  precise vec3 inward = vec3(k.y * across.z - k.z * across.y, k.z * across.x - k.x * across.z,
+                             k.x * across.y - k.y * across.x);
+  precise vec3 turned = x + (sine * across + versine * inward);
+  x = turned;
+  heat += angle;
+}
+
+void main() {
+  // Invocations beyond the last vertex do its work again and write nothing: to return here would be a branch.
+  uint vertex = min(gl_GlobalInvocationID.x, constants.vertex_count - 1);
   uint row = constants.vertex_first + vertex;
-  precise vec3 x = rest[row].xyz;
+  vec3 x = rest_row(row).xyz;
+  vec4 displaced = displacement_row(row);
   float heat = 0.0;
-  for (uint region = 0; region < constants.regions; ++region) {
-    float angle = twist[constants.twist_first + region * constants.vertex_count + vertex];
-    if (angle != 0.0) {
-      Axis axis = axes[constants.axis_first + region];
-      vec3 k = axis.direction.xyz;
-      precise float sine;
-      precise float versine;
-      sine_and_versine(angle, sine, versine);
-      precise vec3 r = x - axis.point.xyz;
-      precise vec3 across = vec3(k.y * r.z - k.z * r.y, k.z * r.x - k.x * r.z, k.x * r.y - k.y * r.x);
-      precise vec3 inward = vec3(k.y * across.z - k.z * across.y, k.z * across.x - k.x * across.z,
-                                 k.x * across.y - k.y * across.x);
-      x = x + (sine * across + versine * inward);
-      heat += angle;
+  if (kRegions != kNoRegion) {
+    turn(0, vertex, x, heat);
+  }
+  if (kRegions == kManyRegions) {
+    for (uint region = 1; region < constants.regions; ++region) {
+      turn(region, vertex, x, heat);
     }
   }
-  precise vec3 moved = x + displacement[row].xyz;
+  precise vec3 moved = x + displaced.xyz;
   if (constants.heat == kHeatPressure) {
-    heat = displacement[row].w;
+    heat = displaced.w;
   }
-  position[row] = vec4(moved, heat);
+  if (gl_GlobalInvocationID.x < constants.vertex_count) {
+    position[row] = vec4(moved, heat);
+  }
 }

@@ -23,6 +23,11 @@ TORSION_CONSTANT(kHeatNone, 0);
 TORSION_CONSTANT(kHeatTwist, 1);
 TORSION_CONSTANT(kHeatPressure, 2);
 
+// Which deform.comp: how many regions turn.
+TORSION_CONSTANT(kNoRegion, 0);
+TORSION_CONSTANT(kOneRegion, 1);
+TORSION_CONSTANT(kManyRegions, 2);
+
 // The top bit of an entry of a normal ring: a new fan begins here.
 TORSION_CONSTANT(kRingRestart, 0x80000000U);
 TORSION_CONSTANT(kRingVertex, 0x7FFFFFFFU);

@@ -182,6 +182,19 @@ TEST_F(ComputePassesTest, StagingGivesTheSameBits) {
   EXPECT_EQ(normals, normals_);
 }
 
+TEST_F(ComputePassesTest, StorageGivesTheSameBitsAsTexels) {
+  const FrameWorld frame = two_twisted_bodies();
+  draw(frame, options(), HeatMap::kTwist, 3);
+  const std::vector<glm::vec4> positions = positions_;
+  const std::vector<glm::vec4> normals = normals_;
+  // Texels for all rows but one: views of what fits must still be valid, and nothing may read them.
+  RendererOptions small = options();
+  small.most_texels = frame.body_vertices.size() - 1;
+  draw(frame, small, HeatMap::kTwist, 3);
+  EXPECT_EQ(positions, positions_);
+  EXPECT_EQ(normals, normals_);
+}
+
 TEST_F(ComputePassesTest, LaterFramesReadLaterColumns) {
   FrameWorld frame = two_twisted_bodies();
   for (const bool staging : {false, true}) {

@@ -50,6 +50,26 @@ std::string last_error() {
   return text == nullptr ? "" : text;
 }
 
+/// Where the mouse is in the window and on the desktop. The window may move between two questions
+/// about it, then they are asked again.
+void read_mouse(GLFWwindow* window, WindowInput& input) {
+  constexpr int kTries = 3;
+  int left = 0;
+  int top = 0;
+  ::glfwGetWindowPos(window, &left, &top);
+  for (int i = 0; i < kTries; ++i) {
+    const int left_before = left;
+    const int top_before = top;
+    ::glfwGetCursorPos(window, &input.mouse_x, &input.mouse_y);
+    ::glfwGetWindowPos(window, &left, &top);
+    if (left == left_before && top == top_before) {
+      break;
+    }
+  }
+  input.desk_x = left + input.mouse_x;
+  input.desk_y = top + input.mouse_y;
+}
+
 /// Mouse and size in pixels of the picture, which on some desktops are not those of the window.
 void read_place(GLFWwindow* window, WindowInput& input) {
   int width = 0;
@@ -58,10 +78,14 @@ void read_place(GLFWwindow* window, WindowInput& input) {
   int pixels_y = 0;
   ::glfwGetWindowSize(window, &width, &height);
   ::glfwGetFramebufferSize(window, &pixels_x, &pixels_y);
-  ::glfwGetCursorPos(window, &input.mouse_x, &input.mouse_y);
+  read_mouse(window, input);
   if (width > 0 && height > 0) {
-    input.mouse_x *= static_cast<double>(pixels_x) / width;
-    input.mouse_y *= static_cast<double>(pixels_y) / height;
+    const double scale_x = static_cast<double>(pixels_x) / width;
+    const double scale_y = static_cast<double>(pixels_y) / height;
+    input.mouse_x *= scale_x;
+    input.mouse_y *= scale_y;
+    input.desk_x *= scale_x;
+    input.desk_y *= scale_y;
   }
   input.width = static_cast<std::uint32_t>(pixels_x);
   input.height = static_cast<std::uint32_t>(pixels_y);

@@ -16,8 +16,10 @@ inline constexpr int kKeyEscape = 256;
 
 /// What a person did with a window since the last look.
 struct WindowInput {
-  double mouse_x = 0.0;           // pixels of the window's picture, from the left edge
-  double mouse_y = 0.0;           // from the top
+  double mouse_x = 0.0;  // pixels of the window's picture, from the left edge
+  double mouse_y = 0.0;  // from the top
+  double desk_x = 0.0;   // the same from the desktop's corner where that is known: it stays
+  double desk_y = 0.0;   // where it is while the window goes away under a mouse at rest
   std::array<bool, 3> buttons{};  // held down: left, right, middle
   double wheel = 0.0;             // notches, away from the person positive
   bool shift = false;

@@ -147,7 +147,7 @@ void WindowTarget::make_inner(double share) {
   }
 }
 
-bool WindowTarget::fit(std::uint32_t width, std::uint32_t height, double share) {
+bool WindowTarget::fit(std::uint32_t width, std::uint32_t height, double share) try {
   if (width == 0 || height == 0) {
     return false;
   }
@@ -156,8 +156,8 @@ bool WindowTarget::fit(std::uint32_t width, std::uint32_t height, double share) 
     shown_.clear();
     swapchain_ = nullptr;
     surface_ = nullptr;
-    make_surface();
     stale_ = true;
+    make_surface();
   }
   if (stale_ || width != outer_.width || height != outer_.height) {
     make_swapchain(width, height);
@@ -168,6 +168,9 @@ bool WindowTarget::fit(std::uint32_t width, std::uint32_t height, double share) 
   }
   make_inner(share);
   return true;
+} catch (const vk::SurfaceLostKHRError&) {
+  surface_lost_ = true;
+  return false;
 }
 
 bool WindowTarget::acquire(const Slot& slot) try {

@@ -61,7 +61,8 @@ class Viewer {
     bool on_tool = false;
     bool orbiting = false;
     bool panning = false;
-    glm::dvec2 mouse{0.0};
+    bool spent = false;     // the button is still down from a drag that a hidden window ended
+    glm::dvec2 mouse{0.0};  // pixels of the desktop
   };
 
   /// A video under way.

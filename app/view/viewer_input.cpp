@@ -93,7 +93,7 @@ void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
     if (met && *met < nearest) {
       nearest = *met;
       const glm::dvec3 ahead = from.pose.rotation * glm::dvec3(0.0, 0.0, -1.0);
-      grab_.drag = {tool, *met * glm::dot(ray.direction, ahead), mouse};
+      grab_.drag = {tool, *met * glm::dot(ray.direction, ahead), grab_.mouse};
       grab_.on_tool = true;
     }
   }
@@ -117,8 +117,7 @@ void Viewer::drag_tool(const WindowInput& input) {
   const DragKind kind = input.alt     ? DragKind::kTurn
                         : input.shift ? DragKind::kAlong
                                       : DragKind::kAcross;
-  drag(grab_.drag, kind, {input.mouse_x, input.mouse_y}, camera(), input.height, pivot, axis,
-       handle);
+  drag(grab_.drag, kind, grab_.mouse, camera(), input.height, pivot, axis, handle);
   if (input.wheel != 0.0) {
     turn(handle, pivot, axis, kRadiansANotch * input.wheel);
   }
@@ -126,12 +125,21 @@ void Viewer::drag_tool(const WindowInput& input) {
 }
 
 void Viewer::take_mouse(const WindowInput& input) {
+  // What is dragged follows the mouse on the desktop: a window that moves or changes its size takes
+  // nothing with it.
   const glm::dvec2 mouse(input.mouse_x, input.mouse_y);
-  const glm::dvec2 moved = mouse - grab_.mouse;
-  grab_.mouse = mouse;
+  const glm::dvec2 on_desk(input.desk_x, input.desk_y);
+  const glm::dvec2 moved = on_desk - grab_.mouse;
+  grab_.mouse = on_desk;
+  if (input.hidden) {  // a release that comes now may never be heard of
+    grab_.on_tool = false;
+    grab_.orbiting = false;
+    grab_.panning = false;
+    grab_.spent = true;
+  }
   const bool free = !grab_.on_tool && !grab_.orbiting && !grab_.panning;
   if (free && !Gui::has_mouse()) {
-    if (input.buttons[0]) {
+    if (input.buttons[0] && !grab_.spent) {
       start_drag(mouse, {input.width, input.height});
     }
     grab_.panning = !grab_.on_tool && (input.buttons[1] || input.buttons[2]);
@@ -148,6 +156,7 @@ void Viewer::take_mouse(const WindowInput& input) {
   if (!input.buttons[0]) {
     grab_.on_tool = false;
     grab_.orbiting = false;
+    grab_.spent = false;
   }
   grab_.panning = grab_.panning && (input.buttons[1] || input.buttons[2]);
   state_.grabbed = grab_.on_tool;

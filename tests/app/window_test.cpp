@@ -13,25 +13,9 @@
 namespace torsion {
 namespace {
 
+using test::changed;
 using test::has_red_banner;
 using test::read_text;
-
-/// Share of the pixels of a rectangle in which a colour differs by more than 8 of 255.
-double changed(const Image& a, const Image& b, std::uint32_t left, std::uint32_t top,
-               std::uint32_t right, std::uint32_t bottom) {
-  std::uint32_t count = 0;
-  for (std::uint32_t y = top; y < bottom; ++y) {
-    for (std::uint32_t x = left; x < right; ++x) {
-      const std::size_t at = 4 * (std::size_t{y} * a.width + x);
-      bool differs = false;
-      for (std::size_t i = at; i < at + 3; ++i) {
-        differs = differs || std::abs(int{a.rgba[i]} - int{b.rgba[i]}) > 8;
-      }
-      count += differs ? 1U : 0U;
-    }
-  }
-  return count / (static_cast<double>(right - left) * (bottom - top));
-}
 
 class WindowTest : public ::testing::Test {
  protected:

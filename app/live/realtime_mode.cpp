@@ -1,6 +1,7 @@
 #include "app/live/realtime_mode.hpp"
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <sstream>
@@ -10,6 +11,8 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 namespace torsion {
 namespace {
@@ -38,6 +41,33 @@ bool may_lock_everything() {
          (::getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY);
 }
 
+/// struct sched_attr of the kernel in its first size, whose header does not go with the C
+/// library's.
+struct SchedulerAttributes {
+  std::uint32_t size = sizeof(SchedulerAttributes);
+  std::uint32_t policy = 0;
+  std::uint64_t flags = 0;
+  std::int32_t nice = 0;
+  std::uint32_t priority = 0;
+  std::uint64_t runtime = 0;   // ns: of an ordinary thread its turn
+  std::uint64_t deadline = 0;  // ns
+  std::uint64_t period = 0;    // ns
+};
+static_assert(sizeof(SchedulerAttributes) == 48);
+
+/// Asks the ordinary scheduler for short turns of the calling thread, which it therefore lets begin
+/// sooner: a thread that wakes with an earlier end of its turn than the one that runs takes its
+/// place at once (EEVDF, Stoica and Abdel-Wahab 1995, as Linux has had it since 6.12; kernels
+/// before take no notice). Needs no privilege.
+void ask_for_short_turns() {
+  constexpr std::uint64_t kTurn = 100'000;  // ns: the shortest that the kernel takes
+  SchedulerAttributes wanted;
+  if (::syscall(SYS_sched_getattr, 0, &wanted, sizeof wanted, 0U) == 0) {
+    wanted.runtime = kTurn;
+    ::syscall(SYS_sched_setattr, 0, &wanted, 0U);
+  }
+}
+
 void add_reason(RealtimeMode& mode, const std::string& reason) {
   mode.missing += (mode.missing.empty() ? "" : "; ") + reason;
 }
@@ -54,6 +84,7 @@ RealtimeMode become_realtime() {
       ::pthread_setschedparam(::pthread_self(), SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters);
   mode.fifo = failed == 0;
   if (!mode.fifo) {
+    ask_for_short_turns();
     add_reason(mode, "no SCHED_FIFO (limit rtprio of " + std::to_string(kPriority) +
                          " or CAP_SYS_NICE wanted)");
   }

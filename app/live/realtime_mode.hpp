@@ -12,7 +12,8 @@ struct RealtimeMode {
 };
 
 /// Asks for the calling thread: timer slack 1 ns, SCHED_FIFO (not inherited by threads it makes)
-/// and, for the whole process, locked memory. Neither is needed to run, both to be on time.
+/// and, for the whole process, locked memory. Neither is needed to run, both to be on time. Without
+/// SCHED_FIFO it gets short turns of the ordinary scheduler, which begin sooner.
 RealtimeMode become_realtime();
 
 /// One line for a person.

@@ -28,13 +28,18 @@ struct Layer {
   PFN_vkAcquireNextImageKHR acquire = nullptr;
   PFN_vkQueuePresentKHR present = nullptr;
 
-  std::istringstream plan{
-      std::getenv("TORSION_LOSE_SURFACE") == nullptr ? "" : std::getenv("TORSION_LOSE_SURFACE")};
+  std::istringstream plan;
   std::string call;  // the next to lose the surface
   int left = 0;      // such calls until then
   bool lost = false;
 
-  Layer() { next_word(); }
+  Layer() {
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing sets it while the program runs
+    if (const char* const words = std::getenv("TORSION_LOSE_SURFACE")) {
+      plan.str(words);
+    }
+    next_word();
+  }
 
   void next_word() {
     lost = false;
@@ -76,7 +81,8 @@ void ask_device(VkDevice device, const char* name, Function& function) {
 /// there.
 template <class Link>
 Link* link_of(const void* chain, VkStructureType type) {
-  for (auto* at = static_cast<const VkBaseInStructure*>(chain); at != nullptr; at = at->pNext) {
+  for (const auto* at = static_cast<const VkBaseInStructure*>(chain); at != nullptr;
+       at = at->pNext) {
     auto* link = reinterpret_cast<const Link*>(at);
     if (at->sType == type && link->function == VK_LAYER_LINK_INFO) {
       return const_cast<Link*>(link);
@@ -224,10 +230,10 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_function(VkInstance instan
 /// What the loader asks a layer for at first (version 2 of its interface to
 /// layers).
 extern "C" VK_LAYER_EXPORT VKAPI_ATTR VkResult VKAPI_CALL
-vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* interface) {
-  interface->loaderLayerInterfaceVersion = 2;
-  interface->pfnGetInstanceProcAddr = get_instance_function;
-  interface->pfnGetDeviceProcAddr = get_device_function;
-  interface->pfnGetPhysicalDeviceProcAddr = nullptr;
+vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* pVersionStruct) {
+  pVersionStruct->loaderLayerInterfaceVersion = 2;
+  pVersionStruct->pfnGetInstanceProcAddr = get_instance_function;
+  pVersionStruct->pfnGetDeviceProcAddr = get_device_function;
+  pVersionStruct->pfnGetPhysicalDeviceProcAddr = nullptr;
   return VK_SUCCESS;
 }

@@ -50,9 +50,9 @@ class WindowTroubleTest : public ::testing::Test {
     return image.ok() ? image.value() : Image{};
   }
 
-  // A ball that was moved by 60 pixels changes more than a twentieth of the pixels, mostly where
-  // its shadow and its rim were. One that is back where it was, to the pixel, changes none; a mouse
-  // that comes back to the same pixel while pictures come slowly may round the way by one.
+  // A ball of 200 pixels that goes 60 changes where its rim, its lines and its shadow were and are,
+  // more than 2 % of the pixels; one that is back where it was changes none, or some on its rim
+  // where the same way in other steps rounds otherwise.
   static constexpr double kMoved = 0.02;
   static constexpr double kSame = 0.005;
 

@@ -106,14 +106,15 @@ void mix_steps(std::size_t count, const double* __restrict asked, double kept,
   }
 }
 
+/// Goes `length` of a step of tractions of one direction.
 TORSION_WIDEST
-void change(std::size_t count, double length, const double* __restrict moves,
-            double* __restrict step, double* __restrict pressure, double* __restrict depression) {
+void change_along(std::size_t count, double length, const double* __restrict moves,
+                  double* __restrict step, double* __restrict traction, double* __restrict moved) {
   for (std::size_t k = 0; k < count; ++k) {
     const double way = length * step[k];
     step[k] = way;
-    pressure[k] += way;
-    depression[k] += length * moves[k];
+    traction[k] += way;
+    moved[k] += length * moves[k];
   }
 }
 
@@ -261,17 +262,6 @@ void add_up_step(const TractionColumns& cells, const double* __restrict clips,
   clipped = clip;
 }
 
-TORSION_WIDEST
-void change_along(std::size_t count, double length, const double* __restrict moves,
-                  double* __restrict step, double* __restrict traction, double* __restrict moved) {
-  for (std::size_t k = 0; k < count; ++k) {
-    const double way = length * step[k];
-    step[k] = way;
-    traction[k] += way;
-    moved[k] += length * moves[k];
-  }
-}
-
 }  // namespace
 
 double dot(std::size_t count, const double* a, const double* b) {
@@ -317,7 +307,7 @@ double mix_pressures(std::size_t count, const double* residual, const double* as
 
 SweepChange change_pressures(std::size_t count, double length, const double* moves, double* step,
                              double* pressure, double* depression, double& pull) {
-  change(count, length, moves, step, pressure, depression);
+  change_along(count, length, moves, step, pressure, depression);
   const SweepChange result = size_of_change(count, step);
   Lanes pulls;
   find_largest_pull(count, pressure, pulls);

@@ -8,11 +8,10 @@
 
 #include "systems/contact_models/elliptic_contact.hpp"
 #include "systems/patch_grid.hpp"
+#include "systems/region_grid.hpp"
 
 namespace torsion {
 namespace {
-
-constexpr double kGridMargin = 1.12;  // of the grid around the overlap (region_grid.cpp)
 
 double cube_of(double x) {
   return x * x * x;

@@ -49,11 +49,11 @@ double farthest_move(const CellMap& map, std::uint32_t side) {
   return farthest;
 }
 
-/// A copy of the old cells with a border without traction, so that no tap falls outside. Tractions
-/// are per area of contact, so they count with its coverage.
+/// A copy of the old cells within a border without traction, so that no tap falls outside.
+/// Tractions are per area of contact, so they count with its coverage.
+/// @param copy  its border is zero and stays so
 void copy_with_border(std::span<const CellTraction> cells, std::uint32_t side,
                       std::span<CarriedCell> copy) {
-  std::ranges::fill(copy, CarriedCell(0.0));
   for (std::uint32_t j = 0; j < side; ++j) {
     for (std::uint32_t i = 0; i < side; ++i) {
       const CellTraction& cell = cells[j * side + i];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include <glm/gtc/quaternion.hpp>
 
@@ -26,64 +27,78 @@ struct Search {
   Pose tool_in_body;
 };
 
-/// Leaves of the tree whose distances are asked for together.
-struct LeafBlock {
-  static constexpr std::size_t kLeaves = 64;
-  std::array<std::uint32_t, kLeaves> balls;
-  std::array<glm::dvec3, kLeaves> points;  // m, body
-  std::array<Distance, kLeaves> distances;
-  std::size_t count = 0;
+/// Balls of the tree whose distances are asked for together: as many as a few vectors hold.
+struct BallBlock {
+  static constexpr std::size_t kBalls = 64;
+  alignas(64) std::array<double, kBalls> x, y, z;   // m, tool
+  alignas(64) std::array<double, kBalls> distance;  // m, to the body
 };
 
-/// Takes the samples whose ball reaches into the body. Empties the block.
-void take_leaves(Search& search, LeafBlock& block) {
+/// Marks the balls' samples whose ball reaches into the body, and lines up what is below the others
+/// that do.
+/// @param rows  of the tool's balls, at most BallBlock::kBalls of them
+void look_at(Search& search, std::span<const SurfaceBall> balls,
+             std::span<const std::uint32_t> rows, BallBlock& block) {
   Scratch& scratch = search.scratch;
-  signed_distances(search.world, search.body_parts, std::span(block.points).first(block.count),
-                   std::span(block.distances).first(block.count));
-  for (std::size_t i = 0; i < block.count; ++i) {
-    const SurfaceBall& ball =
-        search.world.balls.at<SurfaceBall>(search.tool.balls.first + block.balls[i]);
-    const double distance = block.distances[i].value;
-    if (distance <= ball.radius) {
-      const std::uint32_t sample = search.tool.samples.first + ball.sample;
-      scratch.sample_distance[sample] = distance;
-      scratch.sample_stamp[sample] = scratch.stamp;
-      scratch.sample_point[sample] = kNoRow;
-      scratch.candidates.push_back({sample, distance});
+  const std::size_t count = rows.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::dvec3& center = balls[rows[i]].center;
+    block.x[i] = center.x;
+    block.y[i] = center.y;
+    block.z[i] = center.z;
+  }
+  const auto front = [count](std::array<double, BallBlock::kBalls>& column) {
+    return std::span(column).first(count);
+  };
+  distance_values(search.world, search.body_parts, search.tool_in_body,
+                  {front(block.x), front(block.y), front(block.z)}, front(block.distance));
+  for (std::size_t i = 0; i < count; ++i) {
+    const SurfaceBall& ball = balls[rows[i]];
+    const double distance = block.distance[i];
+    if (ball.sample == kNoRow) {
+      // Written so that NaN goes on.
+      const std::uint32_t end = distance > ball.radius ? 0 : ball.skip;
+      for (std::uint32_t below = rows[i] + 1; below < end; below = balls[below].skip) {
+        scratch.walk.push_back(below);
+      }
+    } else if (distance <= ball.radius) {
+      scratch.found_samples[ball.sample / 64] |= std::uint64_t{1} << (ball.sample % 64);
+      scratch.sample_states[search.tool.samples.first + ball.sample].distance = distance;
     }
   }
-  block.count = 0;
 }
 
-/// Walks the tool's tree of balls: keeps the samples whose ball reaches into the body. The distance
-/// is at least |distance| in every part, so a ball farther away than its radius holds no contact.
+/// Walks the tool's tree of balls, level by level: keeps the samples whose ball reaches into the
+/// body, in their order. The distance is at least |distance| in every part, so a ball farther away
+/// than its radius holds no contact.
 void find_candidates(Search& search) {
+  Scratch& scratch = search.scratch;
   const auto balls = search.world.balls.rows<SurfaceBall>(search.tool.balls);
-  const auto samples = search.world.samples.rows<SurfaceSample>(search.tool.samples);
-  search.scratch.candidates.clear();
-  search.scratch.stamp += 1;
-  const glm::dmat3 turn = glm::mat3_cast(search.tool_in_body.rotation);
-  const auto in_body = [&](const glm::dvec3& point) {
-    return turn * point + search.tool_in_body.position;
-  };
-  LeafBlock block;
-  for (std::uint32_t row = 0; row < balls.size();) {
-    const SurfaceBall& ball = balls[row];
-    if (ball.sample != kNoRow) {
-      block.balls[block.count] = row;
-      block.points[block.count] = in_body(samples[ball.sample].position);
-      block.count += 1;
-      if (block.count == LeafBlock::kLeaves) {
-        take_leaves(search, block);
-      }
-      row += 1;
-    } else {
-      const double distance =
-          signed_distance(search.world, search.body_parts, in_body(ball.center)).value;
-      row = distance > ball.radius ? ball.skip : row + 1;
+  scratch.candidates.clear();
+  scratch.walk.clear();
+  scratch.stamp += 1;
+  const std::span<std::uint64_t> found =
+      std::span(scratch.found_samples).first((search.tool.samples.count + 63) / 64);
+  std::ranges::fill(found, 0);
+  if (!balls.empty()) {
+    scratch.walk.push_back(0);
+  }
+  BallBlock block;
+  for (std::size_t first = 0; first < scratch.walk.size();) {
+    const std::size_t count = std::min(BallBlock::kBalls, scratch.walk.size() - first);
+    look_at(search, balls, std::span(scratch.walk).subspan(first, count), block);
+    first += count;
+  }
+  for (std::size_t word = 0; word < found.size(); ++word) {
+    for (std::uint64_t bits = found[word]; bits != 0; bits &= bits - 1) {
+      const auto sample = search.tool.samples.first + static_cast<std::uint32_t>(word * 64) +
+                          static_cast<std::uint32_t>(std::countr_zero(bits));
+      SampleState& state = scratch.sample_states[sample];
+      state.stamp = scratch.stamp;
+      state.point = kNoRow;
+      scratch.candidates.push_back({sample, state.distance});
     }
   }
-  take_leaves(search, block);
 }
 
 /// Lowest among its neighbours; between equals the first. A neighbour that was not reached is
@@ -91,13 +106,14 @@ void find_candidates(Search& search) {
 bool is_local_minimum(const Search& search, const Candidate& candidate) {
   const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(candidate.sample);
   for (const std::uint32_t neighbour : sample.neighbours) {
-    const std::uint32_t row = search.tool.samples.first + neighbour;
-    if (neighbour == kNoRow || search.scratch.sample_stamp[row] != search.scratch.stamp) {
+    if (neighbour == kNoRow) {
       continue;
     }
-    const double distance = search.scratch.sample_distance[row];
-    if (distance < candidate.distance ||
-        (distance == candidate.distance && row < candidate.sample)) {
+    const std::uint32_t row = search.tool.samples.first + neighbour;
+    const SampleState& state = search.scratch.sample_states[row];
+    if (state.stamp == search.scratch.stamp &&
+        (state.distance < candidate.distance ||
+         (state.distance == candidate.distance && row < candidate.sample))) {
       return false;
     }
   }
@@ -138,7 +154,7 @@ ContactPoint descend(const Search& search, const Candidate& start) {
 
 void add_point(Scratch& scratch, std::uint32_t sample, const ContactPoint& point) {
   if (scratch.points.size() < scratch.points.capacity()) {
-    scratch.sample_point[sample] = static_cast<std::uint32_t>(scratch.points.size());
+    scratch.sample_states[sample].point = static_cast<std::uint32_t>(scratch.points.size());
     scratch.points.push_back(point);
   }
 }
@@ -147,16 +163,18 @@ void add_point(Scratch& scratch, std::uint32_t sample, const ContactPoint& point
 void pair_neighbours(const Search& search, std::uint32_t first) {
   Scratch& scratch = search.scratch;
   for (const Candidate& candidate : scratch.candidates) {
-    const std::uint32_t point = scratch.sample_point[candidate.sample];
+    const std::uint32_t point = scratch.sample_states[candidate.sample].point;
     if (point == kNoRow) {
       continue;
     }
     const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(candidate.sample);
     for (const std::uint32_t neighbour : sample.neighbours) {
-      const std::uint32_t row = search.tool.samples.first + neighbour;
-      if (neighbour != kNoRow && scratch.sample_stamp[row] == scratch.stamp &&
-          scratch.sample_point[row] != kNoRow) {
-        scratch.near_pairs.push_back({point - first, scratch.sample_point[row] - first});
+      if (neighbour == kNoRow) {
+        continue;
+      }
+      const SampleState& state = scratch.sample_states[search.tool.samples.first + neighbour];
+      if (state.stamp == scratch.stamp && state.point != kNoRow) {
+        scratch.near_pairs.push_back({point - first, state.point - first});
       }
     }
   }

@@ -25,16 +25,6 @@ Distance signed_distance(const World& world, Range parts, const glm::dvec3& poin
 std::span<const std::uint32_t> parts_near(const World& world, Range parts, const glm::dvec3& center,
                                           double reach, std::span<std::uint32_t> rows);
 
-/// The same as signed_distance for many points and the parts in `rows` of World::parts; the loop
-/// over parts is outside.
-/// @param points, distances  (n) out: distances
-void signed_distances(const World& world, std::span<const std::uint32_t> rows,
-                      std::span<const glm::dvec3> points, std::span<Distance> distances);
-
-/// The same for all of `parts`.
-void signed_distances(const World& world, Range parts, std::span<const glm::dvec3> points,
-                      std::span<Distance> distances);
-
 /// Columns of one length: points, and what is found there.
 struct DistanceColumns {
   std::span<double> x, y, z;                             // m
@@ -42,10 +32,22 @@ struct DistanceColumns {
   std::span<double> gradient_x, gradient_y, gradient_z;  // unit
 };
 
-/// The same for columns in another frame: a step's hot loop.
+/// The same as signed_distance for many points and the parts in `rows` of World::parts, in another
+/// frame: a step's hot loop.
 /// @param frame    the frame of points and gradients, in the owner's
 /// @param columns  in: x, y, z; out: the rest
 void signed_distances(const World& world, std::span<const std::uint32_t> rows, const Pose& frame,
                       const DistanceColumns& columns);
+
+/// Columns of one length, m.
+struct PointColumns {
+  std::span<const double> x, y, z;
+};
+
+/// The same for all of `parts` without the gradients.
+/// @param frame   the frame of the points, in the owner's
+/// @param values  m, (n) out
+void distance_values(const World& world, Range parts, const Pose& frame, const PointColumns& points,
+                     std::span<double> values);
 
 }  // namespace torsion

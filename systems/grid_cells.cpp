@@ -8,12 +8,12 @@
 #include "systems/distance_shapes.hpp"
 #include "systems/frames.hpp"
 #include "systems/patch_grid.hpp"
+#include "systems/tool_surface.hpp"
 #include "systems/widest.hpp"
 
 namespace torsion {
 namespace {
 
-constexpr int kMostSurfaceSteps = 10;  // of Newton's method down to the tool's surface
 constexpr double kSteepest =
     0.25;  // smallest |cosine| between a surface's normal and the grid's that is divided by
 
@@ -37,36 +37,19 @@ Pose moved_grid_in_body(const Grid& grid) {
   return moved;
 }
 
-/// The cells' centres as columns of points, in the grid's frame.
-void place_centers(const Grid& grid) {
-  const DistanceColumns& points = grid.scratch.cell_columns.points;
-  for (std::uint32_t i = 0; i < grid.side; ++i) {
-    const glm::dvec2 diagonal = cell_center(grid.frame, grid.side, i, i);
-    for (std::uint32_t j = 0; j < grid.side; ++j) {
-      points.x[std::size_t{j} * grid.side + i] = diagonal.x;
-      points.y[std::size_t{i} * grid.side + j] = diagonal.y;
-    }
-  }
-  for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
-    points.z[cell] = grid.cells[cell].height;
-  }
+/// Distance of the cells' places on the tool to the body's rest surface.
+void find_rest_surface(const Grid& grid) {
+  const auto parts = parts_under(grid, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts,
+                                 grid.frame.origin);
+  signed_distances(grid.world, parts, grid_in_body(grid.frame), grid.scratch.cell_columns.points);
 }
 
-/// The largest of sign * values and 0; NaN counts as 0. Several at a time, as one at a time would
-/// wait for the one before.
-TORSION_WIDEST
-double largest(const double* values, std::size_t count, double sign) {
-  constexpr std::size_t kLanes = 16;
-  std::array<double, kLanes> lanes{};
-  std::size_t first = 0;
-  for (; first + kLanes <= count; first += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      lanes[lane] = larger(sign * values[first + lane], lanes[lane]);
-    }
-  }
-  for (; first < count; ++first) {
-    lanes[0] = larger(sign * values[first], lanes[0]);
-  }
+/// How many cells a loop takes at a time that looks for a largest value: one at a time would wait
+/// for the one before.
+constexpr std::size_t kLanes = 8;
+using Lanes = std::array<double, kLanes>;
+
+double largest(const Lanes& lanes) {
   double most = 0.0;
   for (const double lane : lanes) {
     most = larger(lane, most);
@@ -74,105 +57,39 @@ double largest(const double* values, std::size_t count, double sign) {
   return most;
 }
 
-/// How far the cells' places are below the grid's plane, m.
-double deepest_place(const Grid& grid) {
-  const auto z = grid.scratch.cell_columns.points.z;
-  return largest(z.data(), z.size(), -1.0);
-}
-
-/// Radius about the grid's origin that holds what of a surface can lie under the cells' centres and
-/// below the rest surface.
-double reach_of(const Grid& grid) {
-  return glm::length(grid.frame.half_size) + deepest_place(grid);
-}
-
-/// Cells that found nothing of the tool near the rest surface look again from below: where they are
-/// now may be above the tool, and from there no step leads to its underside.
-void return_from_above(const Grid& grid) {
-  const double size = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
-  const double lowest = -deepest_place(grid);
-  for (double& height : grid.scratch.cell_columns.points.z) {
-    height = height < 0.5 * size ? height : lowest;
-  }
-}
-
-/// One step of Newton's method along the normal from every cell to the tool's underside.
-/// @return the largest change of a height below the rest surface, m
+/// Depth under the body's rest surface, how much it changes across a cell, and the share of the
+/// cell that is in contact, all from both surfaces' first-order shape there.
+/// @param half        m: half a cell
+/// @param beside_edge  out: 1 where a cell in contact may lie beside an edge of the body, in lanes
 TORSION_WIDEST
-double step_to_surface(const DistanceColumns& points, double size) {
-  const std::size_t count = points.z.size();
-  const double* __restrict normal = points.gradient_z.data();
-  double* __restrict value = points.value.data();
-  double* __restrict z = points.z.data();
-  for (std::size_t cell = 0; cell < count; ++cell) {
-    const double change = value[cell] / larger(-normal[cell], kSteepest);
-    const double height = z[cell] + change;
-    // Above the rest surface there is no contact, however far away the tool is.
-    z[cell] = height < size ? height : size;
-    value[cell] = height < 0.0 ? std::abs(change) : 0.0;
-  }
-  return largest(value, count, 1.0);
-}
-
-/// Puts the cells' heights on the tool's underside. Leaves the tool's normals of the last step but
-/// one in the columns.
-void find_tool_surface(const Grid& grid) {
-  const CellColumns& columns = grid.scratch.cell_columns;
-  const double size = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
-  const Pose frame = grid_in_tool(grid);
-  const auto parts =
-      parts_near(grid.world, grid.world.tools.at<OwnedRows>(grid.identity.tool).parts,
-                 frame.position, reach_of(grid), grid.scratch.near_parts);
-  const double close_enough = 0.02 * size / static_cast<double>(grid.side);
-  for (int step = 0; step < kMostSurfaceSteps; ++step) {
-    signed_distances(grid.world, parts, frame, columns.points);
-    if (step_to_surface(columns.points, size) < close_enough) {
-      break;
-    }
-  }
-  std::ranges::copy(columns.points.gradient_x, columns.tool_x.begin());
-  std::ranges::copy(columns.points.gradient_y, columns.tool_y.begin());
-  std::ranges::copy(columns.points.gradient_z, columns.tool_z.begin());
-}
-
-/// Depth under the body's rest surface, from the surface's first-order shape there.
-TORSION_WIDEST
-void find_depths(const DistanceColumns& points, std::size_t count, double* __restrict depth) {
-  const double* value = points.value.data();
-  const double* body_z = points.gradient_z.data();
-  for (std::size_t cell = 0; cell < count; ++cell) {
-    depth[cell] = -value[cell] / larger(body_z[cell], kSteepest);
-  }
-}
-
-/// How much the depth changes across a cell, from both surfaces' first-order shape there.
-/// @param half  m: half a cell
-TORSION_WIDEST
-void find_depth_changes(const CellColumns& columns, const glm::dvec2& half, std::size_t count,
-                        double* __restrict depth_change) {
+void find_depths(const glm::dvec2& half, std::size_t count, const double* __restrict value,
+                 const double* __restrict body_x, const double* __restrict body_y,
+                 const double* __restrict body_z, const double* __restrict tool_x,
+                 const double* __restrict tool_y, double* __restrict depth,
+                 double* __restrict depth_change, double* __restrict coverage,
+                 Lanes& __restrict beside_edge) {
   const double half_x = half.x;
   const double half_y = half.y;
-  const double* body_x = columns.points.gradient_x.data();
-  const double* body_y = columns.points.gradient_y.data();
-  const double* body_z = columns.points.gradient_z.data();
-  const double* tool_x = columns.tool_x.data();
-  const double* tool_y = columns.tool_y.data();
-  const double* tool_z = columns.tool_z.data();
-  for (std::size_t cell = 0; cell < count; ++cell) {
-    const double over_body_slope = 1.0 / larger(body_z[cell], kSteepest);
-    const double over_tool_slope = 1.0 / larger(-tool_z[cell], kSteepest);
-    const double change_x = tool_x[cell] * over_tool_slope + body_x[cell] * over_body_slope;
-    const double change_y = tool_y[cell] * over_tool_slope + body_y[cell] * over_body_slope;
-    depth_change[cell] = 2.0 * (std::abs(change_x) * half_x + std::abs(change_y) * half_y) + 1e-30;
+  Lanes beside{};
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t cell = first + lane;
+      const double over_slope = 1.0 / larger(body_z[cell], kSteepest);
+      const double deep = -value[cell] * over_slope;
+      const double change_x = tool_x[cell] + body_x[cell] * over_slope;
+      const double change_y = tool_y[cell] + body_y[cell] * over_slope;
+      const double across =
+          2.0 * (std::abs(change_x) * half_x + std::abs(change_y) * half_y) + 1e-30;
+      const double inside = deep > 0.0 ? 1.0 : 0.0;
+      const double at_edge = 0.5 + deep / across;
+      const double share = 2.0 * std::abs(deep) >= across ? inside : at_edge;
+      depth[cell] = deep;
+      depth_change[cell] = across;
+      coverage[cell] = share;
+      beside[lane] = larger(body_z[cell] < kFullyFacing ? share : 0.0, beside[lane]);
+    }
   }
-}
-
-/// Distance of the cells' places on the tool to the body's rest surface.
-void find_rest_surface(const Grid& grid) {
-  const auto parts =
-      parts_near(grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts,
-                 grid.frame.origin, reach_of(grid), grid.scratch.near_parts);
-  signed_distances(grid.world, parts, grid_in_body(grid.frame), grid.scratch.cell_columns.points);
+  beside_edge = beside;
 }
 
 /// The share of a cell with depth > 0, to first order.
@@ -186,10 +103,8 @@ double share_below(double depth, double across) {
 void take_depth_from_plane(const Grid& grid, std::size_t cell, double facing) {
   const CellColumns& columns = grid.scratch.cell_columns;
   const glm::dvec2 half = cell_half_size(grid);
-  const double over_slope = 1.0 / larger(-columns.tool_z[cell], kSteepest);
   const double across =
-      2.0 * over_slope *
-          (std::abs(columns.tool_x[cell]) * half.x + std::abs(columns.tool_y[cell]) * half.y) +
+      2.0 * (std::abs(columns.tool_x[cell]) * half.x + std::abs(columns.tool_y[cell]) * half.y) +
       1e-30;
   const double height = columns.points.z[cell];
   const double below = share_below(-height, across);
@@ -204,63 +119,101 @@ void take_depth_from_plane(const Grid& grid, std::size_t cell, double facing) {
   }
 }
 
+/// Bits of the cells that are covered, a word a row.
+/// @param coverage  (side x side)
+/// @param bits      1, 2, 4, ...: shifts would hinder vectorisation
 TORSION_WIDEST
-void find_shares(const double* depth, const double* across, std::size_t count,
-                 double* __restrict coverage) {
-  for (std::size_t cell = 0; cell < count; ++cell) {
-    const double inside = depth[cell] > 0.0 ? 1.0 : 0.0;
-    const double at_edge = 0.5 + depth[cell] / across[cell];
-    coverage[cell] = 2.0 * std::abs(depth[cell]) >= across[cell] ? inside : at_edge;
-  }
-}
-
-/// Leaves the coverage in the columns, and depth and coverage where beside an edge.
-CellBits find_coverage(const Grid& grid) {
-  const CellColumns& columns = grid.scratch.cell_columns;
-  find_shares(columns.depth.data(), columns.depth_change.data(), columns.depth.size(),
-              columns.coverage.data());
-  CellBits covered{};
-  std::size_t cell = 0;
-  const double* normal = columns.points.gradient_z.data();
-  double* coverage = columns.coverage.data();
-  const bool spares = has_patch(grid.world, grid.identity) && patch_spare(grid.side) > 0;
-  for (std::uint32_t j = 0; j < grid.side; ++j) {
+void find_covered(const double* __restrict coverage, std::size_t side,
+                  const std::uint64_t* __restrict bits, std::uint64_t* __restrict covered) {
+  for (std::size_t j = 0; j < side; ++j) {
+    const double* const along = coverage + j * side;
     std::uint64_t row = 0;
-    if (spares) {
-      // Takes no part: there are as many columns on either side of a contact's middle.
-      coverage[cell] = 0.0;
-    }
-    for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
-      if (normal[cell] < kFullyFacing && coverage[cell] > 0.0) {
-        take_depth_from_plane(grid, cell, facing_share(normal[cell]));
-      }
-      row |= static_cast<std::uint64_t>(coverage[cell] > 0.0) << i;
+    for (std::size_t i = 0; i < side; ++i) {
+      row |= along[i] > 0.0 ? bits[i] : 0;
     }
     covered[j] = row;
   }
+}
+
+constexpr CellBits single_bits() {
+  CellBits bits{};
+  for (std::size_t i = 0; i < bits.size(); ++i) {
+    bits[i] = std::uint64_t{1} << i;
+  }
+  return bits;
+}
+
+CellBits bits_of_covered(const Grid& grid) {
+  static constexpr CellBits kBits = single_bits();
+  CellBits covered{};
+  find_covered(grid.scratch.cell_columns.coverage.data(), grid.side, kBits.data(), covered.data());
   return covered;
+}
+
+/// Leaves depth, its change and coverage in the columns.
+CellBits find_coverage(const Grid& grid) {
+  const CellColumns& columns = grid.scratch.cell_columns;
+  const std::size_t count = columns.coverage.size();
+  double* const coverage = columns.coverage.data();
+  Lanes beside_edge;
+  const DistanceColumns& body = columns.points;
+  find_depths(cell_half_size(grid), count, body.value.data(), body.gradient_x.data(),
+              body.gradient_y.data(), body.gradient_z.data(), columns.tool_x.data(),
+              columns.tool_y.data(), columns.depth.data(), columns.depth_change.data(), coverage,
+              beside_edge);
+  std::fill(coverage + count, coverage + (count + kLanes - 1) / kLanes * kLanes, 0.0);
+  if (has_patch(grid.world, grid.identity) && patch_spare(grid.side) > 0) {
+    for (std::size_t first = 0; first < count; first += grid.side) {
+      // Takes no part: there are as many columns on either side of a contact's middle.
+      coverage[first] = 0.0;
+    }
+  }
+  if (largest(beside_edge) > 0.0) {
+    const std::span<const double> normal = columns.points.gradient_z;
+    for (std::size_t cell = 0; cell < count; ++cell) {
+      if (normal[cell] < kFullyFacing && coverage[cell] > 0.0) {
+        take_depth_from_plane(grid, cell, facing_share(normal[cell]));
+      }
+    }
+  }
+  return bits_of_covered(grid);
 }
 
 /// From the columns to the table.
 void store_cells(const Grid& grid) {
   const CellColumns& columns = grid.scratch.cell_columns;
+  const double* const z = columns.points.z.data();
+  const double* const depth = columns.depth.data();
+  const double* const coverage = columns.coverage.data();
+  CellGeometry* const cells = grid.cells.data();
   for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
-    grid.cells[cell] = {columns.points.z[cell], columns.depth[cell], columns.coverage[cell]};
+    cells[cell] = {z[cell], depth[cell], coverage[cell]};
   }
 }
 
-/// @param place  m, grid
-std::uint32_t cell_at(const Grid& grid, const glm::dvec3& place) {
-  const auto index = [&grid](double position, double half) {
-    const double scaled = (position / half + 1.0) * 0.5 * static_cast<double>(grid.side);
-    return static_cast<std::uint32_t>(std::clamp(scaled, 0.0, static_cast<double>(grid.side - 1)));
-  };
-  return index(place.y, grid.frame.half_size.y) * grid.side +
-         index(place.x, grid.frame.half_size.x);
-}
-
-void set(CellBits& bits, const Grid& grid, std::uint32_t cell) {
-  bits[cell / grid.side] |= std::uint64_t{1} << (cell % grid.side);
+/// Marks the cells under a region's contact points, those of other clusters in `foreign`.
+/// @return true when there are any of others in the grid
+bool mark_points(const Grid& grid, const RegionPoints& contact, CellBits& own, CellBits& foreign) {
+  const RegionFrame& frame = grid.frame;
+  const glm::dvec2 cells_over_length = 0.5 * static_cast<double>(grid.side) / frame.half_size;
+  const double half_side = 0.5 * static_cast<double>(grid.side);
+  const auto last = static_cast<double>(grid.side - 1);
+  bool any_foreign = false;
+  for (const ContactPoint& point : points_of(grid.scratch, contact)) {
+    const glm::dvec3 offset = point.position - frame.origin;
+    const double x = glm::dot(offset, frame.tangent_x);
+    const double y = glm::dot(offset, frame.tangent_y);
+    if (std::abs(x) <= frame.half_size.x && std::abs(y) <= frame.half_size.y) {
+      const auto i =
+          static_cast<std::uint32_t>(std::min(x * cells_over_length.x + half_side, last));
+      const auto j =
+          static_cast<std::uint32_t>(std::min(y * cells_over_length.y + half_side, last));
+      const bool is_own = point.cluster == contact.cluster;
+      (is_own ? own : foreign)[j] |= std::uint64_t{1} << i;
+      any_foreign = any_foreign || !is_own;
+    }
+  }
+  return any_foreign;
 }
 
 /// Adds to `bits` their free neighbours, those across a corner too. True when there were any.
@@ -283,33 +236,26 @@ bool spread_one_step(const Grid& grid, CellBits& free, CellBits& bits) {
 /// nearer to those of another cluster, in steps from cell to cell. Returns those that keep it.
 CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact, const CellBits& covered) {
   const CellColumns& columns = grid.scratch.cell_columns;
-  CellBits free = covered;
+  CellBits free{};
   CellBits own{};
   CellBits foreign{};
-  bool any_own = false;
-  bool any_foreign = false;
-  const glm::dvec2 reach = grid.frame.half_size;
-  for (const ContactPoint& point : points_of(grid.scratch, contact)) {
-    const glm::dvec3 place = body_to_grid(grid.frame, point.position);
-    if (std::abs(place.x) <= reach.x && std::abs(place.y) <= reach.y) {
-      const std::uint32_t cell = cell_at(grid, place);
-      const bool is_own = point.cluster == contact.cluster;
-      if (columns.coverage[cell] > 0.0) {
-        set(is_own ? own : foreign, grid, cell);
-        any_own = any_own || is_own;
-        any_foreign = any_foreign || !is_own;
-      }
-    }
+  bool any_foreign = mark_points(grid, contact, own, foreign);
+  std::uint64_t any_own = 0;
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    own[j] &= covered[j];
+    foreign[j] &= covered[j] & ~own[j];
+    any_own |= own[j];
   }
-  if (!any_own) {
+  if (any_own == 0) {
     // The points fall between the cells: the deepest cell is the nearest thing to them.
-    const auto deepest = std::ranges::max_element(columns.depth);
-    set(own, grid, static_cast<std::uint32_t>(deepest - columns.depth.begin()));
+    const auto deepest = std::ranges::max_element(columns.depth) - columns.depth.begin();
+    const auto cell = static_cast<std::uint32_t>(deepest);
+    const std::uint32_t j = cell / grid.side;
+    own[j] = (std::uint64_t{1} << (cell % grid.side)) & covered[j];
+    foreign[j] &= ~own[j];
   }
   for (std::uint32_t j = 0; j < grid.side; ++j) {
-    foreign[j] &= ~own[j];
-    own[j] &= free[j];
-    free[j] &= ~(own[j] | foreign[j]);
+    free[j] = covered[j] & ~(own[j] | foreign[j]);
   }
   for (bool more = true; more;) {
     more = spread_one_step(grid, free, own);
@@ -336,26 +282,31 @@ Pose grid_in_tool(const Grid& grid) {
   return relative(tool_in_body, moved_grid_in_body(grid));
 }
 
-CellBits covered_cells(const Grid& grid) {
-  CellBits covered{};
-  std::uint32_t cell = 0;
-  for (std::uint32_t j = 0; j < grid.side; ++j) {
-    for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
-      covered[j] |= static_cast<std::uint64_t>(grid.cells[cell].coverage > 0.0) << i;
+void cell_centers(const RegionFrame& frame, std::uint32_t side, std::span<double> x,
+                  std::span<double> y) {
+  for (std::uint32_t i = 0; i < side; ++i) {
+    x[i] = cell_center(frame, side, i, 0).x;
+  }
+  for (std::uint32_t j = 0; j < side; ++j) {
+    const std::size_t row = std::size_t{j} * side;
+    std::fill_n(&y[row], side, cell_center(frame, side, 0, j).y);
+    if (j > 0) {
+      std::copy_n(x.begin(), side, &x[row]);
     }
   }
-  return covered;
+}
+
+CellBits covered_cells(const Grid& grid) {
+  double* const coverage = grid.scratch.cell_columns.coverage.data();
+  for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
+    coverage[cell] = grid.cells[cell].coverage;
+  }
+  return bits_of_covered(grid);
 }
 
 CellBits find_cells(const Grid& grid, const RegionPoints& contact) {
-  place_centers(grid);
-  return_from_above(grid);
   find_tool_surface(grid);
   find_rest_surface(grid);
-  const CellColumns& columns = grid.scratch.cell_columns;
-  find_depths(columns.points, columns.depth.size(), columns.depth.data());
-  find_depth_changes(columns, cell_half_size(grid), columns.depth.size(),
-                     columns.depth_change.data());
   const CellBits own = keep_own_cells(grid, contact, find_coverage(grid));
   store_cells(grid);
   return own;

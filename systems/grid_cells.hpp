@@ -50,10 +50,15 @@ Pose grid_in_body(const RegionFrame& frame);
 /// The grid's frame, moved as the material under it, in that of its tool.
 Pose grid_in_tool(const Grid& grid);
 
+/// Where the centres of all cells are, m, grid.
+/// @param x, y  (side x side) out
+void cell_centers(const RegionFrame& frame, std::uint32_t side, std::span<double> x,
+                  std::span<double> y);
+
 /// Cells as bits: bit i of word j is cell (i, j).
 using CellBits = std::array<std::uint64_t, kMaxGridSide>;
 
-/// The cells with coverage.
+/// The cells with coverage. Leaves that in Scratch::cell_columns.
 CellBits covered_cells(const Grid& grid);
 
 /// Cosine from which facing_share is 1.

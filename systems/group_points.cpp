@@ -19,10 +19,30 @@ std::uint32_t root_of(std::span<std::uint32_t> parent, std::uint32_t point) {
 }
 
 /// The smaller row becomes the root, so that the outcome does not depend on the order of the links.
-void link(std::span<std::uint32_t> parent, std::uint32_t a, std::uint32_t b) {
+/// @return true when they were not linked before
+bool link(std::span<std::uint32_t> parent, std::uint32_t a, std::uint32_t b) {
   const std::uint32_t root_a = root_of(parent, a);
   const std::uint32_t root_b = root_of(parent, b);
   parent[std::max(root_a, root_b)] = std::min(root_a, root_b);
+  return root_a != root_b;
+}
+
+/// Links pairs that are closer than `threshold`, until all points are one group.
+/// @return how many groups are left
+std::uint32_t link_near(std::span<const glm::dvec3> points, std::span<const NearPair> near,
+                        double threshold, std::span<std::uint32_t> parent) {
+  auto left = static_cast<std::uint32_t>(points.size());
+  for (const NearPair& pair : near) {
+    if (parent[pair.first] == parent[pair.second]) {
+      continue;
+    }
+    const glm::dvec3 gap = points[pair.second] - points[pair.first];
+    if (glm::dot(gap, gap) < threshold * threshold && link(parent, pair.first, pair.second) &&
+        --left == 1) {
+      break;
+    }
+  }
+  return left;
 }
 
 int longest_axis(std::span<const glm::dvec3> points) {
@@ -84,18 +104,11 @@ std::uint32_t group_points(std::span<const glm::dvec3> points, std::span<const N
   }
   TORSION_ASSERT(order.size() >= count && parent.size() >= count && groups.size() >= count);
   std::iota(parent.begin(), parent.begin() + count, 0U);
-  for (const NearPair& pair : near) {
-    if (parent[pair.first] == parent[pair.second]) {
-      continue;
-    }
-    const glm::dvec3 gap = points[pair.second] - points[pair.first];
-    if (glm::dot(gap, gap) < threshold * threshold) {
-      link(parent, pair.first, pair.second);
-    }
+  if (link_near(points, near, threshold, parent) == 1) {
+    std::ranges::fill(groups.first(count), 0U);
+    return 1;
   }
-  if (number_groups(parent, count, groups) > 1) {
-    link_by_sweep(points, threshold, order.first(count), parent);
-  }
+  link_by_sweep(points, threshold, order.first(count), parent);
   return number_groups(parent, count, groups);
 }
 

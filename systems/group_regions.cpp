@@ -18,24 +18,41 @@ struct PairPoints {
   std::uint32_t clusters;
 };
 
-/// Share of a point that lies over a region: 1 on its covered cells, a little on the others of its
-/// grid.
-double overlap_with(const World& world, std::uint32_t region, const glm::dvec3& point) {
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const glm::dvec3 in_grid = body_to_grid(frame, point);
-  if (std::abs(in_grid.x) > frame.half_size.x || std::abs(in_grid.y) > frame.half_size.y) {
-    return 0.0;
+/// A region's grid, to find the cell over which a point lies.
+class GridPlaces {
+ public:
+  GridPlaces(const World& world, std::uint32_t region)
+      : frame_(world.regions.at<RegionFrame>(region)),
+        side_(world.settings.at<Settings>(0).grid_side),
+        cells_over_length_(0.5 * static_cast<double>(side_) / frame_.half_size),
+        cells_(world.cells.rows<CellGeometry>(world.regions.at<RegionIdentity>(region).cells)) {}
+
+  /// Share of a point that lies over the region: 1 on its covered cells, a little on the others of
+  /// its grid.
+  [[nodiscard]] double overlap_with(const glm::dvec3& point) const {
+    const glm::dvec3 offset = point - frame_.origin;
+    const double x = glm::dot(offset, frame_.tangent_x);
+    const double y = glm::dot(offset, frame_.tangent_y);
+    // Written so that NaN overlaps nothing.
+    if (!(std::abs(x) <= frame_.half_size.x && std::abs(y) <= frame_.half_size.y)) {
+      return 0.0;
+    }
+    const std::uint32_t cell = at(y * cells_over_length_.y) * side_ + at(x * cells_over_length_.x);
+    return cells_[cell].coverage > 0.0 ? 1.0 : 1e-2;
   }
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
-  const auto cell_of = [side](double position, double half) {
-    const double scaled = (position / half + 1.0) * 0.5 * static_cast<double>(side);
-    return std::min(static_cast<std::uint32_t>(std::max(scaled, 0.0)), side - 1);
-  };
-  const std::uint32_t cell =
-      cell_of(in_grid.y, frame.half_size.y) * side + cell_of(in_grid.x, frame.half_size.x);
-  const Range cells = world.regions.at<RegionIdentity>(region).cells;
-  return world.cells.at<CellGeometry>(cells.first + cell).coverage > 0.0 ? 1.0 : 1e-2;
-}
+
+ private:
+  /// @param from_middle  in cells
+  [[nodiscard]] std::uint32_t at(double from_middle) const {
+    const double half = 0.5 * static_cast<double>(side_);
+    return std::min(static_cast<std::uint32_t>(std::max(from_middle + half, 0.0)), side_ - 1);
+  }
+
+  const RegionFrame& frame_;
+  std::uint32_t side_;
+  glm::dvec2 cells_over_length_;  // 1/m
+  std::span<const CellGeometry> cells_;
+};
 
 bool of_pair(const RegionIdentity& region, const ContactPair& pair) {
   return region.tool == pair.tool && region.body == pair.body;
@@ -124,8 +141,9 @@ void match_by_overlap(const World& world, Scratch& scratch, const ContactPair& p
       continue;
     }
     scratch.overlaps.assign(pair.clusters, 0.0);
+    const GridPlaces places(world, region);
     for (const ContactPoint& point : points) {
-      scratch.overlaps[point.cluster] += overlap_with(world, region, point.position);
+      scratch.overlaps[point.cluster] += places.overlap_with(point.position);
     }
     const auto best = std::ranges::max_element(scratch.overlaps);
     if (best == scratch.overlaps.end() || *best <= 0.0) {
@@ -176,8 +194,9 @@ void match_clusters(const World& world, Scratch& scratch, const ContactPair& pai
 /// kNoRow.
 std::uint32_t heir_of(const World& world, const Scratch& scratch, std::uint32_t region,
                       std::span<const ContactPoint> points) {
+  const GridPlaces places(world, region);
   for (const ContactPoint& point : points) {
-    if (overlap_with(world, region, point.position) >= 1.0) {
+    if (places.overlap_with(point.position) >= 1.0) {
       return scratch.owners[point.cluster].region;
     }
   }
@@ -191,7 +210,8 @@ void note_splits(World& world, const Scratch& scratch, std::span<const ContactPo
       continue;
     }
     for (const ClusterOwner& owner : scratch.owners) {
-      if (owner.region != kNoRow && overlap_with(world, owner.region, point.position) >= 1.0) {
+      if (owner.region != kNoRow &&
+          GridPlaces(world, owner.region).overlap_with(point.position) >= 1.0) {
         world.regions.at<RegionWrench>(owner.region).event_now =
             static_cast<std::uint32_t>(RegionEvent::kTakesOver);
       }

@@ -18,7 +18,6 @@ namespace torsion {
 namespace {
 
 constexpr int kMostPasses = 10;  // of one grid in one step: a new region finds its size by doubling
-constexpr double kMargin = 1.12;        // of the grid around the contact: about one cell of 16
 constexpr double kSmallestFill = 0.45;  // of the grid by the contact, else the grid is made smaller
 constexpr double kSettled =
     0.02;  // of the grid: what it is off by when a region begins, splits or takes over another
@@ -50,8 +49,11 @@ PlaneBox covered_box(const Grid& grid, const CellBits& covered) {
   PlaneBox box;
   std::optional<glm::dvec2> middle;  // of some covered cell
   const glm::dvec2 half = cell_half_size(grid);
+  const double step = 2.0 / static_cast<double>(grid.side);
   const auto include = [&](std::uint32_t i, std::uint32_t j) {
-    const glm::dvec2 center = cell_center(grid.frame, grid.side, i, j);
+    // As cell_center, without its division.
+    const glm::dvec2 cell(static_cast<double>(i), static_cast<double>(j));
+    const glm::dvec2 center = grid.frame.half_size * ((cell + 0.5) * step - 1.0);
     // At less than half coverage the edge is short of the centre: the reach is negative, and this
     // grows with the coverage without a jump.
     const glm::dvec2 reach = half * (2.0 * grid.cells[j * grid.side + i].coverage - 1.0);
@@ -84,10 +86,10 @@ PlaneBox covered_box(const Grid& grid, const CellBits& covered) {
 glm::dvec2 half_size_for(const Grid& grid, const PlaneBox& box) {
   const glm::dvec2 half = 0.5 * (box.highest - box.lowest);
   if (has_patch(grid.world, grid.identity)) {
-    return patch_half_size(kMargin * glm::max(half, glm::dvec2(kSmallestHalf)));
+    return patch_half_size(kGridMargin * glm::max(half, glm::dvec2(kSmallestHalf)));
   }
   const double least = std::max(0.1 * std::max(half.x, half.y), kSmallestHalf);
-  return kMargin * glm::max(half, glm::dvec2(least));
+  return kGridMargin * glm::max(half, glm::dvec2(least));
 }
 
 /// Outward normal of the body's surface nearest to a point of its frame.
@@ -210,7 +212,7 @@ void center_patch(const Grid& grid, const RegionPoints& contact, double start_de
     const glm::dvec2 middle = overlap_middle(grid);
     const glm::dvec2 half = half_size_for(grid, box);
     const glm::dvec2 shift = middle - off * half;
-    fit(grid, {middle - off * half - half / kMargin, middle - off * half + half / kMargin});
+    fit(grid, {middle - off * half - half / kGridMargin, middle - off * half + half / kGridMargin});
     turn_normal_to(grid.frame, body_normal(grid, grid.frame.origin));
     restart_heights(grid, start_depth);
     const glm::dvec2 change = glm::max(glm::abs(shift), glm::abs(half - before)) / half;

@@ -6,9 +6,9 @@ void Scratch::reserve(const World& world) {
   const std::uint32_t samples = world.samples.size();
   const std::uint32_t bodies = world.bodies.size();
   const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
-  sample_distance.assign(samples, 0.0);
-  sample_stamp.assign(samples, 0);
-  sample_point.assign(samples, kNoRow);
+  sample_states.assign(samples, SampleState{});
+  found_samples.assign((samples + 63) / 64, 0);
+  walk.reserve(world.balls.size());
   candidates.reserve(samples);
   // Every sample of every tool may be inside every body.
   const std::size_t most_points = std::size_t{samples} * bodies;
@@ -27,18 +27,25 @@ void Scratch::reserve(const World& world) {
   const bool patches = !world.patch_cells.empty();
   // Columns end in zeros up to a multiple of 8, so that loops may take eight cells at a time.
   const std::size_t stride = (cells + 7) / 8 * 8;
-  column_memory.assign((patches ? 33 : 13) * stride, 0.0);
+  const std::size_t columns = patches ? 41 : 21;
+  column_memory.reserve(static_cast<std::uint32_t>(columns * stride));
   std::size_t next = 0;
   const auto column = [&] {
-    return std::span<double>(column_memory).subspan(stride * next++, cells);
+    return std::span<double>(column_memory.data() + stride * next++, cells);
   };
-  DistanceColumns& found = cell_columns.points;
+  for (DistanceColumns* found : {&cell_columns.points, &left_cells.points}) {
+    for (std::span<double>* each : {&found->x, &found->y, &found->z, &found->value,
+                                    &found->gradient_x, &found->gradient_y, &found->gradient_z}) {
+      *each = column();
+    }
+  }
   for (std::span<double>* each :
-       {&found.x, &found.y, &found.z, &found.value, &found.gradient_x, &found.gradient_y,
-        &found.gradient_z, &cell_columns.tool_x, &cell_columns.tool_y, &cell_columns.tool_z,
-        &cell_columns.depth, &cell_columns.depth_change, &cell_columns.coverage}) {
+       {&cell_columns.tool_x, &cell_columns.tool_y, &cell_columns.depth, &cell_columns.depth_change,
+        &cell_columns.coverage, &left_cells.tool_x, &left_cells.tool_y}) {
     *each = column();
   }
+  cell_memory.assign(cells, 0);
+  left_cells.cells = cell_memory;
   if (!world.footings.empty()) {
     constexpr std::size_t kRows = std::size_t{6} * kMaxRegionsPerBody;
     compliance_matrix.resize(kRows * kRows);

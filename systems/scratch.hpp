@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "ecs/column.hpp"
 #include "ecs/commands.hpp"
 #include "ecs/components.hpp"
 #include "ecs/world.hpp"
@@ -41,6 +42,14 @@ struct Candidate {
   double distance = 0.0;     // m, to the body; negative inside
 };
 
+/// A sample of a tool's surface while one pair is searched; what it says counts where it is
+/// stamped.
+struct SampleState {
+  double distance = 0.0;    // m, to the body
+  std::uint32_t stamp = 0;  // Scratch::stamp of the search that has found it
+  std::uint32_t point = 0;  // its row in Scratch::points, or kNoRow
+};
+
 /// A region that continues, begins or ends in this step, for group_regions.
 struct ClusterOwner {
   std::uint32_t region =
@@ -61,11 +70,18 @@ struct RegionPoints {
 
 /// The cells of one region as columns, in the grid's frame.
 struct CellColumns {
-  DistanceColumns points;                    // cells' centres on the tool's underside
-  std::span<double> tool_x, tool_y, tool_z;  // gradient of the distance to the tool
-  std::span<double> depth;                   // m, as in CellGeometry
-  std::span<double> depth_change;            // m, across the cell
-  std::span<double> coverage;                // as in CellGeometry
+  DistanceColumns points;            // cells' centres on the tool's underside
+  std::span<double> tool_x, tool_y;  // how much higher the tool is farther along x, y
+  std::span<double> depth;           // m, as in CellGeometry
+  std::span<double> depth_change;    // m, across the cell
+  std::span<double> coverage;        // as in CellGeometry
+};
+
+/// Those of a region's cells that are not yet on the tool's surface.
+struct LeftCells {
+  std::span<std::uint32_t> cells;
+  DistanceColumns points;
+  std::span<double> tool_x, tool_y;  // as in CellColumns
 };
 
 /// How far the body as a whole has moved the cells of one region, beside its RegionSupport, m:
@@ -83,10 +99,9 @@ using CarriedCell = glm::dvec4;
 /// that a saved world replays without it.
 struct Scratch {
   // detect_contacts
-  std::vector<double>
-      sample_distance;  // (samples) distance to the current body; valid where stamped
-  std::vector<std::uint32_t> sample_stamp;  // (samples)
-  std::vector<std::uint32_t> sample_point;  // (samples) its row in `points`, or kNoRow; likewise
+  std::vector<SampleState> sample_states;    // (samples)
+  std::vector<std::uint64_t> found_samples;  // (samples of a tool) a bit each
+  std::vector<std::uint32_t> walk;           // (balls of a tool) those to look at, in turn
   std::uint32_t stamp = 0;
   std::vector<Candidate> candidates;
   std::vector<ContactPoint> points;
@@ -104,6 +119,7 @@ struct Scratch {
       region_points;  // (regions) by block of cells, which does not move when rows do
   // region_grids
   CellColumns cell_columns;                // (cells of one region)
+  LeftCells left_cells;                    // likewise
   std::vector<CarriedCell> carried_cells;  // (cells of one region and a border of one around them)
   std::vector<std::uint32_t> near_parts;   // (parts of all bodies and tools)
 
@@ -125,7 +141,8 @@ struct Scratch {
   std::vector<PatchCell> patch_before;  // (cells of one region) while its grid moves
   std::vector<CellTraction> tractions_before;
 
-  std::vector<double> column_memory;  // what cell_columns and patch_columns are in
+  Column<double> column_memory;            // what the columns above are in
+  std::vector<std::uint32_t> cell_memory;  // what the cells of left_cells are in
 
   /// Takes all memory that a step of `world` can need.
   void reserve(const World& world);

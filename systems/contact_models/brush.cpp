@@ -56,21 +56,18 @@ void fall_and_recover(const BrushState& brush, BrushBlock& __restrict block) {
 
 /// Caps the trials at the limit.
 TORSION_WIDEST
-void cap(const BrushState& brush, BrushBlock& __restrict block, BrushLanes& __restrict lanes) {
+void cap(const BrushState& brush, BrushBlock& __restrict block) {
   const double may_stick = brush.kinetic_share < 0.5 ? 1.0 : 0.0;
-  for (std::size_t first = 0; first < kBrushBlock; first += lanes.cut_x.size()) {
-    for (std::size_t lane = 0; lane < lanes.cut_x.size(); ++lane) {
-      const std::size_t i = first + lane;
-      const double limit = block.limit[i];
-      const double kept = limit / larger(larger(limit, block.trial_size[i]), kLeast);
-      const double elastic_x = kept * block.elastic_x[i];
-      const double elastic_y = kept * block.elastic_y[i];
-      lanes.cut_x[lane] += block.area[i] * (block.elastic_x[i] - elastic_x);
-      lanes.cut_y[lane] += block.area[i] * (block.elastic_y[i] - elastic_y);
-      block.elastic_x[i] = elastic_x;
-      block.elastic_y[i] = elastic_y;
-      block.sticks[i] = block.trial_size[i] > limit ? 0.0 : may_stick;
-    }
+  for (std::size_t i = 0; i < kBrushBlock; ++i) {
+    const double limit = block.limit[i];
+    const double kept = limit / larger(larger(limit, block.trial_size[i]), kLeast);
+    const double elastic_x = kept * block.elastic_x[i];
+    const double elastic_y = kept * block.elastic_y[i];
+    block.cut_x[i] = block.area[i] * (block.elastic_x[i] - elastic_x);
+    block.cut_y[i] = block.area[i] * (block.elastic_y[i] - elastic_y);
+    block.elastic_x[i] = elastic_x;
+    block.elastic_y[i] = elastic_y;
+    block.sticks[i] = block.trial_size[i] > limit ? 0.0 : may_stick;
   }
 }
 
@@ -115,6 +112,8 @@ void add_up(const BrushState& brush, const BrushBlock& __restrict block,
       lanes.force_y[lane] += force_y;
       lanes.couple[lane] +=
           (block.x[i] - state.center.x) * force_y - (block.y[i] - state.center.y) * force_x;
+      lanes.cut_x[lane] += block.cut_x[i];
+      lanes.cut_y[lane] += block.cut_y[i];
       lanes.moved[lane] = larger(block.moved[i], lanes.moved[lane]);
       lanes.stuck_area[lane] += stuck * area;
       lanes.stuck_couple[lane] += stuck * (turning_x * force_y - turning_y * force_x);
@@ -135,7 +134,7 @@ void update_brushes(const BrushState& brush, BrushBlock& block, BrushLanes& lane
   if (brush.falls) {
     fall_and_recover(brush, block);
   }
-  cap(brush, block, lanes);
+  cap(brush, block);
   block.moved.fill(0.0);
   if (brush.kinetic_share > 0.0 || brush.several) {
     slide_on(brush, block);

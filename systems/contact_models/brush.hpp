@@ -49,6 +49,7 @@ struct alignas(64) BrushBlock {
   BrushColumn limit;                 // Pa: of friction
   BrushColumn elastic_x, elastic_y;  // Pa
   BrushColumn trial_size;            // Pa
+  BrushColumn cut_x, cut_y;          // N: what the limit cuts off
   BrushColumn moved;                 // m: the cell's own motion over the body
 };
 

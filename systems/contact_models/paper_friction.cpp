@@ -89,15 +89,19 @@ BrushSums update_cells(World& world, std::uint32_t region, const BrushState& bru
     count = 0;
   };
   std::uint32_t cell = 0;
+  std::array<double, kMaxGridSide> x;
+  for (std::uint32_t i = 0; i < side; ++i) {
+    x[i] = cell_center(frame, side, i, 0).x;
+  }
   for (std::uint32_t j = 0; j < side; ++j) {
+    const double y = cell_center(frame, side, 0, j).y;
     for (std::uint32_t i = 0; i < side; ++i, ++cell) {
       if (cells[cell].coverage <= 0.0) {
         tractions[cell] = CellTraction{};
         continue;
       }
-      const glm::dvec2 place = cell_center(frame, side, i, j);
-      block.x[count] = place.x;
-      block.y[count] = place.y;
+      block.x[count] = x[i];
+      block.y[count] = y;
       block.height[count] = cells[cell].height;
       block.area[count] = cells[cell].coverage * cell_size;
       block.traction_x[count] = tractions[cell].traction.x;

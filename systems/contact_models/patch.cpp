@@ -9,6 +9,7 @@
 #include "systems/contact_models/patch_passes.hpp"
 #include "systems/contact_models/region_influences.hpp"
 #include "systems/frames.hpp"
+#include "systems/grid_cells.hpp"
 #include "systems/patch_grid.hpp"
 #include "systems/scratch.hpp"
 
@@ -63,7 +64,7 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
                        (static_cast<double>(settings.grid_side) * elasticity.shear_modulus());
   problem.coupled = influences.coupled;
   const PatchPlaces& places = context.scratch.patch_places;
-  find_places(frame, settings.grid_side, places);
+  cell_centers(frame, settings.grid_side, places.x, places.y);
   problem.support =
       patch_support(world, region, {places.x, places.y}, context.scratch.patch_support);
   problem.sweeps = settings.sweeps;

@@ -131,21 +131,6 @@ void store_cells(const PatchColumns& columns, std::span<const double> support_x,
   }
 }
 
-void find_places(const RegionFrame& frame, std::uint32_t side, const PatchPlaces& places) {
-  for (std::uint32_t j = 0; j < side; ++j) {
-    const double y = cell_center(frame, side, 0, j).y;
-    for (std::uint32_t i = 0; i < side; ++i) {
-      places.y[std::size_t{j} * side + i] = y;
-    }
-  }
-  for (std::uint32_t i = 0; i < side; ++i) {
-    places.x[i] = cell_center(frame, side, i, 0).x;
-  }
-  for (std::size_t j = 1; j < side; ++j) {
-    std::copy_n(places.x.begin(), side, &places.x[j * side]);
-  }
-}
-
 void set_targets(const RegionMotion& motion, const PatchPlaces& places,
                  std::span<const double> support_x, std::span<const double> support_y,
                  const PatchColumns& columns) {

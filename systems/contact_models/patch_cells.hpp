@@ -40,9 +40,6 @@ void load_cells(const PatchRows& rows, const Friction& friction, double share,
 void store_cells(const PatchColumns& columns, std::span<const double> support_x,
                  std::span<const double> support_y, const PatchRows& rows);
 
-/// The cells' centres.
-void find_places(const RegionFrame& frame, std::uint32_t side, const PatchPlaces& places);
-
 /// Where the cells go if they stick: on from where they are held, with the tool.
 /// @param support_x, support_y  m: the body's motion, which what is sought is without
 void set_targets(const RegionMotion& motion, const PatchPlaces& places,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "systems/distance.hpp"
 #include "systems/distance_field_build.hpp"
 #include "systems/distance_mesh.hpp"
+#include "tests/support/distance_columns.hpp"
 #include "tests/systems/distance_meshes.hpp"
 #include "tests/systems/field_world.hpp"
 
@@ -47,10 +49,12 @@ std::vector<glm::dvec3> patch_points() {
 /// The distances of all points of the patch to the world's first part.
 void time_patch(benchmark::State& state, const World& world) {
   const std::vector<glm::dvec3> points = patch_points();
-  std::vector<Distance> distances(points.size());
+  test::PointBatch batch(points);
+  const DistanceColumns columns = batch.columns();
+  const std::array<std::uint32_t, 1> rows{0};
   for (auto _ : state) {
-    signed_distances(world, {0, 1}, points, distances);
-    benchmark::DoNotOptimize(distances.data());
+    signed_distances(world, rows, Pose{}, columns);
+    benchmark::DoNotOptimize(columns.value.data());
     benchmark::ClobberMemory();
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
@@ -122,14 +126,16 @@ void union_of_ten(benchmark::State& state, bool near_only) {
   }
   const World world = world_with(parts);
   const std::vector<glm::dvec3> points = patch_points();
-  std::vector<Distance> distances(points.size());
+  test::PointBatch batch(points);
+  const DistanceColumns columns = batch.columns();
   std::array<std::uint32_t, 10> rows{};
+  std::iota(rows.begin(), rows.end(), 0U);
   for (auto _ : state) {
     if (near_only) {
-      signed_distances(world, parts_near(world, {0, 10}, {0.0, 0.05, 0.0}, 0.012, rows), points,
-                       distances);
+      signed_distances(world, parts_near(world, {0, 10}, {0.0, 0.05, 0.0}, 0.012, rows), Pose{},
+                       columns);
     } else {
-      signed_distances(world, {0, 10}, points, distances);
+      signed_distances(world, rows, Pose{}, columns);
     }
     benchmark::ClobberMemory();
   }

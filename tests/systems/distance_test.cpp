@@ -10,9 +10,11 @@
 #include <vector>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
 #include "systems/distance_shapes.hpp"
+#include "tests/support/distance_columns.hpp"
 
 namespace torsion {
 namespace {
@@ -283,14 +285,27 @@ TEST(UnionTest, ManyPointsAtOnceGiveWhatSinglePointsGive) {
   for (int i = 0; i < 100; ++i) {  // no multiple of a block
     points.push_back(random_in_box(random, glm::dvec3(0.2)));
   }
-  std::vector<Distance> distances(points.size());
-  for (const Range parts : {Range{0, 5}, Range{2, 2}, Range{4, 1}}) {
-    signed_distances(world, parts, points, distances);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const Distance single = signed_distance(world, parts, points[i]);
-      // The turn by a matrix and by a quaternion round differently.
-      EXPECT_NEAR(distances[i].value, single.value, 1e-15);
-      EXPECT_NEAR(glm::distance(distances[i].gradient, single.gradient), 0.0, 1e-12);
+  test::PointBatch batch(points);
+  const DistanceColumns columns = batch.columns();
+  std::vector<double> values(points.size());
+  Pose frame;  // as seen from another frame, the points are elsewhere
+  frame.position = {0.01, -0.02, 0.03};
+  frame.rotation = glm::angleAxis(0.7, glm::normalize(glm::dvec3(1.0, 2.0, -0.5)));
+  for (const std::vector<std::uint32_t>& rows :
+       {std::vector<std::uint32_t>{0, 1, 2, 3, 4}, {2, 3}, {4}}) {
+    const Range parts{rows.front(), static_cast<std::uint32_t>(rows.size())};
+    for (const Pose& seen_from : {Pose{}, frame}) {
+      signed_distances(world, rows, seen_from, columns);
+      distance_values(world, parts, seen_from, {columns.x, columns.y, columns.z}, values);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const Distance single =
+            signed_distance(world, parts, seen_from.rotation * points[i] + seen_from.position);
+        // The turn by a matrix and by a quaternion round differently.
+        EXPECT_NEAR(batch.at(i).value, single.value, 1e-15);
+        EXPECT_NEAR(glm::distance(seen_from.rotation * batch.at(i).gradient, single.gradient), 0.0,
+                    1e-12);
+        EXPECT_EQ(values[i], batch.at(i).value);
+      }
     }
   }
 }
@@ -299,11 +314,15 @@ TEST(UnionTest, OfNothingIsInfinitelyFar) {
   const World world = world_with(mallet());
   EXPECT_EQ(signed_distance(world, {0, 0}, glm::dvec3(0.0)).value,
             std::numeric_limits<double>::infinity());
-  std::array<glm::dvec3, 3> points{};
-  std::array<Distance, 3> distances{};
-  signed_distances(world, Range{0, 0}, points, distances);
-  for (const Distance& distance : distances) {
-    EXPECT_EQ(distance.value, std::numeric_limits<double>::infinity());
+  const std::array<glm::dvec3, 3> points{};
+  test::PointBatch batch(points);
+  std::array<double, 3> values{};
+  const DistanceColumns columns = batch.columns();
+  signed_distances(world, {}, Pose{}, columns);
+  distance_values(world, Range{0, 0}, Pose{}, {columns.x, columns.y, columns.z}, values);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_EQ(batch.at(i).value, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(values[i], std::numeric_limits<double>::infinity());
   }
 }
 
@@ -322,9 +341,9 @@ TEST(PartsNearTest, KeepsEveryPartThatIsNearestToSomePointWithinReach) {
     for (int j = 0; j < 30; ++j) {
       const glm::dvec3 p = center + random_direction(random) * reach;
       const Distance of_all = signed_distance(world, {0, 5}, p);
-      Distance of_near;
-      signed_distances(world, near, {&p, 1}, {&of_near, 1});
-      EXPECT_NEAR(of_near.value, of_all.value, 1e-15);
+      test::PointBatch batch({&p, 1});
+      signed_distances(world, near, Pose{}, batch.columns());
+      EXPECT_NEAR(batch.at(0).value, of_all.value, 1e-15);
     }
   }
   EXPECT_TRUE(dropped_some);

@@ -4,8 +4,8 @@
 
 namespace torsion {
 
-std::string trouble_text(DeviceTrouble trouble) {
-  switch (trouble) {
+std::string trouble_text(const DeviceSample& sample) {
+  switch (sample.trouble) {
     case DeviceTrouble::kNone:
       return "";
     case DeviceTrouble::kNoAccess:
@@ -23,6 +23,10 @@ std::string trouble_text(DeviceTrouble trouble) {
       return "it does not answer; is its power on?";
     case DeviceTrouble::kNotUnderstood:
       return "it does not speak as such a device should";
+    case DeviceTrouble::kMotorError:
+      return fmt::format("its motor has no force ({}). {}", odrive_error_text(sample.motor_errors),
+                         sample.motor_errors == kOdriveWatchdog ? "It is set up anew"
+                                                                : "Then unplug it and plug it in");
   }
   return "";
 }

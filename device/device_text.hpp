@@ -9,7 +9,7 @@
 namespace torsion {
 
 /// What is wrong and what to do about it, one sentence; empty where nothing is.
-std::string trouble_text(DeviceTrouble trouble);
+std::string trouble_text(const DeviceSample& sample);
 
 /// "force and torque", "force; torque is not displayed", ...
 std::string actuated_text(std::uint8_t actuated);

@@ -32,6 +32,7 @@ enum class DeviceTrouble : std::uint8_t {
   kNotHomed,       // the user must move it through its range
   kSilent,         // it does not answer
   kNotUnderstood,  // it answers something else
+  kMotorError,     // its motor's controller has let go: DeviceSample::motor_errors
 };
 
 /// What a device is, as far as stability asks. Zero where it is not known.
@@ -57,6 +58,7 @@ struct DeviceSample {
   std::uint32_t buttons = 0;  // one bit each
   DeviceState state = DeviceState::kAbsent;
   DeviceTrouble trouble = DeviceTrouble::kNone;
+  std::uint32_t motor_errors = 0;   // of kMotorError: bits of an ODrive's axis.error
   std::uint8_t sensed = kNoAxes;    // of DeviceAxes
   std::uint8_t actuated = kNoAxes;  // likewise
   bool steers_rate = false;   // it has no place of its own: its pose is where it was steered to

@@ -22,7 +22,7 @@ std::string gains_text(const VirtualCoupling& coupling) {
 
 std::string describe(const DeviceView& view) {
   const DeviceSample& sample = view.sample;
-  const std::string trouble = trouble_text(sample.trouble);
+  const std::string trouble = trouble_text(sample);
   if (sample.state == DeviceState::kAbsent) {
     return "no device is plugged in";
   }
@@ -83,7 +83,7 @@ DeviceBanner device_banner(const DeviceView& view, bool steps_go_on) {
                            : DeviceBanner{"No device is plugged in that could hold the tool."};
   }
   if (sample.trouble != DeviceTrouble::kNone) {
-    return {"The device: " + trouble_text(sample.trouble) + ".", true};
+    return {"The device: " + trouble_text(sample) + ".", true};
   }
   if (sample.state != DeviceState::kLive) {
     return {view.losses > 0 ? "The device does not answer: no force. It is set up anew."

@@ -5,13 +5,16 @@
 #include <cmath>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
 namespace torsion {
 namespace {
 
-constexpr double kSilence = 5e-3;  // s: live, then it is told to let go and asked again
-constexpr double kLost = 0.25;     // s: then it is set up anew
-constexpr double kRetry = 0.5;     // s
+constexpr double kSilence = 5e-3;        // s: live, then it is told to let go and asked again
+constexpr double kLost = 0.25;           // s: then it is set up anew
+constexpr double kRetry = 0.5;           // s
+constexpr double kArms = 0.25;           // s: until it obeys, after it was told to
+constexpr std::uint32_t kAskEvery = 20;  // steps: asked how it is
 constexpr int kAxis = 0;
 constexpr std::uint8_t kCdcControl = 2;
 constexpr std::uint8_t kCdcData = 10;
@@ -37,7 +40,9 @@ void write(OdriveDriver& driver, DriverCall& call, std::string_view text) {
 void step(OdriveDriver& driver, DriverCall& call, double torque) {
   const double most = call.options.largest_knob_torque;
   const double limited = std::isfinite(torque) ? std::clamp(torque, -most, most) : 0.0;
-  write(driver, call, encode_odrive_step(kAxis, limited).view());
+  const bool asks = driver.until_ask == 0;
+  driver.until_ask = asks ? kAskEvery : driver.until_ask - 1;
+  write(driver, call, encode_odrive_step(kAxis, limited, asks).view());
 }
 
 void let_go(OdriveDriver& driver, DriverCall& call) {
@@ -45,7 +50,7 @@ void let_go(OdriveDriver& driver, DriverCall& call) {
 }
 
 void again_later(OdriveDriver& driver, DriverCall& call, DeviceTrouble trouble) {
-  write(driver, call, kIdle);
+  let_go_through(driver.writes, call, bytes_of(kIdle));
   driver.phase = OdrivePhase::kClaimingControl;
   set_state(call, DeviceState::kStarting, trouble);
   call.report.wake_at = call.now + kRetry;
@@ -66,6 +71,28 @@ void take_feedback(OdriveDriver& driver, DriverCall& call, const OdriveFeedback&
   const Wrench wrench =
       publish_pose(call, {glm::dvec3(0.0), glm::angleAxis(angle, glm::dvec3(0.0, 1.0, 0.0))}, 0);
   step(driver, call, wrench.torque.y);
+}
+
+/// Whether what it says of its place counts.
+bool obeys(const OdriveDriver& driver) {
+  return driver.phase == OdrivePhase::kLive ||
+         (driver.phase == OdrivePhase::kSettingUp && driver.at > kSetUp.size());
+}
+
+/// What it says of itself. Its errors come from a cause that somebody has to remove, or it would
+/// take hold again by itself; but it is set up anew where all that happened is that this machine
+/// was too busy to feed it.
+void take_status(OdriveDriver& driver, DriverCall& call, const OdriveStatus& status) {
+  const bool lags = call.now - driver.set_up_at < kArms;
+  if (status.errors == 0 && (status.state == kOdriveClosedLoop || lags)) {
+    return;
+  }
+  call.report.sample.motor_errors = status.errors;
+  again_later(driver, call, DeviceTrouble::kMotorError);
+  if (status.errors != kOdriveWatchdog) {
+    driver.phase = OdrivePhase::kNone;
+    call.report.wake_at = kNever;
+  }
 }
 
 void take_claim(OdriveDriver& driver, DriverCall& call, const UsbEvent& event) {
@@ -93,6 +120,7 @@ void go_on(OdriveDriver& driver, DriverCall& call) {
     write(driver, call, kSetUp[driver.at++]);
   } else if (driver.at == kSetUp.size()) {
     driver.at += 1;
+    driver.set_up_at = call.now;
     let_go(driver, call);
     call.report.wake_at = call.now + kSilence;
   }
@@ -151,9 +179,14 @@ void take(OdriveDriver& driver, DriverCall& call, const UsbEvent& event) {
   switch (take_read(driver.reads, call, event)) {
     case ReadOutcome::kData: {
       const auto feedback = take_odrive_bytes(driver.stream, text_of(event.bytes));
-      if (feedback && driver.at > kSetUp.size()) {
+      const auto status = std::exchange(driver.stream.status, std::nullopt);
+      if (status && driver.phase == OdrivePhase::kLive) {
+        take_status(driver, call, *status);
+      }
+      if (feedback && obeys(driver)) {
         take_feedback(driver, call, *feedback);
-      } else if (!event.bytes.empty() && driver.stream.line.size == 0) {
+      } else if (!event.bytes.empty() && !status && driver.stream.numbers == 0 &&
+                 driver.stream.line.size == 0) {
         call.report.counts.garbage += 1;
       }
       keep_reading(driver.reads, call);

@@ -17,7 +17,9 @@ struct OdriveDriver {
   std::uint8_t data = 0;  // number of the interface that has it
   ReadQueue reads;
   OdriveStream stream;
-  double heard_at = 0.0;  // s
+  double heard_at = 0.0;        // s
+  double set_up_at = 0.0;       // s: when it was told to obey
+  std::uint32_t until_ask = 0;  // steps until it is asked how it is
 };
 
 void begin(OdriveDriver& driver, DriverCall& call);

@@ -24,15 +24,58 @@ std::optional<double> take_number(std::string_view& text) {
   return value;
 }
 
+std::optional<std::uint32_t> decode_number(std::string_view line) {
+  std::uint32_t value = 0;
+  const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
+  line.remove_prefix(static_cast<std::size_t>(end - line.data()));
+  const bool whole = line.find_first_not_of(" \r\n") == std::string_view::npos;
+  return error == std::errc() && whole ? std::optional(value) : std::nullopt;
+}
+
+struct AxisError {
+  std::uint32_t bit;
+  const char* name;
+  const char* cure;
+};
+
+constexpr const char* kItsTool = "odrivetool says more: dump_errors(odrv0)";
+constexpr const char* kCalibrate = "calibrate motor and encoder with odrivetool";
+constexpr const char* kSupply = "check its power supply";
+constexpr const char* kEnds = "turn it away from its end stop";
+// Of firmware 0.5: its API reference, ODrive.Axis.Error, and what came before 0.5.2.
+constexpr std::array kAxisErrors = {
+    AxisError{0x1, "INVALID_STATE", kCalibrate},
+    AxisError{0x2, "DC_BUS_UNDER_VOLTAGE", kSupply},
+    AxisError{0x4, "DC_BUS_OVER_VOLTAGE", kSupply},
+    AxisError{0x8, "CURRENT_MEASUREMENT_TIMEOUT", kItsTool},
+    AxisError{0x10, "BRAKE_RESISTOR_DISARMED", "check its brake resistor"},
+    AxisError{0x20, "MOTOR_DISARMED", kItsTool},
+    AxisError{0x40, "MOTOR_FAILED", kItsTool},
+    AxisError{0x80, "SENSORLESS_ESTIMATOR_FAILED", kItsTool},
+    AxisError{0x100, "ENCODER_FAILED", "check its encoder's cable"},
+    AxisError{0x200, "CONTROLLER_FAILED", kItsTool},
+    AxisError{kOdriveWatchdog, "WATCHDOG_TIMER_EXPIRED", "it heard nothing for 50 ms"},
+    AxisError{0x1000, "MIN_ENDSTOP_PRESSED", kEnds},
+    AxisError{0x2000, "MAX_ENDSTOP_PRESSED", kEnds},
+    AxisError{0x4000, "ESTOP_REQUESTED", "release its emergency stop"},
+    AxisError{0x20000, "HOMING_WITHOUT_ENDSTOP", kItsTool},
+    AxisError{0x40000, "OVER_TEMP", "let it cool down"},
+    AxisError{0x80000, "UNKNOWN_POSITION", kCalibrate}};
+
 }  // namespace
 
-OdriveLine encode_odrive_step(int axis, double torque) {
+OdriveLine encode_odrive_step(int axis, double torque, bool asks_status) {
   constexpr double kMost = 1000.0;  // N m: beyond any motor, and its digits fit in
   OdriveLine line;
   const auto written =
       fmt::format_to_n(line.text.data(), line.text.size(), "c {} {:.6f}\nf {}\n", axis,
                        std::isfinite(torque) ? std::clamp(torque, -kMost, kMost) : 0.0, axis);
   line.size = std::min(written.size, line.text.size());
+  if (asks_status) {
+    const auto more = fmt::format_to_n(line.text.data() + line.size, line.text.size() - line.size,
+                                       "r axis{0}.error\nr axis{0}.current_state\n", axis);
+    line.size = std::min(line.size + more.size, line.text.size());
+  }
   return line;
 }
 
@@ -45,14 +88,36 @@ std::optional<OdriveFeedback> decode_odrive_feedback(std::string_view line) {
   return OdriveFeedback{*position, *velocity};
 }
 
+namespace {
+
+/// A whole line: feedback, or a number of a status.
+std::optional<OdriveFeedback> take_line(OdriveStream& stream) {
+  const auto feedback = decode_odrive_feedback(stream.line.view());
+  const auto number = feedback ? std::nullopt : decode_number(stream.line.view());
+  if (feedback) {
+    stream.numbers = 0;
+  } else if (number) {
+    stream.numbers += 1;
+    if (stream.numbers == 1) {
+      stream.coming.errors = *number;
+    } else if (stream.numbers == 2) {
+      stream.coming.state = *number;
+      stream.status = stream.coming;
+    }
+  }
+  return feedback;
+}
+
+}  // namespace
+
 std::optional<OdriveFeedback> take_odrive_bytes(OdriveStream& stream, std::string_view bytes) {
   std::optional<OdriveFeedback> last;
   for (const char byte : bytes) {
     if (byte == '\n') {
-      const auto feedback =
-          stream.too_long ? std::nullopt : decode_odrive_feedback(stream.line.view());
+      const auto feedback = stream.too_long ? std::nullopt : take_line(stream);
       last = feedback ? feedback : last;
-      stream = OdriveStream{};
+      stream.line.size = 0;
+      stream.too_long = false;
     } else if (stream.line.size < stream.line.text.size()) {
       stream.line.text[stream.line.size++] = byte;
     } else {
@@ -60,6 +125,22 @@ std::optional<OdriveFeedback> take_odrive_bytes(OdriveStream& stream, std::strin
     }
   }
   return last;
+}
+
+std::string odrive_error_text(std::uint32_t errors) {
+  std::string names;
+  const char* cure = kItsTool;
+  for (const AxisError& error : kAxisErrors) {
+    if ((errors & error.bit) != 0) {
+      cure = names.empty() ? error.cure : cure;
+      names += (names.empty() ? "" : ", ") + std::string(error.name);
+      errors &= ~error.bit;
+    }
+  }
+  if (errors != 0) {
+    names += fmt::format("{}error {:#x}", names.empty() ? "" : ", ", errors);
+  }
+  return fmt::format("{}; {}", names.empty() ? "it left closed loop control" : names, cure);
 }
 
 }  // namespace torsion

@@ -3,7 +3,9 @@
 // ODrive v3 as a knob: torque in N m out, turns in, by its lines of text.
 
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace torsion {
@@ -21,21 +23,37 @@ struct OdriveFeedback {
   double velocity = 0.0;  // turns/s
 };
 
+/// What an axis says of itself.
+struct OdriveStatus {
+  std::uint32_t errors = 0;  // bits of axis.error
+  std::uint32_t state = 0;   // axis.current_state
+};
+inline constexpr std::uint32_t kOdriveClosedLoop = 8;    // of those states: the motor obeys
+inline constexpr std::uint32_t kOdriveWatchdog = 0x800;  // of those errors: it was not fed in time
+
 /// Torque [N m] to one axis, then a question for where it is: one transfer there and back. What is
 /// not finite is sent as no torque, the rest within +-1000 N m. Feeds the axis's watchdog.
-OdriveLine encode_odrive_step(int axis, double torque);
+/// @param asks_status  asks for errors and state, too
+OdriveLine encode_odrive_step(int axis, double torque, bool asks_status = false);
 
 /// An answer to that question, with or without its line end.
 /// @return nothing for anything but two finite numbers
 std::optional<OdriveFeedback> decode_odrive_feedback(std::string_view line);
 
-/// Puts lines together from what the transfers bring.
+/// Puts lines together from what the transfers bring. A status is two lines with a number each,
+/// errors and state, after a feedback.
 struct OdriveStream {
   OdriveLine line;
-  bool too_long = false;  // skip to the next line end
+  bool too_long = false;      // skip to the next line end
+  std::uint32_t numbers = 0;  // lines with one number since the last feedback
+  OdriveStatus coming;
+  std::optional<OdriveStatus> status;  // the last whole one; whoever reads it takes it away
 };
 
 /// @return the last feedback whose line ends in `bytes`, if any
 std::optional<OdriveFeedback> take_odrive_bytes(OdriveStream& stream, std::string_view bytes);
+
+/// The names of an axis's errors, as its maker's tools write them, and what to do about the first.
+std::string odrive_error_text(std::uint32_t errors);
 
 }  // namespace torsion

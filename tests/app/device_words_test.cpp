@@ -62,5 +62,19 @@ TEST(DeviceWordsTest, ABannerWhereThereIsNoForceAndNoneWhereAllIsWell) {
   EXPECT_TRUE(has(device_banner(view, kStepsGoOn).text, "gone"));
 }
 
+TEST(DeviceWordsTest, AMotorsErrorIsNamedWithWhatToDoInBannerAndSummary) {
+  DeviceView view = live_view(kTwistAxis);
+  view.sample.state = DeviceState::kStarting;
+  view.sample.trouble = DeviceTrouble::kMotorError;
+  view.sample.motor_errors = 0x40000;
+  const std::string expected =
+      "its motor has no force (OVER_TEMP; let it cool down). Then unplug it and plug it in";
+  EXPECT_TRUE(device_banner(view, true).failed);
+  EXPECT_TRUE(has(device_banner(view, true).text, expected)) << device_banner(view, true).text;
+  EXPECT_TRUE(has(device_summary(view), expected)) << device_summary(view);
+  view.sample.motor_errors = 0x800;
+  EXPECT_TRUE(has(device_banner(view, true).text, "It is set up anew"));
+}
+
 }  // namespace
 }  // namespace torsion

@@ -206,6 +206,64 @@ TEST(OdriveDriverTest, TurnsTheTwistAxisAndTakesTorqueUpToItsLimit) {
   EXPECT_FALSE(bus.device<EmulatedOdrive>(row).closed_loop);
 }
 
+TEST(OdriveDriverTest, AnErrorOfItsAxisEndsTheTorqueUntilItIsPluggedInAgain) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  const std::size_t row = bus.plug(EmulatedOdrive{});
+  bus.run(kStart);
+  ASSERT_EQ(client.last.state, DeviceState::kLive);
+  bus.device<EmulatedOdrive>(row).errors = 0x40;
+  bus.device<EmulatedOdrive>(row).closed_loop = false;
+  bus.run(0.03);  // it is asked every 20 steps
+  EXPECT_EQ(client.last.state, DeviceState::kStarting);
+  EXPECT_EQ(client.last.trouble, DeviceTrouble::kMotorError);
+  EXPECT_EQ(client.last.motor_errors, 0x40U);
+  EXPECT_GT(bus.without_force_for(row), 0.0);
+  bus.run(5.0);
+  EXPECT_EQ(client.last.trouble, DeviceTrouble::kMotorError);
+  EXPECT_EQ(bus.device<EmulatedOdrive>(row).errors, 0x40U);  // nobody has cleared it
+  EXPECT_FALSE(bus.device<EmulatedOdrive>(row).closed_loop);
+  EXPECT_GT(bus.without_force_for(row), 5.0);
+  bus.unplug(row);
+  bus.run(0.01);
+  bus.plug(EmulatedOdrive{});
+  bus.run(kStart);
+  EXPECT_EQ(client.last.state, DeviceState::kLive);
+}
+
+TEST(OdriveDriverTest, OneThatWasNotFedInTimeIsSetUpAnew) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  const std::size_t row = bus.plug(EmulatedOdrive{});
+  bus.run(kStart);
+  const std::uint32_t epoch = client.last.epoch;
+  bus.device<EmulatedOdrive>(row).errors = kOdriveWatchdog;
+  bus.device<EmulatedOdrive>(row).closed_loop = false;
+  bus.run(0.03);
+  EXPECT_EQ(client.last.trouble, DeviceTrouble::kMotorError);
+  bus.run(1.0);
+  EXPECT_EQ(client.last.state, DeviceState::kLive);
+  EXPECT_EQ(client.last.trouble, DeviceTrouble::kNone);
+  EXPECT_NE(client.last.epoch, epoch);  // from no force
+  EXPECT_TRUE(bus.device<EmulatedOdrive>(row).closed_loop);
+}
+
+TEST(OdriveDriverTest, SaysThatItIsNotCalibratedAndWhenItLeftItsControlWithoutAnError) {
+  for (const bool calibrated : {true, false}) {
+    DeviceClient client;
+    FakeBus bus({}, client.sink());
+    EmulatedOdrive knob;
+    knob.calibrated = calibrated;
+    const std::size_t row = bus.plug(knob);
+    bus.run(kStart);
+    EXPECT_EQ(client.last.state == DeviceState::kLive, calibrated);
+    bus.device<EmulatedOdrive>(row).closed_loop = false;
+    bus.run(0.03);
+    EXPECT_EQ(client.last.trouble, DeviceTrouble::kMotorError);
+    EXPECT_EQ(client.last.motor_errors, calibrated ? 0U : 1U);
+  }
+}
+
 /// What may come over the wire instead of a packet.
 struct WireFault {
   const char* name;

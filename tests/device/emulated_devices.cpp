@@ -123,8 +123,15 @@ void obey(EmulatedOdrive& device, const std::string& line, std::string& answer) 
     device.torque = std::stod(line.substr(4));
   } else if (line == "f 0") {
     answer += std::to_string(device.turns) + " 0.0\r\n";
+  } else if (line == "r axis0.error") {
+    answer += std::to_string(device.errors) + "\r\n";
+  } else if (line == "r axis0.current_state") {
+    answer += device.closed_loop ? "8\r\n" : "1\r\n";
+  } else if (line == "sc") {
+    device.errors = 0;
   } else if (line.rfind("w axis0.requested_state ", 0) == 0) {
-    device.closed_loop = line.back() == '8';
+    device.closed_loop = line.back() == '8' && device.calibrated;
+    device.errors |= line.back() == '8' && !device.calibrated ? 1U : 0U;
   }
 }
 

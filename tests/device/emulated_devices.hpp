@@ -46,6 +46,8 @@ struct EmulatedOdrive {
   double turns = 0.0;
   double torque = 0.0;  // N m, as told last
   bool closed_loop = false;
+  bool calibrated = true;
+  std::uint32_t errors = 0;  // of its axis, until they are cleared
   Buffer line;
 };
 

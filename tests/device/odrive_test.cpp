@@ -46,6 +46,43 @@ TEST(OdriveTest, PutsLinesTogetherWhereverTheyAreCut) {
   }
 }
 
+TEST(OdriveTest, AsksForErrorsAndStateInTheSameTransfer) {
+  const OdriveLine line = encode_odrive_step(0, -1000.0, true);
+  EXPECT_EQ(line.view(), "c 0 -1000.000000\nf 0\nr axis0.error\nr axis0.current_state\n");
+  EXPECT_LT(line.size, line.text.size());  // the longest that is sent, and whole
+}
+
+TEST(OdriveTest, ReadsAStatusWhereverItIsCutAndOnlyAWholeOne) {
+  const std::string text = "1.5 0.25\r\n2048\r\n1\r\n";
+  for (std::size_t cut = 0; cut <= text.size(); ++cut) {
+    OdriveStream stream;
+    take_odrive_bytes(stream, std::string_view(text).substr(0, cut));
+    EXPECT_EQ(stream.status.has_value(), cut == text.size()) << cut;
+    take_odrive_bytes(stream, std::string_view(text).substr(cut));
+    ASSERT_TRUE(stream.status) << cut;
+    EXPECT_EQ(stream.status->errors, kOdriveWatchdog);
+    EXPECT_EQ(stream.status->state, 1U);
+  }
+  // What a firmware without those properties says, and an answer that was lost.
+  OdriveStream stream;
+  take_odrive_bytes(stream, "1.5 0.25\r\ninvalid property\r\ninvalid property\r\n");
+  take_odrive_bytes(stream, "1.5 0.25\r\n8\r\n1.5 0.25\r\n0\r\n");
+  EXPECT_FALSE(stream.status);
+  take_odrive_bytes(stream, "8\r\n");
+  ASSERT_TRUE(stream.status);
+  EXPECT_EQ(stream.status->errors, 0U);
+  EXPECT_EQ(stream.status->state, kOdriveClosedLoop);
+}
+
+TEST(OdriveTest, NamesErrorsAsItsMakersToolsDo) {
+  EXPECT_EQ(odrive_error_text(kOdriveWatchdog),
+            "WATCHDOG_TIMER_EXPIRED; it heard nothing for 50 ms");
+  EXPECT_EQ(odrive_error_text(0x100 | 0x40000),
+            "ENCODER_FAILED, OVER_TEMP; check its encoder's cable");
+  EXPECT_EQ(odrive_error_text(0x80000000U),
+            "error 0x80000000; odrivetool says more: dump_errors(odrv0)");
+}
+
 TEST(OdriveTest, SkipsALineThatIsTooLongAndGoesOn) {
   OdriveStream stream;
   EXPECT_FALSE(take_odrive_bytes(stream, std::string(500, '1')));

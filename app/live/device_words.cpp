@@ -12,9 +12,12 @@ std::string sensed_by(const DeviceSample& sample) {
   return sensed_text(sample.sensed) + (sample.buttons_turn ? ", two buttons turn" : "");
 }
 
-std::string gains_text(const VirtualCoupling& coupling) {
-  return fmt::format("{:.4g} N/m up to {:.3g} N, {:.4g} N m/rad up to {:.3g} N m",
-                     coupling.stiffness, coupling.largest_force, coupling.turn_stiffness,
+/// Of the coupling in translation, and in turning.
+std::string gain_text(const VirtualCoupling& coupling) {
+  return fmt::format("{:.4g} N/m, up to {:.3g} N", coupling.stiffness, coupling.largest_force);
+}
+std::string turn_gain_text(const VirtualCoupling& coupling) {
+  return fmt::format("{:.4g} N m/rad, up to {:.3g} N m", coupling.turn_stiffness,
                      coupling.largest_torque);
 }
 
@@ -29,9 +32,9 @@ std::string describe(const DeviceView& view) {
   if (sample.state != DeviceState::kLive) {
     return "not ready: " + (trouble.empty() ? "it is being set up" : trouble);
   }
-  std::string text =
-      fmt::format("{:.0f} Hz; measures {}; displays {}; coupling {}", sample.rate,
-                  sensed_by(sample), actuated_text(sample.actuated), gains_text(view.coupling));
+  std::string text = fmt::format("{:.0f} Hz; measures {}; displays {}; coupling {}; turning {}",
+                                 sample.rate, sensed_by(sample), actuated_text(sample.actuated),
+                                 gain_text(view.coupling), turn_gain_text(view.coupling));
   if (!view.outcome.holds) {
     text += fmt::format("; bring it to the tool: {:.0f} mm to go", 1e3 * view.outcome.distance);
   }
@@ -44,13 +47,9 @@ std::vector<std::string> device_lines(const DeviceView& view) {
     return {"device: " +
             std::string(sample.state == DeviceState::kAbsent ? "none is plugged in" : "not ready")};
   }
-  const VirtualCoupling& coupling = view.coupling;
   return {fmt::format("held by a device: {:.0f} Hz", sample.rate), "measures " + sensed_by(sample),
-          "displays " + actuated_text(sample.actuated),
-          fmt::format("coupling {:.4g} N/m, up to {:.3g} N", coupling.stiffness,
-                      coupling.largest_force),
-          fmt::format("turning {:.4g} N m/rad, up to {:.3g} N m", coupling.turn_stiffness,
-                      coupling.largest_torque)};
+          "displays " + actuated_text(sample.actuated), "coupling " + gain_text(view.coupling),
+          "turning " + turn_gain_text(view.coupling)};
 }
 
 std::string not_displayed(const DeviceView& view) {

@@ -30,13 +30,13 @@ Nanoseconds begin_step(StepSchedule& schedule, Nanoseconds now) {
 }
 
 void follow_samples(StepSchedule& schedule, Nanoseconds arrived) {
-  constexpr Nanoseconds kCatchUp = 16;      // steps: a sample's jitter counts that much less
-  constexpr Nanoseconds kLeastShare = 200;  // of a period, moved by in a step
+  constexpr Nanoseconds kCatchUp = 16;         // steps: a sample's jitter counts that much less
+  constexpr Nanoseconds kShareOfPeriod = 200;  // the most that a step moves it by is 1/200
   const Nanoseconds period = schedule.period;
   const Nanoseconds after = schedule.due - arrived - period / 10;
   const Nanoseconds past = ((after % period) + period) % period;
   const Nanoseconds off = past > period / 2 ? past - period : past;
-  const Nanoseconds most = period / kLeastShare;
+  const Nanoseconds most = period / kShareOfPeriod;
   schedule.due -= std::clamp(off / kCatchUp, -most, most);
 }
 

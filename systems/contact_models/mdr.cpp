@@ -184,13 +184,55 @@ glm::dvec2 slide_at(const RegionMotion& motion, const glm::dvec2& center) {
   return motion.slide + motion.spin * glm::dvec2(-arm.y, arm.x);
 }
 
-void move_region(StepContext& context, const MdrTables& tables, std::uint32_t region) {
-  World& world = context.world;
+/// What the layers are asked, of the motion since the last step.
+MdrContact layers_contact(const World& world, std::uint32_t region, const RoundContact& round) {
   const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
   const RegionMotion& motion = world.regions.at<RegionMotion>(region);
   const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
   const Friction& friction = world.bodies.at<Friction>(identity.body);
+  const double kinetic_share = world.regions.at<MdrState>(region).kinetic_share;
+  MdrContact contact;
+  contact.radius = round.radius;
+  contact.force = round.force;
+  contact.flat_share = round.pressure.flat_share;
+  contact.friction = friction.static_friction +
+                     kinetic_share * (friction.dynamic_friction - friction.static_friction);
+  contact.shear_modulus = elasticity.shear_modulus();
+  contact.poisson_ratio = elasticity.poisson_ratio;
+  contact.slide_stiffness = round.slide_stiffness;
+  contact.turn_stiffness = round.turn_stiffness;
+  contact.torque_share = round.torque_share;
+  contact.slide = slide_at(motion, round.center);
+  contact.spin = motion.spin;
+  return contact;
+}
+
+/// mu_s comes down to mu_d over a short slip and is back after as long an elastic path.
+void move_friction(const MdrContact& contact, double slipped, double& kinetic_share) {
+  const double stiffness = contact.slide_stiffness * 8.0 * contact.shear_modulus * contact.radius /
+                           (2.0 - contact.poisson_ratio);
+  const double inverse = inverse_of(contact.friction * contact.force / stiffness);
+  const double path = glm::length(contact.slide) + std::abs(contact.spin) * contact.radius;
+  kinetic_share += (1.0 - kinetic_share) * travelled(slipped, inverse / kSlipLength);
+  kinetic_share *= 1.0 - travelled(std::max(path - slipped, 0.0), inverse);
+}
+
+/// Where the contact is, for the systems after this one.
+void set_geometry(World& world, std::uint32_t region, const RoundContact& round) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+  const double height = body_to_grid(frame, geometry.rest_point).z;
+  geometry.rest_point = grid_to_body(frame, {round.center, height});
+  geometry.equivalent_point = geometry.rest_point - frame.normal * round.depth;
+  geometry.radius = round.radius;
+  geometry.area = std::numbers::pi * round.radius * round.radius;
+  geometry.mean_depth = round.depth;
+}
+
+void move_region(StepContext& context, const MdrTables& tables, std::uint32_t region) {
+  World& world = context.world;
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
   MdrState& state = world.regions.at<MdrState>(region);
   RegionNormal& normal = world.regions.at<RegionNormal>(region);
   RegionFriction& tangential = world.regions.at<RegionFriction>(region);
@@ -205,19 +247,7 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
     set_cells(world, region, round, false);
     return;
   }
-  MdrContact contact;
-  contact.radius = round.radius;
-  contact.force = round.force;
-  contact.flat_share = round.pressure.flat_share;
-  contact.friction = friction.static_friction +
-                     state.kinetic_share * (friction.dynamic_friction - friction.static_friction);
-  contact.shear_modulus = elasticity.shear_modulus();
-  contact.poisson_ratio = elasticity.poisson_ratio;
-  contact.slide_stiffness = round.slide_stiffness;
-  contact.turn_stiffness = round.turn_stiffness;
-  contact.torque_share = round.torque_share;
-  contact.slide = slide_at(motion, round.center);
-  contact.spin = motion.spin;
+  const MdrContact contact = layers_contact(world, region, round);
   const MdrPlaces places = places_of(tables, round.pressure);
   const MdrPressure pressure_before{state.flat_share, state.elongation};
   if (state.radius != round.radius || pressure_before != round.pressure) {
@@ -228,14 +258,7 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
   state.radius = round.radius;
   state.flat_share = round.pressure.flat_share;
   state.elongation = round.pressure.elongation;
-  // mu_s comes down to mu_d over a short slip and is back after as long an elastic path.
-  const double stiffness = round.slide_stiffness * 8.0 * contact.shear_modulus * round.radius /
-                           (2.0 - contact.poisson_ratio);
-  const double inverse = inverse_of(contact.friction * round.force / stiffness);
-  const double path = glm::length(contact.slide) + std::abs(contact.spin) * round.radius;
-  state.kinetic_share +=
-      (1.0 - state.kinetic_share) * travelled(forces.slipped, inverse / kSlipLength);
-  state.kinetic_share *= 1.0 - travelled(std::max(path - forces.slipped, 0.0), inverse);
+  move_friction(contact, forces.slipped, state.kinetic_share);
 
   normal.force = round.force;
   normal.stiffness = 2.0 * elasticity.contact_modulus() * round.radius * round.slide_stiffness;
@@ -244,13 +267,7 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
   tangential.stick_share = forces.stick_share;
   tangential.stick_radius = round.radius;
   tangential.stick_turn = layers.back().turn;
-  RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-  const double height = body_to_grid(frame, geometry.rest_point).z;
-  geometry.rest_point = grid_to_body(frame, {round.center, height});
-  geometry.equivalent_point = geometry.rest_point - frame.normal * round.depth;
-  geometry.radius = round.radius;
-  geometry.area = std::numbers::pi * round.radius * round.radius;
-  geometry.mean_depth = round.depth;
+  set_geometry(world, region, round);
   set_cells(world, region, round, forces.stick_share > 0.5);
 }
 

@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "systems/held_tool/count_play.hpp"
 #include "systems/held_tool/coupling_choice.hpp"
 #include "systems/rotation_vector.hpp"
 
@@ -45,7 +46,13 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
   if (begins) {
     begin_epoch(side, sample, tool);
   }
-  if (side.guard.state == GuardState::kWaiting && live) {
+  const bool waits = side.guard.state == GuardState::kWaiting;
+  if (live) {
+    side.device = waits ? sample.pose
+                        : within_a_count(side.device, sample.pose, sample.traits.encoder_step,
+                                         sample.traits.encoder_turn_step);
+  }
+  if (waits && live) {
     // Until it takes hold the handle is turned as the tool is, however it is held.
     side.map.turned = sample.pose.rotation;
     side.map.rotation = tool.rotation;
@@ -53,10 +60,10 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
       side.map.origin = tool.position - sample.pose.position;
     }
     side.books = {};
-    side.last = handle_pose(side.map, sample.pose);
+    side.last = handle_pose(side.map, side.device);
     side.last_time = now - kUsualPeriod;
   }
-  outcome.handle = live ? handle_pose(side.map, sample.pose) : side.last;
+  outcome.handle = live ? handle_pose(side.map, side.device) : side.last;
   const double period = std::clamp(now - side.last_time, 1e-5, kLongestPeriod);
   const Wrench pull = coupling_wrench(side.coupling, {outcome.handle}, {tool});
   GuardInput input;

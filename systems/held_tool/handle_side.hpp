@@ -27,6 +27,7 @@ struct HandleSide {
   PassivityState books;
   GuardLimits limits;
   OutputGuard guard;
+  Pose device;              // of the device's handle, as far as its counts go
   Pose last;                // m, world: of the handle in the sample before
   double last_time = 0.0;   // s: of that sample
   std::uint32_t epoch = 0;  // of the device

@@ -91,6 +91,7 @@ LoopOutcome hold(const HeldScene& scene, const HandTraits& traits, double until,
   const auto steps = static_cast<int>((settle + kApproach + seconds) / kPeriod);
   const auto last = static_cast<int>(0.5 * seconds / kPeriod);
   double work = 0.0;
+  double work_at_rest = 0.0;
   for (int i = 0; i < steps; ++i) {
     const double now = 1.0 + i * kPeriod;
     const double share = std::clamp((i * kPeriod - settle) / kApproach, 0.0, 1.0);
@@ -113,7 +114,9 @@ LoopOutcome hold(const HeldScene& scene, const HandTraits& traits, double until,
     outcome.most_gained = std::max(outcome.most_gained, hand.motor_work());
     outcome.one_sample = std::max(outcome.one_sample, std::abs(hand.motor_work() - work));
     work = hand.motor_work();
+    work_at_rest = i < steps - last ? work : work_at_rest;
     if (i >= steps - last) {
+      outcome.gained_at_rest = std::max(outcome.gained_at_rest, work - work_at_rest);
       forces.values.push_back(hand.felt().force);
       torques.values.push_back(hand.felt().torque);
     }

@@ -12,12 +12,13 @@
 namespace torsion::test {
 
 struct LoopOutcome {
-  double force = 0.0;        // N: length of the mean over the last half of the hold
-  double ripple = 0.0;       // N: farthest from it
-  double torque = 0.0;       // N m
-  double turn_ripple = 0.0;  // N m
-  double most_gained = 0.0;  // J: the most that the motors had given to the hand at any time
-  double one_sample = 0.0;   // J: the most that they did in one sample
+  double force = 0.0;           // N: length of the mean over the last half of the hold
+  double ripple = 0.0;          // N: farthest from it
+  double torque = 0.0;          // N m
+  double turn_ripple = 0.0;     // N m
+  double most_gained = 0.0;     // J: the most that the motors had given to the hand at any time
+  double gained_at_rest = 0.0;  // J: likewise since the last half of the hold began
+  double one_sample = 0.0;      // J: the most that they did in one sample
   std::uint32_t faults = 0;
 };
 

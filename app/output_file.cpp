@@ -58,13 +58,15 @@ OutputFile::OutputFile(OutputFile&& other) noexcept
     : path_(std::move(other.path_)),
       temporary_(std::move(other.temporary_)),
       file_(std::exchange(other.file_, nullptr)),
-      failed_(other.failed_) {}
+      failed_(other.failed_),
+      why_(other.why_) {}
 
 OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
   std::swap(path_, other.path_);
   std::swap(temporary_, other.temporary_);
   std::swap(file_, other.file_);
   std::swap(failed_, other.failed_);
+  std::swap(why_, other.why_);
   return *this;
 }
 
@@ -77,13 +79,25 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::string_view bytes) {
-  failed_ = failed_ || std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size();
+  if (failed_) {
+    return;  // a hole in the middle would be worse than an end
+  }
+  errno = 0;
+  failed_ = std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size();
+  why_ = failed_ ? errno : 0;
+}
+
+std::string OutputFile::problem() const {
+  return failed_ ? cannot_write(path_, why_ != 0 ? said_by_system(why_) : "the disk is full").text
+                 : "";
 }
 
 Result<Done> OutputFile::commit() {
-  errno = 0;
-  failed_ = std::fflush(file_) != 0 || failed_;
-  const int why = errno;
+  if (!failed_) {
+    errno = 0;
+    failed_ = std::fflush(file_) != 0;
+    why_ = failed_ ? errno : 0;
+  }
   failed_ = std::fclose(std::exchange(file_, nullptr)) != 0 || failed_;
   std::error_code renaming;
   if (!failed_) {
@@ -92,8 +106,7 @@ Result<Done> OutputFile::commit() {
   if (failed_ || renaming) {
     std::error_code ignored;
     std::filesystem::remove(temporary_, ignored);
-    return cannot_write(path_, renaming ? renaming.message()
-                                        : (why != 0 ? said_by_system(why) : "the disk is full"));
+    return renaming ? cannot_write(path_, renaming.message()) : Error{problem()};
   }
   return Done{};
 }

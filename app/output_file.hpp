@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "ecs/result.hpp"
@@ -22,6 +23,8 @@ class OutputFile {
 
   /// Remembers a failure for commit(), so that a loop need not check every line.
   void write(std::string_view bytes);
+  /// Why the writing failed; empty as long as it has not.
+  [[nodiscard]] std::string problem() const;
 
   /// Flushes and renames. Fails when anything since create() failed.
   Result<Done> commit();
@@ -32,6 +35,7 @@ class OutputFile {
   std::filesystem::path temporary_;
   std::FILE* file_ = nullptr;
   bool failed_ = false;
+  int why_ = 0;  // of errno, when it failed
 };
 
 /// The folder in which `path` will lie, made if it is not there.

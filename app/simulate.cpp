@@ -98,11 +98,8 @@ Result<RunStatistics> run(const SimulateOptions& options, Session& session, std:
     facts.trace = options.trace;
   }
   if (files.record != nullptr) {
-    const Result<Done> done = save_recording(*files.record, options.record);
-    if (!done) {
-      return done.error();
-    }
-    facts.recording = options.record;
+    const Result<Done> done = files.record->finish();
+    (done ? facts.recording : facts.problem) = done ? options.record : done.error().text;
   }
   return statistics;
 }
@@ -129,9 +126,14 @@ int simulate(const SimulateOptions& options) {
     }
     trace = std::move(created).value();
   }
-  std::optional<Recording> record;
+  std::optional<RecordingWriter> record;
   if (!options.record.empty()) {
-    record = begin_recording(session, options.scene.prepare_options());
+    Result<RecordingWriter> created = RecordingWriter::create(
+        options.record, begin_recording(session, options.scene.prepare_options()));
+    if (!created) {
+      return fail(created.error().text);
+    }
+    record = std::move(created).value();
   }
   Replay replay{replayed ? &*replayed : nullptr, 0};
   const RunFiles files{trace ? &*trace : nullptr, record ? &*record : nullptr,
@@ -146,6 +148,9 @@ int simulate(const SimulateOptions& options) {
     fmt::print("{}", summary_json(session, ran.value(), facts));
   } else if (!options.quiet) {
     fmt::print("{}", summary_text(session, ran.value(), facts));
+  }
+  if (!facts.problem.empty()) {
+    return fail(facts.problem);
   }
   return kDone;
 }

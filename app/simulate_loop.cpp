@@ -3,6 +3,8 @@
 #include <chrono>
 #include <thread>
 
+#include <fmt/format.h>
+
 #include "app/live/live_loop.hpp"
 
 namespace torsion {
@@ -29,11 +31,11 @@ void write_trace(const Session& session, double step_us, std::vector<TraceRow>& 
   trace.append(rows);
 }
 
-void record_poses(const Session& session, Recording& recording) {
+void record_poses(const Session& session, RecordingWriter& recording) {
   const std::uint64_t step = session.simulation.world.clock.at<Clock>(0).step;
   for (std::uint32_t tool = 0; tool < session.tool_poses.size(); ++tool) {
     const Pose& pose = session.tool_poses[tool];
-    recording.entries.push_back(pose_entry(step, tool, pose, pose));
+    recording.add(pose_entry(step, tool, pose, pose));
   }
 }
 
@@ -46,7 +48,16 @@ void drain(LiveLoop& loop, const RunFiles& files, std::vector<TraceRow>& rows) {
     }
   }
   while (const auto entry = loop.inputs.pop()) {
-    files.record->entries.push_back(*entry);
+    files.record->add(*entry);
+  }
+}
+
+/// As soon as nothing more can be recorded whoever holds the tool should know, and may go on.
+void tell_of_problem(const RunFiles& files, bool& told) {
+  const std::string problem = files.record != nullptr && !told ? files.record->problem() : "";
+  if (!problem.empty()) {
+    told = true;
+    fmt::print(stderr, "torsion: {}; the session goes on without a recording\n", problem);
   }
 }
 
@@ -94,6 +105,7 @@ RunStatistics run_realtime(Session& session, std::uint64_t steps, const RunFiles
     loop.tools[device.tool].from = PoseFrom::kHandle;
     loop.tools[device.tool].slot = &device.link->slot();
   }
+  bool told = false;
   std::thread physics(run_live, std::ref(loop));
   while (!loop.over.load(std::memory_order_acquire)) {
     constexpr long kPause = 5;  // ms
@@ -103,6 +115,7 @@ RunStatistics run_realtime(Session& session, std::uint64_t steps, const RunFiles
       loop.stop.store(true, std::memory_order_release);
     }
     drain(loop, files, rows);
+    tell_of_problem(files, told);
     if (loop.frames.refresh()) {
       progress.show(static_cast<double>(loop.frames.front().statistics.steps) /
                     static_cast<double>(steps));

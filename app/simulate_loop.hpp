@@ -14,8 +14,8 @@ namespace torsion {
 /// What a run without a window reads and writes; each may be null.
 struct RunFiles {
   TraceWriter* trace = nullptr;
-  Recording* record = nullptr;  // begun; gets the entries
-  Replay* replay = nullptr;     // where poses come from instead of the scene's animations
+  RecordingWriter* record = nullptr;
+  Replay* replay = nullptr;  // where poses come from instead of the scene's animations
   bool quiet = false;
 };
 

@@ -15,6 +15,7 @@ namespace torsion {
 struct RunFacts {
   std::string trace;                 // where the trace is; empty: there is none
   std::string recording;             // likewise
+  std::string problem;               // why there is no recording though one was asked for
   std::optional<DeviceView> device;  // of what held the tool at the end
   std::string mode;  // what the system granted a run on the clock; empty: it was not on it
 };

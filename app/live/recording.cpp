@@ -20,14 +20,14 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 struct FileHeader {
   std::array<char, 8> magic = {'T', 'O', 'R', 'S', 'R', 'E', 'C', '\0'};
   std::uint32_t order = 0x01020304;  // reads otherwise on a machine of the other byte order
   std::uint32_t version = kVersion;
   std::uint64_t json_size = 0;  // bytes
-  std::uint64_t entries = 0;
+  std::uint64_t entries = 0;    // version 1 only, whose writer knew; else the file's size says it
 };
 
 json to_json(const std::vector<BodyPick>& picks) {
@@ -101,11 +101,14 @@ Result<FileHeader> read_header(const std::string& bytes, const std::filesystem::
   if (header.order != expected.order) {
     return bad(path, "recorded on a machine of the other byte order");
   }
-  if (header.version != kVersion) {
-    return bad(path, fmt::format("recording of version {}, this program reads version {}",
+  if (header.version == 0 || header.version > kVersion) {
+    return bad(path, fmt::format("recording of version {}, this program reads up to version {}",
                                  header.version, kVersion));
   }
   const std::uint64_t content = bytes.size() - sizeof header - sizeof(std::uint64_t);
+  if (header.version > 1 && header.json_size <= content) {
+    header.entries = (content - header.json_size) / sizeof(InputEntry);
+  }
   const bool fits = header.json_size <= content &&
                     header.entries <= (content - header.json_size) / sizeof(InputEntry) &&
                     header.json_size + header.entries * sizeof(InputEntry) == content;
@@ -190,27 +193,60 @@ std::uint64_t steps_in(const Recording& recording) {
   return recording.entries.empty() ? 0 : recording.entries.back().step + 1;
 }
 
-Result<Done> save_recording(const Recording& recording, const std::filesystem::path& path) {
+struct RecordingWriter::State {
+  OutputFile file;
+  XXH3_state_t hash;
+
+  explicit State(OutputFile to) : file(std::move(to)) { XXH3_64bits_reset(&hash); }
+  void write(const void* data, std::size_t size) {
+    XXH3_64bits_update(&hash, data, size);
+    file.write({static_cast<const char*>(data), size});
+  }
+};
+
+RecordingWriter::RecordingWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+RecordingWriter::RecordingWriter(RecordingWriter&&) noexcept = default;
+RecordingWriter& RecordingWriter::operator=(RecordingWriter&&) noexcept = default;
+RecordingWriter::~RecordingWriter() = default;
+
+Result<RecordingWriter> RecordingWriter::create(const std::filesystem::path& path,
+                                                const Recording& head) {
   Result<OutputFile> file = OutputFile::create(path);
   if (!file) {
     return file.error();
   }
-  const std::string head = to_json(recording).dump();
+  auto state = std::make_unique<State>(std::move(file).value());
+  const std::string words = to_json(head).dump();
   FileHeader header;
-  header.json_size = head.size();
-  header.entries = recording.entries.size();
-  XXH3_state_t state;
-  XXH3_64bits_reset(&state);
-  const auto write = [&](const void* data, std::size_t size) {
-    XXH3_64bits_update(&state, data, size);
-    file.value().write({static_cast<const char*>(data), size});
-  };
-  write(&header, sizeof header);
-  write(head.data(), head.size());
-  write(recording.entries.data(), recording.entries.size() * sizeof(InputEntry));
-  const std::uint64_t checksum = XXH3_64bits_digest(&state);
-  file.value().write({reinterpret_cast<const char*>(&checksum), sizeof checksum});
-  return file.value().commit();
+  header.json_size = words.size();
+  state->write(&header, sizeof header);
+  state->write(words.data(), words.size());
+  return RecordingWriter(std::move(state));
+}
+
+void RecordingWriter::add(const InputEntry& entry) {
+  state_->write(&entry, sizeof entry);
+}
+
+std::string RecordingWriter::problem() const {
+  return state_->file.problem();
+}
+
+Result<Done> RecordingWriter::finish() {
+  const std::uint64_t checksum = XXH3_64bits_digest(&state_->hash);
+  state_->file.write({reinterpret_cast<const char*>(&checksum), sizeof checksum});
+  return state_->file.commit();
+}
+
+Result<Done> save_recording(const Recording& recording, const std::filesystem::path& path) {
+  Result<RecordingWriter> writer = RecordingWriter::create(path, recording);
+  if (!writer) {
+    return writer.error();
+  }
+  for (const InputEntry& entry : recording.entries) {
+    writer.value().add(entry);
+  }
+  return writer.value().finish();
 }
 
 Result<Recording> load_recording(const std::filesystem::path& path) {

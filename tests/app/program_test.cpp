@@ -141,6 +141,24 @@ TEST(SimulateTest, AReplayGivesTheBitsOfTheRunOnTheClock) {
   EXPECT_EQ(trace, without_last_column(read_text(folder / "b.csv")));
 }
 
+TEST(SimulateTest, ARunGoesOnWhenTheDiskIsFullAndSaysWhyThereIsNoRecording) {
+  const Folder folder;
+  // No file may grow beyond 2 MB (units of 512 bytes): 16 s of a recording. What is prepared of the
+  // scene is in the cache by then.
+  ASSERT_EQ(run_torsion({"simulate", scene("ball_on_cube"), "--seconds", "0.01"}).exit_code, 0);
+  std::vector<std::string> words = {"sh", "-c", "trap '' XFSZ; ulimit -f 4000; exec \"$0\" \"$@\""};
+  for (const std::string& word :
+       test::torsion({"simulate", scene("ball_on_cube"), "--contact-model", "mdr", "--seconds",
+                      "20", "--record", folder / "a.rec"})) {
+    words.push_back(word);
+  }
+  const Ran ran = test::Process(words).wait();
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_NE(ran.out.find("20000 steps"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.err.find("a.rec: cannot be written: "), std::string::npos) << ran.err;
+  EXPECT_TRUE(folder.empty());
+}
+
 TEST(SimulateTest, RecordingsOfOtherScenesAndDamagedOnesAreRefused) {
   const Folder folder;
   const std::string file = folder / "a.rec";

@@ -1,9 +1,13 @@
 #include "app/live/recording.hpp"
 
+#include <csignal>
+
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "tests/app/live_session.hpp"
 #include "tests/app/program.hpp"
+#include "tests/support/allocation_guard.hpp"
 
 namespace torsion {
 namespace {
@@ -85,6 +89,64 @@ TEST(RecordingTest, SaysWhatIsWrong) {
   EXPECT_NE(error_of(folder, newer).find("version 9"), std::string::npos);
   EXPECT_NE(load_recording(folder / "none.rec").error().text.find("cannot be read"),
             std::string::npos);
+}
+
+TEST(RecordingTest, TenMinutesAreWrittenInTheSameMemoryAndComeBack) {
+  const Folder folder;
+  const std::string path = folder / "long.rec";
+  const Session session = test::ball_session();
+  Result<RecordingWriter> made =
+      RecordingWriter::create(path, begin_recording(session, test::ball_options()));
+  ASSERT_TRUE(made) << made.error().text;
+  RecordingWriter writer = std::move(made).value();
+  constexpr std::uint64_t kSteps = 600'000;
+  const auto pose_at = [](std::uint64_t step) {
+    return Pose{{0.0, 1e-9 * static_cast<double>(step), 0.0}, {1.0, 0.0, 0.0, 0.0}};
+  };
+  writer.add(pose_entry(0, 0, pose_at(0), Pose{}));
+  {
+    const test::AllocationGuard guard;
+    for (std::uint64_t step = 1; step < kSteps; ++step) {
+      writer.add(pose_entry(step, 0, pose_at(step), Pose{}));
+    }
+    EXPECT_LE(guard.allocations(), 1U);  // the file's own buffer
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
+  ASSERT_TRUE(writer.finish());
+  const Result<Recording> read = load_recording(path);
+  ASSERT_TRUE(read) << read.error().text;
+  ASSERT_EQ(steps_in(read.value()), kSteps);
+  for (std::uint64_t step = 0; step < kSteps; step += 997) {
+    EXPECT_EQ(pose_of(read.value().entries[step]).position, pose_at(step).position);
+  }
+}
+
+TEST(RecordingTest, AFullDiskIsSaidAndLeavesNothingBehind) {
+  const Folder folder;
+  const Session session = test::ball_session();
+  Result<RecordingWriter> made =
+      RecordingWriter::create(folder / "full.rec", begin_recording(session, test::ball_options()));
+  ASSERT_TRUE(made) << made.error().text;
+  {
+    // No file may grow beyond this, which a write hears of as it does of a full disk.
+    rlimit before{};
+    ::getrlimit(RLIMIT_FSIZE, &before);
+    const rlimit small{65536, before.rlim_max};
+    auto* const handler = std::signal(SIGXFSZ, SIG_IGN);
+    ::setrlimit(RLIMIT_FSIZE, &small);
+    for (std::uint64_t step = 0; step < 10'000; ++step) {
+      made.value().add(pose_entry(step, 0, Pose{}, Pose{}));
+    }
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+  }
+  const std::string problem = made.value().problem();
+  EXPECT_NE(problem.find("full.rec: cannot be written: "), std::string::npos) << problem;
+  EXPECT_NE(problem.find("choose another place or free it"), std::string::npos) << problem;
+  const Result<Done> done = made.value().finish();
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().text, problem);
+  EXPECT_TRUE(folder.empty());
 }
 
 TEST(RecordingTest, EntriesOutOfOrderAreRefused) {

@@ -27,7 +27,7 @@ struct Capacities {
   std::uint32_t ports = 0;              // 0 when no body has body model compliance
   std::uint32_t compliance_values = 0;  // likewise
   std::uint32_t influences = 0;         // of contact models patch, and layers' kernels
-  std::uint32_t layer_influences = 0;   // of one region; 0 when no body has a layer's kernel
+  std::uint32_t layer_influences = 0;   // of one region; 0: no body is a layer or bent
 };
 
 /// What can go wrong in a step. The step still ends; the tools' wrenches fade to zero while a fault
@@ -99,7 +99,7 @@ struct World {
   CellTable cells;  // blocks of grid_side^2 rows, one for each row that `regions` can hold
   PatchCellTable patch_cells;  // the same rows as `cells`; none without contact model patch
   MdrLayerTable mdr_layers;    // kMdrLayers rows a block of cells; none without contact model mdr
-  Table<Influence> layer_influences;  // tables of one grid a block of cells; none without layers
+  Table<Influence> layer_influences;  // tables of one grid a block of cells, or none
   Table<Footing, FootingResponse>
       footings;  // one a block of cells; none without body model compliance
   Table<RegionCoupling>

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "systems/body_models/surface_bend.hpp"
 #include "systems/choose_models.hpp"
 #include "systems/contact_models/influence.hpp"
 #include "systems/contact_models/layer_influence.hpp"
@@ -249,6 +250,11 @@ bool has_kernel(const World& world, std::uint32_t row, const BodyModels& models)
   return models.body == BodyModel::kCompliance && is_layer(world, row);
 }
 
+/// Whether regions of contact model `patch` may need tables of their own.
+bool has_own_tables(const World& world, std::uint32_t row, const BodyModels& models) {
+  return models.body == BodyModel::kCompliance && (is_layer(world, row) || may_bend(world, row));
+}
+
 /// Number of rows in `influences` that a body needs: patch's tables, then a layer's kernel.
 std::uint32_t influence_values(const World& world, std::uint32_t row, const BodyModels& models,
                                std::uint32_t side) {
@@ -315,7 +321,7 @@ Result<Done> append_choices(Simulation& simulation, const SceneDescription& scen
     capacities.influences += influence_values(world, row, models, settings.grid_side);
     capacities.patch_bodies += models.contact == ContactModel::kPatch ? 1U : 0U;
     capacities.mdr_bodies += models.contact == ContactModel::kMdr ? 1U : 0U;
-    if (models.contact == ContactModel::kPatch && has_kernel(world, row, models)) {
+    if (models.contact == ContactModel::kPatch && has_own_tables(world, row, models)) {
       capacities.layer_influences =
           static_cast<std::uint32_t>(layer_influence_count(settings.grid_side));
     }

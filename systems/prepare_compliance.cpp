@@ -102,8 +102,9 @@ void append_values(const Eigen::MatrixXd& matrix, std::size_t rows,
   }
 }
 
-/// Elements along the longest side: as many as a cube of 16 has in all, and at least 16.
-std::uint32_t elements_for(const Bounds& bounds) {
+}  // namespace
+
+std::uint32_t compliance_elements(const Bounds& bounds) {
   constexpr double kInAll = 4500.0;
   constexpr double kFewest = 8.0;  // along any side (build_solid_grid)
   const glm::dvec3 extent = bounds.highest - bounds.lowest;
@@ -118,8 +119,6 @@ std::uint32_t elements_for(const Bounds& bounds) {
   }
   return elements;
 }
-
-}  // namespace
 
 Result<PreparedCompliance> prepare_compliance(const BodyDescription& description,
                                               const World& world, std::uint32_t row, bool use_cache,
@@ -142,7 +141,7 @@ Result<PreparedCompliance> prepare_compliance(const BodyDescription& description
   SmoothComplianceOptions options;
   options.progress = progress;
   options.couples = false;
-  options.elements = elements_for(solid.bounds);
+  options.elements = compliance_elements(solid.bounds);
   options.threads = std::max(1U, std::thread::hardware_concurrency());
   const Result<SmoothCompliance> built =
       use_cache ? load_or_build_smooth_compliance(solid, identity_of(description), ports, options)

@@ -58,7 +58,7 @@ inline constexpr std::uint32_t kSupportColumn = 16;  // terms of one axis, with 
 
 /// What becomes of a region's tractions through its footing's ports: the three axes' terms,
 /// body axes, by the tractions' moments with their terms, m/N. Column by column; in a column and
-/// from one column to the next kSupportColumn an axis. Written by: patch_forces.
+/// from one column to the next kSupportColumn an axis. By: patch_forces; compliance (find_bend).
 struct FootingResponse {
   std::uint64_t serial = 0;  // of the footing for which it was found
   std::array<double, std::size_t{9} * kSupportColumn * kSupportColumn> terms{};

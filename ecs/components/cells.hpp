@@ -35,7 +35,7 @@ struct Influence {
 /// What a region's own tables in `layer_influences` were filled for; zero before. Written by:
 /// patch_forces.
 struct LayerGrid {
-  double thickness = 0.0;     // m
+  double thickness = 0.0;     // m; 0: for a curved surface
   glm::dvec2 half_size{0.0};  // m
 };
 

@@ -1,7 +1,9 @@
 #include "systems/body_models/region_stands.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include <Eigen/Core>
@@ -11,6 +13,8 @@
 #include "systems/body_models/half_space_fields.hpp"
 #include "systems/body_models/layer_motion.hpp"
 #include "systems/body_models/smooth_compliance.hpp"
+#include "systems/body_models/surface_bend.hpp"
+#include "systems/contact_models/curved_influence.hpp"
 #include "systems/contact_models/layer_coupling.hpp"
 #include "systems/contact_models/layer_thickness.hpp"
 #include "systems/contact_models/stuck_stiffness.hpp"
@@ -45,11 +49,68 @@ struct RelativeCompliance {
   }
 };
 
+/// How a contact model without cells is moved by the body's bend beside its half-space: as one, by
+/// forces alone, m/N: the terms and moments of degree 0 of the footing's response, which has no
+/// other use there. `patch` has the bend in its own tables (region_influences.hpp).
+Eigen::Matrix3d motion_by_bend(const CompliantBody& body, const Stand& stand) {
+  Eigen::Matrix3d motion = Eigen::Matrix3d::Zero();
+  if (!stand.solved) {
+    const FootingResponse& bend = body.world.footings.at<FootingResponse>(stand.block);
+    for (Eigen::Index column = 0; column < 3; ++column) {
+      for (Eigen::Index row = 0; row < 3; ++row) {
+        motion(row, column) = bend.terms[static_cast<std::size_t>(
+            (3 * column * kSupportColumn + row) * kSupportColumn)];
+      }
+    }
+  }
+  return motion;
+}
+
+/// Finds it.
+void find_bend(const CompliantBody& body, const Stand& stand, const Footing& footing) {
+  FootingResponse& bend = body.world.footings.at<FootingResponse>(stand.block);
+  bend = FootingResponse{};
+  if (!may_bend(body.world, body.row)) {
+    return;
+  }
+  RegionFrame axes;
+  axes.tangent_x = footing.tangent_x;
+  axes.tangent_y = footing.tangent_y;
+  axes.normal = footing.normal;
+  const SurfaceBend found = find_surface_bend(body.world, body.row, footing, axes, footing.radius);
+  if (found.reach == 0.0) {
+    return;
+  }
+  const Elasticity& elasticity = body.world.bodies.at<Elasticity>(body.row);
+  const CurvedResponse response = curved_response(found.curvature, elasticity.poisson_ratio);
+  std::array<double, kCurvedKinds> mean{};  // kZZ, kXX, kXY, kYY
+  for (std::size_t kind = 0; kind < kCurvedKinds; ++kind) {
+    mean[kind] = curved_mean(response[kind], footing.radius, found.reach) /
+                 (8.0 * std::numbers::pi * elasticity.shear_modulus());
+  }
+  Eigen::Matrix3d turn;
+  turn << eigen(axes.tangent_x), eigen(axes.tangent_y), eigen(axes.normal);
+  Eigen::Matrix3d motion;
+  motion << mean[1], mean[2], 0.0, mean[2], mean[3], 0.0, 0.0, 0.0, mean[0];
+  motion = (turn * motion * turn.transpose()).eval();
+  for (Eigen::Index column = 0; column < 3; ++column) {
+    for (Eigen::Index row = 0; row < 3; ++row) {
+      bend.terms[static_cast<std::size_t>((3 * column * kSupportColumn + row) * kSupportColumn)] =
+          motion(row, column);
+    }
+  }
+}
+
 /// What a region's own wrench does to it: the part that yields goes to Newton's matrix. Where the
 /// rest of the body stiffens the half-space (a layer) Newton's method would overshoot as soon as
 /// the contact slips, and plain iteration converges.
 void find_own_motion(const CompliantBody& body, const Stand& stand, Footing& footing) {
-  const RelativeCompliance relative(body, stand, motion_between(body.ports, footing, footing));
+  if (!stand.solved) {
+    find_bend(body, stand, footing);
+  }
+  Matrix6 motion = motion_between(body.ports, footing, footing);
+  motion.topLeftCorner<3, 3>() += motion_by_bend(body, stand);
+  const RelativeCompliance relative(body, stand, motion);
   const double least = relative.solver.eigenvalues()[0];
   footing.share = std::min(1.0, kStiffest / std::min(least, -1e-300));
   footing.on_layer = 0;
@@ -157,6 +218,7 @@ void move_by_own_load(const CompliantBody& body, Stand& stand) {
   }
   stand.motion = rigid_motion(footing, displacements);
   field = bending(footing, displacements, stand.motion);
+  stand.motion.head<3>() += motion_by_bend(body, stand) * stand.load.wrench.head<3>();
 }
 
 bool is_found(const RegionCoupling& coupling, const Footing& to, const Footing& from) {

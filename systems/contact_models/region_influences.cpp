@@ -1,7 +1,11 @@
 #include "systems/contact_models/region_influences.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "systems/body_models/surface_bend.hpp"
+#include "systems/contact_models/curved_influence.hpp"
 #include "systems/contact_models/layer_influence.hpp"
 #include "systems/contact_models/layer_kernel.hpp"
 #include "systems/contact_models/layer_thickness.hpp"
@@ -11,10 +15,95 @@ namespace torsion {
 namespace {
 
 constexpr double kThicker = 0.01;  // relative: less is not worth new tables
+constexpr double kBent = 0.1;      // likewise, of what the curvature adds
 
-bool serves(const LayerGrid& filled, double thickness, const glm::dvec2& half_size) {
+bool is_layer_like(const LayerGrid& filled, double thickness, const glm::dvec2& half_size) {
   return filled.half_size == half_size &&
          std::abs(thickness - filled.thickness) < kThicker * filled.thickness;
+}
+
+/// Whether tables are nearly those of the bend: at their ends, where it counts for most beside the
+/// half-space.
+bool are_bent_like(const InfluenceTables& tables, const InfluenceTables& half_space,
+                   const SurfaceBend& bend, double poisson_ratio, const glm::dvec2& cell) {
+  const CurvedResponse response = curved_response(bend.curvature, poisson_ratio);
+  const std::uint32_t end = tables.side - 1;
+  double most = 0.0;
+  double change = 0.0;
+  for (const glm::uvec2& place : {glm::uvec2(end, 0), glm::uvec2(0, end), glm::uvec2(end, end)}) {
+    const std::size_t at = tables.index(0, 0, place.x, place.y);
+    for (std::size_t kind = 0; kind < kCurvedKinds; ++kind) {
+      const double is = curved_displacement(response[kind], cell * glm::dvec2(place), bend.reach) *
+                        cell.y / (8.0 * std::numbers::pi);
+      const double was = tables.kinds[kind][at] - half_space.kinds[kind][at];
+      most = std::max(most, std::abs(is));
+      change = std::max(change, std::abs(is - was));
+    }
+  }
+  return change <= kBent * most;
+}
+
+/// One region's tables at work.
+struct RegionTables {
+  World& world;
+  std::uint32_t region;
+  RegionInfluences& result;        // the half-space's to begin with
+  std::span<const double> kernel;  // of a layer, if the body is one
+  LayerGrid& filled;
+
+  [[nodiscard]] std::span<double> own() const {
+    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+    const auto count = static_cast<std::uint32_t>(layer_influence_count(result.tables.side));
+    const auto rows = world.layer_influences.rows<Influence>({block_of(identity) * count, count});
+    return {&rows.front().value, rows.size()};
+  }
+  [[nodiscard]] glm::dvec2 cell() const {
+    return 2.0 * world.regions.at<RegionFrame>(region).half_size /
+           static_cast<double>(result.tables.side);
+  }
+};
+
+void take_layer(const RegionTables& at, double thickness, double poisson_ratio) {
+  const glm::dvec2& half_size = at.world.regions.at<RegionFrame>(at.region).half_size;
+  if (!is_layer_like(at.filled, thickness, half_size)) {
+    fill_layer_influences(at.result.tables, at.kernel, poisson_ratio, at.cell() / thickness,
+                          at.own());
+    at.filled = {thickness, half_size};
+    at.result.changed = true;
+  }
+  at.result.tables = layer_influence_tables(at.own(), at.result.tables.side);
+  at.result.coupled = true;
+}
+
+/// On a body with body model compliance, whose ports say how far the curvature has to reach. They
+/// count from the step after the region's first, when it has a footing.
+void take_bend(const RegionTables& at, double poisson_ratio) {
+  const RegionFrame& frame = at.world.regions.at<RegionFrame>(at.region);
+  const RegionIdentity& identity = at.world.regions.at<RegionIdentity>(at.region);
+  const Footing& footing = at.world.footings.at<Footing>(block_of(identity));
+  const bool was_bent = at.filled.thickness == 0.0 && at.filled.half_size.x > 0.0;
+  const bool laid =
+      at.world.footings.at<FootingResponse>(block_of(identity)).serial != footing.serial;
+  const InfluenceTables own = layer_influence_tables(at.own(), at.result.tables.side);
+  if (laid || (was_bent && at.filled.half_size != frame.half_size)) {
+    const SurfaceBend bend = find_surface_bend(at.world, identity.body, footing, frame,
+                                               std::max(frame.half_size.x, frame.half_size.y));
+    if (bend.reach == 0.0) {
+      at.result.changed = was_bent;
+      at.filled = LayerGrid{};
+      return;
+    }
+    if (at.filled.half_size != frame.half_size || !was_bent ||
+        !are_bent_like(own, at.result.tables, bend, poisson_ratio, at.cell())) {
+      fill_curved_influences(at.result.tables, curved_response(bend.curvature, poisson_ratio),
+                             at.cell(), bend.reach, at.own());
+      at.filled = {0.0, frame.half_size};
+      at.result.changed = true;
+    }
+  }
+  if (at.filled.half_size.x > 0.0) {
+    at.result.tables = own;
+  }
 }
 
 }  // namespace
@@ -35,24 +124,20 @@ RegionInfluences region_influences(World& world, std::uint32_t region) {
   const double thickness = values.size() > count
                                ? layer_thickness(world, identity.body, frame.normal, frame.origin)
                                : 0.0;
-  LayerGrid& filled = world.regions.at<LayerGrid>(region);
-  if (thickness <= 0.0) {
-    result.changed = filled.thickness > 0.0;
-    filled = LayerGrid{};
-    return result;
-  }
-  const auto own_count = static_cast<std::uint32_t>(layer_influence_count(side));
+  const RegionTables at{world, region, result, values.subspan(count),
+                        world.regions.at<LayerGrid>(region)};
   const std::uint32_t block = block_of(identity);
-  const auto own_rows = world.layer_influences.rows<Influence>({block * own_count, own_count});
-  const std::span<double> own(&own_rows.front().value, own_rows.size());
-  if (!serves(filled, thickness, frame.half_size)) {
-    const glm::dvec2 cell = 2.0 * frame.half_size / (static_cast<double>(side) * thickness);
-    fill_layer_influences(result.tables, values.subspan(count), poisson_ratio, cell, own);
-    filled = {thickness, frame.half_size};
-    result.changed = true;
+  const Footing* const footing =
+      world.footings.empty() ? nullptr : &world.footings.at<Footing>(block);
+  if (thickness > 0.0) {
+    take_layer(at, thickness, poisson_ratio);
+  } else if (footing != nullptr && footing->reach > 0.0 && footing->on_layer == 0 &&
+             !world.layer_influences.empty() && may_bend(world, identity.body)) {
+    take_bend(at, poisson_ratio);
+  } else {
+    result.changed = at.filled.half_size.x > 0.0;
+    at.filled = LayerGrid{};
   }
-  result.tables = layer_influence_tables(own, side);
-  result.coupled = true;
   return result;
 }
 

@@ -88,19 +88,18 @@ constexpr Bounds kBounds[] = {
     {"thin_layer mdr compliance 256", 0.04, 0.067, 0.02},
     {"soft_column mdr compliance 256", 0.03, 0.059, 0.045},
     {"mallet_on_ellipsoid mdr compliance 256", 0.03, 0.025, -1.0},
-    {"compass_on_ellipsoid mdr compliance 256", 0.03, 0.05, -1.0},
+    {"compass_on_ellipsoid mdr compliance 256", 0.03, 0.036, -1.0},
     // Finite bodies: the goal of 3 % of force and torque, but for the mallet's torque, which is one
-    // of cells (4.5 % with 12 a side, 3.3 with 16, 2.3 with 24 and with 32), and the compass's,
-    // where mdr and every number of cells are as far off (docs/models.md): the references' own
-    // error is 0.2 and 0.3 %. Of the drawn twist 2 % within a half-space; where the whole body
-    // turns, what the discs of 12 cells make of a rim that sticks is off by 3 %.
+    // of cells (4.2 % with 12 a side, 1.4 with 16, 0.5 with 24). Of the drawn twist 2 % within a
+    // half-space; where the whole body turns, what the discs of 12 cells make of a rim that sticks
+    // is off by 3 %.
     {"ball_on_cube_nu30 patch compliance 144", 0.03, 0.03, 0.02},
     {"ball_on_cube_nu49 patch compliance 144", 0.03, 0.03, 0.02},
     {"thin_layer patch compliance 144", 0.03, 0.03, 0.02},
     {"soft_column patch compliance 144", 0.03, 0.03, 0.04},
     {"large_strain_linear patch compliance 144", 0.03, 0.03, 0.04},
-    {"mallet_on_ellipsoid patch compliance 144", 0.03, 0.06, -1.0},
-    {"compass_on_ellipsoid patch compliance 144", 0.03, 0.046, -1.0},
+    {"mallet_on_ellipsoid patch compliance 144", 0.03, 0.055, -1.0},
+    {"compass_on_ellipsoid patch compliance 144", 0.03, 0.03, -1.0},
 };
 
 void expect_within(const std::string& field, double bound, const std::string& what) {

@@ -5,9 +5,9 @@
 // displaced. The CPU twin is deform_vertices() (systems/surface_field.hpp).
 //
 // Sources: Rodrigues' rotation in the form x + sin(t) k x r + (1 - cos(t)) k x (k x r), r from the axis point to x,
-// which leaves x alone, bit for bit, where t = 0, so nothing asks whether it is. Vulkan promises sin() and cos() only to 2^-11, so both come from
-// their Taylor series here: with t/2 brought to [-pi/4, pi/4] the first terms left out are 1.8e-9 (x^11/11!) and
-// 2.5e-8 (x^10/10!). `precise` keeps the compiler from contracting and reordering.
+// which leaves x alone, bit for bit, where t = 0, so nothing asks whether it is. Vulkan promises sin() and cos() only
+// to 2^-11, so both come from their Taylor series here: with t/2 brought to [-pi/4, pi/4] the first terms left out are
+// 1.8e-9 (x^11/11!) and 2.5e-8 (x^10/10!). `precise` keeps the compiler from contracting and reordering.
 
 #include "shared.h"
 #include "texels.glsl"

@@ -243,12 +243,13 @@ gboolean MockDevice::answer(UMockdevIoctlClient* client) {
 }
 
 gboolean MockDevice::driver(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
-  const bool claimed = claims_.contains(interface_in(argument));
+  // Whole at once: what is resolved once keeps its size.
+  const Data data(umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_getdriver), nullptr));
+  auto* out = reinterpret_cast<usbdevfs_getdriver*>(data->data);
+  const bool claimed = claims_.contains(out->interface);
   if (!claimed && driver_.empty()) {
     return refused(client, ENODATA);
   }
-  const Data data(umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_getdriver), nullptr));
-  auto* out = reinterpret_cast<usbdevfs_getdriver*>(data->data);
   std::snprintf(out->driver, sizeof out->driver, "%s", claimed ? "usbfs" : driver_.c_str());
   return granted(client);
 }

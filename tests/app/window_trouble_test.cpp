@@ -34,14 +34,15 @@ class WindowTroubleTest : public ::testing::Test {
     ASSERT_EQ(status_, 0) << read_text(*folder_ / "log") << read_text(*folder_ / "session.err");
   }
 
-  /// The share of the scene's part of the window, without panels and hints, that differs.
+  /// The share of the scene's part of the window that differs, without panels and hints, and below
+  /// the banner, which comes and goes with how busy the machine is.
   static double changed(const std::string& a, const std::string& b) {
     const Image before = shot(a);
     const Image after = shot(b);
     EXPECT_EQ(before.width, 1280U);
     EXPECT_EQ(after.width, 1280U);
     return before.width == 1280 && after.width == 1280
-               ? test::changed(before, after, 340, 20, 940, 640)
+               ? test::changed(before, after, 340, 48, 940, 640)
                : 1.0;
   }
   static Image shot(const std::string& name) {

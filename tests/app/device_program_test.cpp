@@ -3,11 +3,9 @@
 // session that a device holds.
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
-#include <thread>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -17,27 +15,17 @@
 #include "device/usb/usb_bus.hpp"
 #include "tests/app/program.hpp"
 #include "tests/device/mock_usb.hpp"
+#include "tests/support/waiting.hpp"
 
 namespace torsion {
 namespace {
 
+using test::comes_true;
 using test::EmulatedFalcon;
 using test::EmulatedOdrive;
 using test::MockDevice;
 using test::Process;
 using test::Ran;
-
-/// False where it does not come true in a time that is long for any machine.
-template <class F>
-bool comes_true(F&& f) {
-  for (int i = 0; i < 60000; ++i) {
-    if (f()) {
-      return true;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return false;
-}
 
 bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;

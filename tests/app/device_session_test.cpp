@@ -1,7 +1,6 @@
 // A scene held by an emulated Falcon, all the way: libusb, driver, coupling, physics thread, and
 // the force back at the motors.
 
-#include <chrono>
 #include <cstdlib>
 #include <thread>
 
@@ -13,15 +12,13 @@
 #include "device/usb/usb_list.hpp"
 #include "tests/device/mock_usb.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/waiting.hpp"
 
 namespace torsion {
 namespace {
 
 using test::EmulatedFalcon;
 using test::MockDevice;
-
-// s: a machine that is busy with other tests, under a sanitizer, keeps no period of a millisecond.
-constexpr double kPatience = 60.0;
 
 /// A ball just over a cube, on the clock, held by whatever is plugged in.
 struct Held {
@@ -39,7 +36,7 @@ struct Held {
     const Pose home = scripted_pose(session.scene.tools[0].script, 0.0);
     DeviceChoice choice;
     choice.what = "usb";
-    choice.longest_silence = kPatience;
+    choice.longest_silence = test::kPatience;
     link = std::move(DeviceLink::open(choice, home)).value();
     loop.wants_privileges = false;
     reserve(loop, session, session.simulation);
@@ -58,7 +55,8 @@ struct Held {
 template <class F>
 bool comes_true_in_hand(MockDevice& falcon, F&& holds) {
   constexpr int kWay = 400;  // steps of 0.1 mm
-  for (int i = 0; i < static_cast<int>(1e3 * kPatience); ++i) {
+  int i = 0;
+  return test::comes_true([&] {
     if (holds()) {
       return true;
     }
@@ -66,9 +64,9 @@ bool comes_true_in_hand(MockDevice& falcon, F&& holds) {
     falcon.with<EmulatedFalcon>([&](EmulatedFalcon& one) {
       one.place = {0.0, -1e-4 * down, 0.115};
     });
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return false;
+    ++i;
+    return false;
+  });
 }
 
 TEST(DeviceSessionTest, AListedFalconIsUsableAndItsDriverIsNamed) {

@@ -2,29 +2,23 @@
 
 #include "app/live/live_session.hpp"
 
-#include <chrono>
-#include <thread>
-
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "ecs/hash.hpp"
 #include "tests/app/live_session.hpp"
+#include "tests/support/waiting.hpp"
 
 namespace torsion {
 namespace {
 
-/// Refreshes until it holds, for at most ten seconds.
+/// Refreshes until it holds.
 template <class F>
 bool comes_true(LiveSession& session, F&& holds) {
-  for (int i = 0; i < 5000; ++i) {
+  return test::comes_true([&] {
     session.refresh();
-    if (holds()) {
-      return true;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return false;
+    return holds();
+  });
 }
 
 const Clock& clock_of(const LiveSession& session) {

@@ -13,6 +13,7 @@
 #include "tests/app/program.hpp"
 #include "tests/app/window_pictures.hpp"
 #include "tests/device/mock_usb.hpp"
+#include "tests/support/waiting.hpp"
 
 namespace torsion {
 namespace {
@@ -85,7 +86,12 @@ TEST_F(WindowDeviceTest, AFalconPressesTheToolAndItsLossIsSaidInRed) {
 
   put(falcon, 0.0);
   std::thread thief([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(4000));
+    // Once the session drives it: it may take long to open on a machine that runs other tests.
+    const auto packets = [&] {
+      return falcon.with<EmulatedFalcon>([](EmulatedFalcon& one) { return one.packets; });
+    };
+    const std::uint64_t before = packets();
+    EXPECT_TRUE(test::comes_true([&] { return packets() > before + 200; }));
     falcon.unplug();
   });
   const Shown robbed = show_for(6.0, folder);

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/device/mock_usb.hpp"
+#include "tests/support/waiting.hpp"
 
 namespace torsion {
 namespace {
@@ -50,24 +51,13 @@ class UsbBusTest : public testing::Test {
     bus_ = std::move(started).value();
   }
 
-  /// False where it does not come true in a time that is long for any machine.
-  template <class F>
-  static bool comes_true(F&& f) {
-    for (int i = 0; i < 20000; ++i) {
-      if (f()) {
-        return true;
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return false;
-  }
   bool becomes(DeviceState state) {
-    return comes_true([&] { return client_.now().state == state; });
+    return test::comes_true([&] { return client_.now().state == state; });
   }
   /// Samples arrive after this moment.
   bool streams() {
     const std::uint64_t number = client_.now().number;
-    return comes_true([&] { return client_.now().number > number + 20; });
+    return test::comes_true([&] { return client_.now().number > number + 20; });
   }
   void ends() { bus_.reset(); }
 
@@ -101,7 +91,7 @@ TEST_P(UsbLifeTest, OpensStreamsAndSurvivesWhatComesOverTheWire) {
   EXPECT_FALSE(device.kernel_has_it());
   ASSERT_TRUE(streams());
   device.fail_next_read(-EPIPE);
-  EXPECT_TRUE(comes_true([&] { return device.clears() > 0; }));
+  EXPECT_TRUE(test::comes_true([&] { return device.clears() > 0; }));
   device.fail_next_read(-EOVERFLOW);
   EXPECT_TRUE(streams());
   device.fail_next_read(-EPROTO);
@@ -153,7 +143,8 @@ TEST_F(UsbBusTest, SaysThatAnotherProgramHasItAndTakesItWhenThatEnds) {
   MockDevice& device = usb_.plug(EmulatedFalcon{});
   device.refuse_claims(EBUSY);
   start();
-  ASSERT_TRUE(comes_true([&] { return client_.now().trouble == DeviceTrouble::kHeldElsewhere; }));
+  ASSERT_TRUE(
+      test::comes_true([&] { return client_.now().trouble == DeviceTrouble::kHeldElsewhere; }));
   device.refuse_claims(0);
   EXPECT_TRUE(becomes(DeviceState::kLive));
 }
@@ -163,13 +154,13 @@ TEST_F(UsbBusTest, AFalconAndAKnobAreOneDevice) {
   start();
   ASSERT_TRUE(becomes(DeviceState::kLive));
   MockDevice& knob = usb_.plug(EmulatedOdrive{}, "cdc_acm");
-  ASSERT_TRUE(comes_true([&] {
+  ASSERT_TRUE(test::comes_true([&] {
     const DeviceSample sample = client_.now();
     return sample.state == DeviceState::kLive && sample.actuated == (kTranslationAxes | kTwistAxis);
   }));
-  EXPECT_TRUE(comes_true([&] { return !falcon.without_force() && !knob.without_force(); }));
+  EXPECT_TRUE(test::comes_true([&] { return !falcon.without_force() && !knob.without_force(); }));
   knob.unplug();
-  EXPECT_TRUE(comes_true([&] { return client_.now().actuated == kTranslationAxes; }));
+  EXPECT_TRUE(test::comes_true([&] { return client_.now().actuated == kTranslationAxes; }));
   ends();
   EXPECT_TRUE(falcon.without_force());
 }

@@ -5,6 +5,8 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include "render/display_connection.hpp"
+
 namespace torsion {
 
 struct Window::Impl {
@@ -101,6 +103,7 @@ Result<Window> Window::open(const std::string& title, std::uint32_t width, std::
                  " (without a display, torsion render draws into files)."};
   }
   auto impl = std::make_unique<Impl>();  // from here on it ends what glfwInit began
+  send_pictures_in_pieces();
   if (::glfwVulkanSupported() != GLFW_TRUE) {
     return Error{
         "No window can be opened: the Vulkan loader or a driver for windows is missing "

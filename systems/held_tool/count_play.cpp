@@ -1,5 +1,7 @@
 #include "systems/held_tool/count_play.hpp"
 
+#include <algorithm>
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -8,20 +10,33 @@
 namespace torsion {
 namespace {
 
-/// What of a change goes beyond a count, for each axis.
-glm::dvec3 beyond(const glm::dvec3& change, double count) {
-  return change - glm::clamp(change, -count, count);
+constexpr double kFarthest = 2.0;   // counts: what is farther is followed at once
+constexpr double kNearest = 1.0;    // counts: what is nearer is not
+constexpr double kSlowTime = 0.25;  // s: of the way between, twice that of a loose hand
+
+/// What of a change goes beyond `free`, for each axis.
+glm::dvec3 beyond(const glm::dvec3& change, double free) {
+  return change - glm::clamp(change, -free, free);
+}
+
+/// How far to go of a change within `period`.
+glm::dvec3 followed(const glm::dvec3& change, double count, double period) {
+  const glm::dvec3 at_once = beyond(change, kFarthest * count);
+  const double share = std::min(1.0, period / kSlowTime);
+  return at_once + share * beyond(change - at_once, kNearest * count);
 }
 
 }  // namespace
 
-Pose within_a_count(const Pose& last, const Pose& measured, double count, double turn_count) {
+Pose follow_counts(const Pose& last, const Pose& measured, double count, double turn_count,
+                   double period) {
   Pose pose = measured;
   if (count > 0.0) {
-    pose.position = last.position + beyond(measured.position - last.position, count);
+    pose.position = last.position + followed(measured.position - last.position, count, period);
   }
   if (turn_count > 0.0) {
-    const glm::dvec3 turn = beyond(turn_between(last.rotation, measured.rotation), turn_count);
+    const glm::dvec3 turn =
+        followed(turn_between(last.rotation, measured.rotation), turn_count, period);
     const double angle = glm::length(turn);
     pose.rotation = angle > 0.0
                         ? glm::normalize(glm::angleAxis(angle, turn / angle) * last.rotation)

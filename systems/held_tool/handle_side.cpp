@@ -30,6 +30,18 @@ void begin_epoch(HandleSide& side, const DeviceSample& sample, const Pose& tool)
   side.map.origin = sample.steers_rate ? tool.position - sample.pose.position : side.home.position;
 }
 
+/// Until it takes hold the handle is turned as the tool is, however it is held.
+void wait_for_hold(HandleSide& side, const DeviceSample& sample, const Pose& tool) {
+  side.device = sample.pose;
+  side.map.turned = sample.pose.rotation;
+  side.map.rotation = tool.rotation;
+  if (sample.steers_rate) {
+    side.map.origin = tool.position - sample.pose.position;
+  }
+  side.books = {};
+  side.last = handle_pose(side.map, side.device);
+}
+
 }  // namespace
 
 Pose handle_pose(const HandleMap& map, const Pose& device) {
@@ -46,25 +58,16 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
   if (begins) {
     begin_epoch(side, sample, tool);
   }
-  const bool waits = side.guard.state == GuardState::kWaiting;
-  if (live) {
-    side.device = waits ? sample.pose
-                        : within_a_count(side.device, sample.pose, sample.traits.encoder_step,
-                                         sample.traits.encoder_turn_step);
-  }
-  if (waits && live) {
-    // Until it takes hold the handle is turned as the tool is, however it is held.
-    side.map.turned = sample.pose.rotation;
-    side.map.rotation = tool.rotation;
-    if (sample.steers_rate) {
-      side.map.origin = tool.position - sample.pose.position;
-    }
-    side.books = {};
-    side.last = handle_pose(side.map, side.device);
-    side.last_time = now - kUsualPeriod;
+  const bool waits = live && side.guard.state == GuardState::kWaiting;
+  const double period =
+      waits ? kUsualPeriod : std::clamp(now - side.last_time, 1e-5, kLongestPeriod);
+  if (waits) {
+    wait_for_hold(side, sample, tool);
+  } else if (live) {
+    side.device = follow_counts(side.device, sample.pose, sample.traits.encoder_step,
+                                sample.traits.encoder_turn_step, period);
   }
   outcome.handle = live ? handle_pose(side.map, side.device) : side.last;
-  const double period = std::clamp(now - side.last_time, 1e-5, kLongestPeriod);
   const Wrench pull = coupling_wrench(side.coupling, {outcome.handle}, {tool});
   GuardInput input;
   input.wanted = keep_passive(side.books, side.passivity, {-pull.force, -pull.torque},

@@ -6,7 +6,7 @@
 #include "app/commands.hpp"
 #include "app/deformed_scene.hpp"
 #include "app/live/recorded_motion.hpp"
-#include "app/live/recording.hpp"
+#include "app/live/recording_file.hpp"
 #include "app/output_file.hpp"
 #include "app/progress.hpp"
 

@@ -1,12 +1,17 @@
 #include "app/output_file.hpp"
 
 #include <cerrno>
+#include <cstdlib>
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
+
+#include "ecs/assert.hpp"
 
 namespace torsion {
 namespace {
@@ -42,13 +47,36 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path)) {
     return cannot_write(path, "it is a folder");
   }
-  std::filesystem::path temporary = path;
-  temporary += fmt::format(".{}.tmp", ::getpid());
-  std::FILE* file = std::fopen(temporary.c_str(), "wb");
-  if (file == nullptr) {
-    return cannot_write(path, said_by_system(errno));
+  // Its own, even beside one that is being written to the same place.
+  std::filesystem::path temporary;
+  std::FILE* file = nullptr;
+  for (int number = 0; file == nullptr; ++number) {
+    temporary = path;
+    temporary += fmt::format(".{}.{}.tmp", ::getpid(), number);
+    file = std::fopen(temporary.c_str(), "w+bx");
+    if (file == nullptr && errno != EEXIST) {
+      return cannot_write(path, said_by_system(errno));
+    }
   }
   return OutputFile(path, std::move(temporary), file);
+}
+
+Result<OutputFile> OutputFile::create_unnamed() {
+  const char* const chosen = std::getenv("TMPDIR");  // NOLINT(concurrency-mt-unsafe): no setenv
+  const std::filesystem::path folder = chosen != nullptr && *chosen != '\0' ? chosen : "/var/tmp";
+  std::string name = folder / "torsion-XXXXXX";
+  const int descriptor = ::mkostemp(name.data(), O_CLOEXEC);
+  if (descriptor < 0) {
+    return cannot_write(folder, said_by_system(errno));
+  }
+  ::unlink(name.c_str());
+  std::FILE* file = ::fdopen(descriptor, "w+b");
+  if (file == nullptr) {
+    const int code = errno;
+    ::close(descriptor);
+    return cannot_write(folder, said_by_system(code));
+  }
+  return OutputFile(folder, {}, file);
 }
 
 OutputFile::OutputFile(std::filesystem::path path, std::filesystem::path temporary, std::FILE* file)
@@ -73,8 +101,10 @@ OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
 OutputFile::~OutputFile() {
   if (file_ != nullptr) {
     std::fclose(file_);
-    std::error_code ignored;
-    std::filesystem::remove(temporary_, ignored);
+    if (!temporary_.empty()) {
+      std::error_code ignored;
+      std::filesystem::remove(temporary_, ignored);
+    }
   }
 }
 
@@ -92,12 +122,35 @@ std::string OutputFile::problem() const {
                  : "";
 }
 
-Result<Done> OutputFile::commit() {
+void OutputFile::flush() {
   if (!failed_) {
     errno = 0;
     failed_ = std::fflush(file_) != 0;
     why_ = failed_ ? errno : 0;
   }
+}
+
+Result<Done> OutputFile::copy_to(OutputFile& to) {
+  flush();
+  if (failed_) {
+    return Error{problem()};
+  }
+  std::vector<char> bytes(1U << 20U);
+  off_t at = 0;
+  ssize_t size = 0;
+  while ((size = ::pread(::fileno(file_), bytes.data(), bytes.size(), at)) > 0) {
+    to.write({bytes.data(), static_cast<std::size_t>(size)});
+    at += size;
+  }
+  if (size < 0) {
+    return Error{path_.string() + ": cannot be read: " + said_by_system(errno)};
+  }
+  return Done{};
+}
+
+Result<Done> OutputFile::commit() {
+  TORSION_ASSERT(!temporary_.empty());
+  flush();
   failed_ = std::fclose(std::exchange(file_, nullptr)) != 0 || failed_;
   std::error_code renaming;
   if (!failed_) {

@@ -14,6 +14,9 @@ namespace torsion {
 class OutputFile {
  public:
   static Result<OutputFile> create(const std::filesystem::path& path);
+  /// One without a name, which ends with the object: in $TMPDIR, else in /var/tmp, which the file
+  /// system hierarchy keeps for large ones (/tmp may be memory).
+  static Result<OutputFile> create_unnamed();
 
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&& other) noexcept;
@@ -26,13 +29,18 @@ class OutputFile {
   /// Why the writing failed; empty as long as it has not.
   [[nodiscard]] std::string problem() const;
 
+  /// Writes all that is here so far behind what is in `to`.
+  Result<Done> copy_to(OutputFile& to);
+
   /// Flushes and renames. Fails when anything since create() failed.
+  /// @pre it has a name
   Result<Done> commit();
 
  private:
   OutputFile(std::filesystem::path path, std::filesystem::path temporary, std::FILE* file);
+  void flush();
   std::filesystem::path path_;
-  std::filesystem::path temporary_;
+  std::filesystem::path temporary_;  // empty: it has no name
   std::FILE* file_ = nullptr;
   bool failed_ = false;
   int why_ = 0;  // of errno, when it failed

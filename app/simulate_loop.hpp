@@ -3,7 +3,7 @@
 #include "app/live/device_link.hpp"
 #include "app/live/interrupt.hpp"
 #include "app/live/realtime_mode.hpp"
-#include "app/live/recording.hpp"
+#include "app/live/recording_file.hpp"
 #include "app/progress.hpp"
 #include "app/run_statistics.hpp"
 #include "app/session.hpp"

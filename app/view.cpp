@@ -66,6 +66,9 @@ int view(const ViewOptions& options) {
                was.seconds, was.frames, pictures_a_second(was), 100.0 * was.share,
                clock_text(was.statistics, was.mode), was.device ? device_summary(*was.device) : "");
   }
+  if (!outcome.value().problem.empty()) {
+    return fail(outcome.value().problem);
+  }
   return kDone;
 }
 
@@ -79,7 +82,7 @@ void add_view(CLI::App& app, Command& command) {
   subcommand->add_option("--seconds", options->viewer.seconds, "Close after that long")
       ->check(CLI::Range(0.0, 1e6));
   subcommand->add_option("--record", options->viewer.record,
-                         "File to write at the end with everything that went in");
+                         "File to write with everything that goes in");
   subcommand->add_option("--screenshot", options->viewer.screenshot,
                          "PNG to write of the last picture");
   subcommand->add_option("--device", options->viewer.device.what,

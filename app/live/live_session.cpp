@@ -23,6 +23,13 @@ constexpr double kStiffnessShare = 0.5;  // of E* r
 constexpr double kTorqueShare = 0.04;    // of E* r^3
 constexpr double kTurnStiffShare = 0.1;  // of E* r^3: 0.4 rad at the largest torque
 
+/// Whether one input can come after another in a run: of a step, the poses of tools come last.
+bool goes_on(const InputEntry& last, const InputEntry& next) {
+  return next.step > last.step ||
+         (next.step == last.step && (last.kind != InputKind::kPose ||
+                                     (next.kind == InputKind::kPose && next.index > last.index)));
+}
+
 }  // namespace
 
 VirtualCoupling mouse_coupling(const SceneDescription& scene, double radius) {
@@ -39,9 +46,9 @@ VirtualCoupling mouse_coupling(const SceneDescription& scene, double radius) {
           kTorqueShare * er * radius * radius};
 }
 
-LiveSession::LiveSession(Session session, PrepareOptions options)
-    : session_(std::move(session)), options_(std::move(options)) {
-  recording_ = begin_recording(session_, options_);
+LiveSession::LiveSession(Session session, PrepareOptions options, std::filesystem::path record)
+    : session_(std::move(session)), options_(std::move(options)), record_(std::move(record)) {
+  begin_recording_of(begin_recording(session_, options_));
   auto first = std::make_unique<Generation>();
   first->simulation = std::move(session_.simulation);
   first->picks = picks_of(session_.scene, options_);
@@ -93,14 +100,55 @@ void LiveSession::start(bool privileges) {
   }
 }
 
-void LiveSession::take_inputs() {
-  std::vector<InputEntry>& entries = recording_.entries;
-  while (const auto entry = loop_.inputs.pop()) {
-    if (!entries.empty() && entry->step < entries.back().step) {
-      recording_ = restarted_;
-    }
-    recording_.entries.push_back(*entry);
+void LiveSession::begin_recording_of(const Recording& head) {
+  recording_.reset();  // before the next one needs its place
+  recording_problem_.clear();
+  recorded_steps_ = 0;
+  Result<RecordingWriter> made = record_.empty() ? RecordingWriter::create_unnamed(head)
+                                                 : RecordingWriter::create(record_, head);
+  if (made) {
+    recording_ = std::move(made).value();
+  } else {
+    recording_problem_ = made.error().text;
   }
+}
+
+void LiveSession::take_inputs() {
+  while (const auto entry = loop_.inputs.pop()) {
+    if (recorded_steps_ > 0 && !goes_on(last_entry_, *entry)) {
+      begin_recording_of(restarted_);
+    }
+    last_entry_ = *entry;
+    recorded_steps_ = entry->step + 1;
+    if (recording_) {
+      recording_->add(*entry);
+    }
+  }
+}
+
+double LiveSession::recorded_seconds() const {
+  return static_cast<double>(recorded_steps_) / options_.rate;
+}
+
+std::string LiveSession::recording_problem() const {
+  if (frame().statistics.lost_inputs > 0) {
+    return "inputs were lost, and what is recorded cannot be replayed";
+  }
+  return recording_ ? recording_->problem() : recording_problem_;
+}
+
+Result<Done> LiveSession::save_recording(const std::filesystem::path& path) {
+  const std::string problem = recording_problem();
+  return problem.empty() ? recording_->save_copy(path) : Result<Done>(Error{problem});
+}
+
+Result<Done> LiveSession::finish_recording() {
+  TORSION_ASSERT(!record_.empty());
+  const std::string problem = recording_problem();
+  Result<Done> done = problem.empty() ? recording_->finish() : Result<Done>(Error{problem});
+  recording_.reset();
+  recording_problem_ = done ? "it has ended" : done.error().text;
+  return done;
 }
 
 bool LiveSession::refresh() {

@@ -1,13 +1,15 @@
 #pragma once
 
 #include <atomic>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "app/live/live_loop.hpp"
-#include "app/live/recording.hpp"
+#include "app/live/recording_file.hpp"
 #include "app/live/scene_device.hpp"
 
 namespace torsion {
@@ -17,7 +19,8 @@ namespace torsion {
 class LiveSession {
  public:
   /// @param session  prepared with `options`, no step taken
-  LiveSession(Session session, PrepareOptions options);
+  /// @param record   file to record to while it goes on; empty: only for save_recording()
+  LiveSession(Session session, PrepareOptions options, std::filesystem::path record = {});
   ~LiveSession();
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
@@ -72,13 +75,22 @@ class LiveSession {
 
   [[nodiscard]] const SceneDescription& scene() const { return session_.scene; }
   [[nodiscard]] const RealtimeMode& mode() const { return loop_.mode; }
-  [[nodiscard]] const Recording& recording() const { return recording_; }
+
+  /// s: since the start, as far as it is recorded
+  [[nodiscard]] double recorded_seconds() const;
+  /// Why nothing is recorded any more; empty as long as it is. A restart tries again.
+  [[nodiscard]] std::string recording_problem() const;
+  /// Everything since the start, as of the last refresh(), in a file.
+  Result<Done> save_recording(const std::filesystem::path& path);
+  /// Ends the recording to the file that it was to go to. @pre there is one; nothing follows
+  Result<Done> finish_recording();
 
  private:
   void send(const LiveCommand& command) { loop_.commands.push(command); }
   void prepare_in_background(std::vector<BodyPick> picks);
   void take_prepared();
   void take_inputs();
+  void begin_recording_of(const Recording& head);
 
   Session session_;  // its simulation is in the first generation
   PrepareOptions options_;
@@ -90,7 +102,11 @@ class LiveSession {
   std::vector<std::uint64_t> samples_;  // so many were sent, one count a tool
   std::vector<std::uint8_t> held_;
   std::vector<VirtualCoupling> couplings_;
-  Recording recording_;
+  std::filesystem::path record_;  // empty: to a file without a name
+  std::optional<RecordingWriter> recording_;
+  std::string recording_problem_;     // why that is not there
+  std::uint64_t recorded_steps_ = 0;  // begun
+  InputEntry last_entry_;             // of those
   std::thread physics_;
 
   std::thread worker_;

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,10 +11,7 @@
 
 namespace torsion {
 
-/// A run that can be had again: how its world was prepared, and everything that went in. In a file:
-/// magic, version, a JSON object with all but the entries, the entries as they lie in memory, as
-/// many as there is room for before the checksum (XXH3) of all that. In this machine's byte order,
-/// which the magic shows.
+/// A run that can be had again: how its world was prepared, and everything that went in.
 struct Recording {
   std::string scene;                  // path, as it was given
   double rate = 1000.0;               // Hz
@@ -38,38 +34,6 @@ Recording begin_recording(const Session& session, const PrepareOptions& options)
 
 /// Steps that a recording holds.
 std::uint64_t steps_in(const Recording& recording);
-
-/// Writes a recording while it is made, by way of a temporary file: it takes the same memory
-/// however long it gets, and `path` is never half-written. Not for the physics thread: it does what
-/// a disk does.
-class RecordingWriter {
- public:
-  /// @param head  the recording without its entries
-  static Result<RecordingWriter> create(const std::filesystem::path& path, const Recording& head);
-
-  RecordingWriter(RecordingWriter&&) noexcept;
-  RecordingWriter& operator=(RecordingWriter&&) noexcept;
-  RecordingWriter(const RecordingWriter&) = delete;
-  RecordingWriter& operator=(const RecordingWriter&) = delete;
-  ~RecordingWriter();  // takes the temporary file away unless it was finished
-
-  /// Allocates nothing. After a failure, such as a full disk, it does nothing.
-  void add(const InputEntry& entry);
-  /// Why the writing failed; empty as long as it has not.
-  [[nodiscard]] std::string problem() const;
-  Result<Done> finish();
-
- private:
-  struct State;
-  explicit RecordingWriter(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
-};
-
-/// Writes all of it at once, in the same way.
-Result<Done> save_recording(const Recording& recording, const std::filesystem::path& path);
-
-/// Fails on anything that save_recording cannot have written, and says what it is.
-Result<Recording> load_recording(const std::filesystem::path& path);
 
 /// Loads and prepares a scene as it was when recorded. Fails with a clear word where it is another
 /// scene, or the program prepares it otherwise than the one that recorded.

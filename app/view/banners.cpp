@@ -57,8 +57,9 @@ void draw_banners(const ViewState& state, const LiveSession& session, double now
                        state.missed_lately),
            top, kAmber);
   }
-  if (frame.statistics.lost_inputs > 0) {
-    banner("##lost", "Inputs were lost: this recording cannot be replayed. Restart.", top, kRed);
+  if (const std::string problem = session.recording_problem(); !problem.empty()) {
+    banner("##record", problem + "\nThe session goes on without a recording; a restart begins one.",
+           top, kRed);
   }
   if (now < state.message_until && !state.wants_screenshot) {
     banner("##message", state.message, top, IM_COL32(40, 100, 60, 255));

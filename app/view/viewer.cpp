@@ -100,7 +100,11 @@ Result<Done> Viewer::begin(Session session) {
       started = device.error();
       return;
     }
-    session_ = std::make_unique<LiveSession>(std::move(session), options_.prepare);
+    session_ = std::make_unique<LiveSession>(std::move(session), options_.prepare, options_.record);
+    if (!again && !options_.record.empty() && !session_->recording_problem().empty()) {
+      started = Error{session_->recording_problem()};
+      return;
+    }
     session_->give(std::move(device).value());
     session_->start();
   });
@@ -165,12 +169,10 @@ void Viewer::take_wishes() {
   }
   if (state_.wants_saved_recording) {
     const std::string name = file_name(".rec");
-    const Result<Done> saved = save_recording(session_->recording(), name);
+    const Result<Done> saved = session_->save_recording(name);
     say(saved ? fmt::format("{}: {:.1f} s, everything since the start; play it with torsion "
                             "simulate --replay",
-                            name,
-                            static_cast<double>(steps_in(session_->recording())) /
-                                session_->recording().rate)
+                            name, session_->recorded_seconds())
               : saved.error().text);
   }
   if (state_.wants_video) {
@@ -379,10 +381,8 @@ Result<ViewerOutcome> Viewer::finish() {
   }
   if (!options_.record.empty()) {
     session_->refresh();
-    const Result<Done> saved = save_recording(session_->recording(), options_.record);
-    if (!saved) {
-      return saved.error();
-    }
+    const Result<Done> saved = session_->finish_recording();
+    outcome_.problem = saved ? "" : saved.error().text;
   }
   return outcome_;
 }

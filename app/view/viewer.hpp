@@ -26,7 +26,7 @@ struct ViewerOptions {
   PrepareOptions prepare;
   DeviceChoice device;     // what holds a tool; empty: what the scene says
   double seconds = -1.0;   // s: closes by itself after that; negative: when the person does
-  std::string record;      // file to write the recording to at the end; empty: none
+  std::string record;      // file to write the recording to; empty: none
   std::string screenshot;  // file to write the last picture to; empty: none
 };
 
@@ -40,6 +40,7 @@ struct ViewerOutcome {
   double share = 1.0;                // inner resolution at the end
   PassTimes passes;                  // ms a picture, the mean
   std::optional<DeviceView> device;  // that held a tool at the end
+  std::string problem;  // why there is no recording; empty: there is, or none was wanted
 };
 
 /// A scene in a window. Everything is in the main thread but physics, and what prepares worlds.

@@ -2,11 +2,16 @@
 
 #include "app/live/live_session.hpp"
 
+#include <algorithm>
+#include <span>
+
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "ecs/hash.hpp"
 #include "tests/app/live_session.hpp"
+#include "tests/app/program.hpp"
+#include "tests/app/small_disk.hpp"
 #include "tests/support/waiting.hpp"
 
 namespace torsion {
@@ -23,6 +28,15 @@ bool comes_true(LiveSession& session, F&& holds) {
 
 const Clock& clock_of(const LiveSession& session) {
   return session.frame().snapshot.clock.at<Clock>(0);
+}
+
+/// What it has recorded since its start.
+Recording recorded(LiveSession& session) {
+  const test::Folder folder;
+  EXPECT_TRUE(session.save_recording(folder / "a.rec"));
+  Result<Recording> loaded = load_recording(folder / "a.rec");
+  EXPECT_TRUE(loaded) << loaded.error().text;
+  return loaded ? std::move(loaded).value() : Recording{};
 }
 
 TEST(LiveSessionTest, SwitchesModelsWhileHeldAndItsRecordingGivesTheSameBits) {
@@ -48,8 +62,9 @@ TEST(LiveSessionTest, SwitchesModelsWhileHeldAndItsRecordingGivesTheSameBits) {
   session.refresh();
 
   Session again = test::ball_session();
-  Replay replay{&session.recording(), 0};
-  const std::uint64_t steps = steps_in(session.recording());
+  const Recording recording = recorded(session);
+  Replay replay{&recording, 0};
+  const std::uint64_t steps = steps_in(recording);
   ASSERT_EQ(steps, clock_of(session).step);
   for (std::uint64_t i = 0; i < steps; ++i) {
     ASSERT_TRUE(replay_inputs(replay, again, true));
@@ -65,13 +80,76 @@ TEST(LiveSessionTest, ARestartBeginsAnewAndSoDoesItsRecording) {
   session.start(kPrivileges);
   session.hold(0, {{0.0, test::kTouching, 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)});
   ASSERT_TRUE(comes_true(session, [&] { return clock_of(session).step > 300; }));
-  const std::uint64_t before = steps_in(session.recording());
+  const double before = session.recorded_seconds();
+  EXPECT_EQ(before, 1e-3 * static_cast<double>(steps_in(recorded(session))));
   ASSERT_TRUE(session.choose(session.shown().picks, true));
   ASSERT_TRUE(comes_true(session, [&] { return session.frame().generation == 1; }));
   ASSERT_TRUE(comes_true(session, [&] { return clock_of(session).step > 20; }));
   EXPECT_FALSE(session.held(0));
-  EXPECT_GE(before, 300U);
-  EXPECT_EQ(session.recording().entries.front().step, 0U);
+  EXPECT_GE(before, 0.3);
+  const Recording recording = recorded(session);  // in order from step 0 on, or it cannot be read
+  EXPECT_EQ(recording.entries.front().step, 0U);
+  EXPECT_GE(steps_in(recording), 20U);
+}
+
+TEST(LiveSessionTest, ARestartAfterASingleStepBeginsItsRecordingAnewToo) {
+  constexpr bool kPrivileges = false;
+  LiveSession session(test::ball_session(), test::ball_options());
+  session.pause(true);
+  session.start(kPrivileges);
+  const auto one_step = [&](std::uint64_t generation) {
+    session.step_once();
+    return comes_true(session, [&] {
+      return session.frame().generation == generation && clock_of(session).step == 1;
+    });
+  };
+  ASSERT_TRUE(one_step(0));
+  ASSERT_TRUE(session.choose(session.shown().picks, true));
+  ASSERT_TRUE(comes_true(session, [&] { return session.frame().generation == 1; }));
+  ASSERT_TRUE(clock_of(session).step == 1 || one_step(1));
+  EXPECT_EQ(steps_in(recorded(session)), 1U);
+}
+
+TEST(LiveSessionTest, RecordsToItsFileWhileItGoesOnAndCopiesBesideIt) {
+  constexpr bool kPrivileges = false;
+  const test::Folder folder;
+  LiveSession session(test::ball_session(), test::ball_options(), folder / "a.rec");
+  session.start(kPrivileges);
+  ASSERT_TRUE(comes_true(session, [&] { return clock_of(session).step > 100; }));
+  // The same place, too: what is under way there is not touched.
+  ASSERT_TRUE(session.save_recording(folder / "a.rec"));
+  const Result<Recording> copy = load_recording(folder / "a.rec");
+  ASSERT_TRUE(copy) << copy.error().text;
+  const std::uint64_t copied = steps_in(copy.value());
+  ASSERT_TRUE(comes_true(session, [&] { return clock_of(session).step > copied + 100; }));
+  ASSERT_TRUE(session.finish_recording());
+  const Result<Recording> whole = load_recording(folder / "a.rec");
+  ASSERT_TRUE(whole) << whole.error().text;
+  EXPECT_GE(copied, 100U);
+  EXPECT_GE(steps_in(whole.value()), copied + 100);
+  EXPECT_TRUE(std::ranges::equal(
+      copy.value().entries, std::span(whole.value().entries).first(copy.value().entries.size()),
+      [](const InputEntry& a, const InputEntry& b) {
+        return a.kind == b.kind && a.step == b.step && a.values == b.values;
+      }));
+}
+
+TEST(LiveSessionTest, GoesOnWhenTheDiskIsFullAndSaysThatNothingIsRecorded) {
+  constexpr bool kPrivileges = false;
+  const test::Folder folder;
+  {
+    LiveSession session(test::ball_session(), test::ball_options(), folder / "full.rec");
+    session.start(kPrivileges);
+    const test::SmallDisk small(65536);  // half a second
+    ASSERT_TRUE(comes_true(session, [&] { return !session.recording_problem().empty(); }));
+    const std::uint64_t then = clock_of(session).step;
+    ASSERT_TRUE(comes_true(session, [&] { return clock_of(session).step > then + 100; }));
+    const std::string problem = session.recording_problem();
+    EXPECT_NE(problem.find("full.rec: cannot be written: "), std::string::npos) << problem;
+    EXPECT_EQ(session.save_recording(folder / "copy.rec").error().text, problem);
+    EXPECT_EQ(session.finish_recording().error().text, problem);
+  }
+  EXPECT_TRUE(folder.empty());
 }
 
 TEST(LiveSessionTest, ADeviceHasTheToolFromTheStartOnAndAfterARestart) {

@@ -51,5 +51,36 @@ TEST(OutputFileTest, RefusesAFolderBelowAFile) {
   EXPECT_NE(file.error().text.find("cannot be written"), std::string::npos);
 }
 
+TEST(OutputFileTest, OneWithoutANameIsCopiedAndGoesOn) {
+  const Folder folder;
+  Result<OutputFile> unnamed = OutputFile::create_unnamed();
+  ASSERT_TRUE(unnamed) << unnamed.error().text;
+  std::string all;
+  for (int part = 0; part < 3; ++part) {
+    const std::string bytes(700'000, static_cast<char>('a' + part));
+    all += bytes;
+    unnamed.value().write(bytes);
+    Result<OutputFile> copy = OutputFile::create(folder / "copy");
+    ASSERT_TRUE(copy);
+    ASSERT_TRUE(unnamed.value().copy_to(copy.value()));
+    ASSERT_TRUE(copy.value().commit());
+    EXPECT_TRUE(read_text(folder / "copy") == all) << part;
+  }
+}
+
+TEST(OutputFileTest, TwoForTheSamePlaceDoNotMix) {
+  const Folder folder;
+  const std::string path = folder / "file.txt";
+  Result<OutputFile> first = OutputFile::create(path);
+  Result<OutputFile> second = OutputFile::create(path);
+  ASSERT_TRUE(first && second);
+  first.value().write("first");
+  second.value().write("second");
+  ASSERT_TRUE(first.value().commit());
+  EXPECT_EQ(read_text(path), "first");
+  ASSERT_TRUE(second.value().commit());
+  EXPECT_EQ(read_text(path), "second");
+}
+
 }  // namespace
 }  // namespace torsion

@@ -1,12 +1,9 @@
-#include "app/live/recording.hpp"
-
-#include <csignal>
-
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
+#include "app/live/recording_file.hpp"
 #include "tests/app/live_session.hpp"
 #include "tests/app/program.hpp"
+#include "tests/app/small_disk.hpp"
 #include "tests/support/allocation_guard.hpp"
 
 namespace torsion {
@@ -128,17 +125,10 @@ TEST(RecordingTest, AFullDiskIsSaidAndLeavesNothingBehind) {
       RecordingWriter::create(folder / "full.rec", begin_recording(session, test::ball_options()));
   ASSERT_TRUE(made) << made.error().text;
   {
-    // No file may grow beyond this, which a write hears of as it does of a full disk.
-    rlimit before{};
-    ::getrlimit(RLIMIT_FSIZE, &before);
-    const rlimit small{65536, before.rlim_max};
-    auto* const handler = std::signal(SIGXFSZ, SIG_IGN);
-    ::setrlimit(RLIMIT_FSIZE, &small);
+    const test::SmallDisk small(65536);
     for (std::uint64_t step = 0; step < 10'000; ++step) {
       made.value().add(pose_entry(step, 0, Pose{}, Pose{}));
     }
-    ::setrlimit(RLIMIT_FSIZE, &before);
-    std::signal(SIGXFSZ, handler);
   }
   const std::string problem = made.value().problem();
   EXPECT_NE(problem.find("full.rec: cannot be written: "), std::string::npos) << problem;

@@ -9,6 +9,7 @@ namespace {
 constexpr std::uint32_t kReadsUnderWay = 2;
 constexpr std::uint32_t kMostFailures = 10;  // in a row
 constexpr double kRateMemory = 0.02;         // share of one sample's interval in the mean
+constexpr double kRetry = 0.5;               // s
 
 }  // namespace
 
@@ -40,6 +41,16 @@ void set_state(DriverCall& call, DeviceState state, DeviceTrouble trouble) {
   }
 }
 
+void retry_later(DriverCall& call, DeviceTrouble trouble) {
+  set_state(call, DeviceState::kStarting, trouble);
+  call.report.wake_at = call.now + kRetry;
+}
+
+void retry_claim(DriverCall& call, const UsbEvent& claim) {
+  retry_later(call, claim.status == UsbStatus::kNoAccess ? DeviceTrouble::kNoAccess
+                                                         : DeviceTrouble::kHeldElsewhere);
+}
+
 const UsbEndpoint* find_endpoint(const UsbInterface& interface, UsbEndpointKind kind,
                                  std::uint8_t direction) {
   const auto found = std::ranges::find_if(interface.endpoints, [&](const UsbEndpoint& endpoint) {
@@ -59,6 +70,11 @@ bool let_go_through(WriteGate& gate, DriverCall& call, Bytes packet) {
   gate.let_go_after = gate.under_way;
   write_through(gate, call, packet);
   return !gate.let_go_after;
+}
+
+void write_last(WriteGate& gate, DriverCall& call, Bytes packet) {
+  gate.under_way = false;
+  write_through(gate, call, packet);
 }
 
 bool take_write(WriteGate& gate, DriverCall& call, const UsbEvent& event) {

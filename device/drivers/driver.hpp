@@ -59,6 +59,12 @@ Wrench publish_pose(DriverCall& call, const Pose& pose, std::uint32_t buttons);
 /// The sink hears of it where it is new. Going live begins an epoch.
 void set_state(DriverCall& call, DeviceState state, DeviceTrouble trouble = DeviceTrouble::kNone);
 
+/// Not live because of `trouble`; wakes in a while to try again.
+void retry_later(DriverCall& call, DeviceTrouble trouble);
+
+/// Likewise after a claim that was refused, with the trouble that this says.
+void retry_claim(DriverCall& call, const UsbEvent& claim);
+
 /// The first endpoint of this kind and direction (0 or kUsbIn); null where there is none.
 const UsbEndpoint* find_endpoint(const UsbInterface& interface, UsbEndpointKind kind,
                                  std::uint8_t direction);
@@ -76,6 +82,9 @@ void write_through(WriteGate& gate, DriverCall& call, Bytes packet);
 /// Writes a packet that takes the force off the motors, now or as soon as the gate is free.
 /// @return false where it has to wait: take_write says when
 bool let_go_through(WriteGate& gate, DriverCall& call, Bytes packet);
+
+/// Writes a packet whatever is on its way: it is to be the last.
+void write_last(WriteGate& gate, DriverCall& call, Bytes packet);
 
 /// The end of a write. @return true where a packet that lets go is owed, now
 bool take_write(WriteGate& gate, DriverCall& call, const UsbEvent& event);

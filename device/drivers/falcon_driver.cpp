@@ -7,9 +7,6 @@ namespace {
 
 const glm::dvec3 kCentre(0.0, 0.0, 0.115);  // m, device axes: of the workspace
 constexpr double kAnswer = 0.1;             // s: for an answer in set-up
-constexpr double kSilence = 5e-3;           // s: live, then it is told to let go and asked again
-constexpr double kLost = 0.25;              // s: live, then it is set up anew
-constexpr double kRetry = 0.5;              // s
 constexpr std::uint32_t kAsks = 3;
 constexpr std::uint32_t kGreetings = 100;
 constexpr std::uint32_t kLoads = 3;
@@ -23,23 +20,6 @@ std::array<std::uint8_t, kFalconPacket> packet_of(const FalconDriver& driver,
   output.red = output.homing;
   output.green = !output.homing;
   return encode_falcon(output);
-}
-
-void let_go(FalconDriver& driver, DriverCall& call) {
-  let_go_through(driver.writes, call, packet_of(driver, {}));
-}
-
-void again_later(FalconDriver& driver, DriverCall& call, DeviceTrouble trouble) {
-  let_go(driver, call);
-  driver.phase = FalconPhase::kClaiming;
-  set_state(call, DeviceState::kStarting, trouble);
-  call.report.wake_at = call.now + kRetry;
-}
-
-void give_up(FalconDriver& driver, DriverCall& call, DeviceTrouble trouble) {
-  driver.phase = FalconPhase::kNone;
-  set_state(call, DeviceState::kStarting, trouble);
-  call.report.wake_at = kNever;
 }
 
 void ask(FalconDriver& driver, DriverCall& call) {
@@ -154,8 +134,7 @@ void take_talk(FalconDriver& driver, DriverCall& call, Bytes bytes) {
 
 /// A packet of the encoders: the pose, and the force that goes with it.
 void take_packet(FalconDriver& driver, DriverCall& call, const FalconInput& input) {
-  driver.heard_at = call.now;
-  call.report.wake_at = call.now + kSilence;
+  heard(driver, call);
   if (input.homed != kAllHomed) {
     driver.phase = FalconPhase::kHoming;
     set_state(call, DeviceState::kStarting, DeviceTrouble::kNotHomed);
@@ -201,27 +180,21 @@ void take_bytes(FalconDriver& driver, DriverCall& call, Bytes bytes) {
   }
 }
 
-void take_claim(FalconDriver& driver, DriverCall& call, const UsbEvent& event) {
-  if (event.status == UsbStatus::kCompleted) {
-    start_controls(driver, call, FalconPhase::kNormalSetUp);
-    return;
-  }
-  set_state(call, DeviceState::kStarting,
-            event.status == UsbStatus::kNoAccess ? DeviceTrouble::kNoAccess
-                                                 : DeviceTrouble::kHeldElsewhere);
-  call.report.wake_at = call.now + kRetry;
-}
-
 }  // namespace
 
+void let_go(FalconDriver& driver, DriverCall& call) {
+  let_go_through(driver.writes, call, packet_of(driver, {}));
+}
+
+void again_later(FalconDriver& driver, DriverCall& call, DeviceTrouble trouble) {
+  let_go(driver, call);
+  driver.phase = FalconPhase::kClaiming;
+  retry_later(call, trouble);
+}
+
 void begin(FalconDriver& driver, DriverCall& call) {
-  const ReadQueue reads = driver.reads;  // those under way stay so
-  const WriteGate writes = driver.writes;
   const std::uint32_t loads = driver.loads;
-  driver = {};
-  driver.reads = reads;
-  driver.reads.failures = 0;
-  driver.writes = writes;
+  driver = fresh(driver);
   driver.loads = loads;
   DeviceSample& sample = call.report.sample;
   sample.sensed = kTranslationAxes;
@@ -234,23 +207,16 @@ void begin(FalconDriver& driver, DriverCall& call) {
     return;
   }
   const UsbInterface& interface = call.identity.interfaces.front();
-  const UsbEndpoint* in = find_endpoint(interface, UsbEndpointKind::kBulk, kUsbIn);
-  const UsbEndpoint* out = find_endpoint(interface, UsbEndpointKind::kBulk, 0);
-  if (in == nullptr || out == nullptr) {
-    give_up(driver, call, DeviceTrouble::kNotUnderstood);
-    return;
-  }
-  driver.reads.endpoint = in->address;
-  driver.reads.length = 64;  // one packet: each has the chip's status in front
-  driver.writes.endpoint = out->address;
-  set_state(call, DeviceState::kStarting, sample.trouble);
-  claim_usb(call.requests, interface.number);
+  claim_for(driver, call, find_endpoint(interface, UsbEndpointKind::kBulk, kUsbIn),
+            find_endpoint(interface, UsbEndpointKind::kBulk, 0), interface.number);
 }
 
 void take(FalconDriver& driver, DriverCall& call, const UsbEvent& event) {
   if (event.job == UsbJob::kClaim) {
-    if (driver.phase == FalconPhase::kClaiming) {
-      take_claim(driver, call, event);
+    if (driver.phase == FalconPhase::kClaiming && event.status == UsbStatus::kCompleted) {
+      start_controls(driver, call, FalconPhase::kNormalSetUp);
+    } else if (driver.phase == FalconPhase::kClaiming) {
+      retry_claim(call, event);
     }
     return;
   }
@@ -272,31 +238,11 @@ void take(FalconDriver& driver, DriverCall& call, const UsbEvent& event) {
     next_control(driver, call);
     return;
   }
-  switch (take_read(driver.reads, call, event)) {
-    case ReadOutcome::kData:
-      take_bytes(driver, call, event.bytes);
-      if (driver.phase != FalconPhase::kNone) {
-        keep_reading(driver.reads, call);
-      }
-      break;
-    case ReadOutcome::kBroken:
-      again_later(driver, call, DeviceTrouble::kSilent);
-      break;
-    case ReadOutcome::kNothing:
-      if (event.status != UsbStatus::kCompleted && driver.phase == FalconPhase::kLive) {
-        let_go(driver, call);  // nothing is known of where it is: let go
-      }
-      break;
-  }
+  take_read_of(driver, call, event, [&](Bytes bytes) { take_bytes(driver, call, bytes); });
 }
 
 void wake(FalconDriver& driver, DriverCall& call) {
-  call.report.wake_at = call.now + kAnswer;
   switch (driver.phase) {
-    case FalconPhase::kClaiming:
-      call.report.wake_at = kNever;
-      begin(driver, call);
-      break;
     case FalconPhase::kAsking:
       if (driver.tries < kAsks) {
         ask(driver, call);
@@ -315,17 +261,13 @@ void wake(FalconDriver& driver, DriverCall& call) {
     case FalconPhase::kWriting:
       load_firmware(driver, call);  // it did not send the piece back
       break;
-    case FalconPhase::kHoming:
-    case FalconPhase::kLive:
-      if (call.now - driver.heard_at > kLost) {
-        again_later(driver, call, DeviceTrouble::kSilent);
-      } else {
-        let_go(driver, call);
-        call.report.wake_at = call.now + kSilence;
-      }
+    case FalconPhase::kNormalSetUp:
+    case FalconPhase::kLoadingSetUp:
+    case FalconPhase::kWritingSetUp:
+      call.report.wake_at = kNever;  // a control is under way
       break;
     default:
-      call.report.wake_at = kNever;
+      wake_motors(driver, call);
       break;
   }
 }
@@ -333,8 +275,7 @@ void wake(FalconDriver& driver, DriverCall& call) {
 void rest(FalconDriver& driver, DriverCall& call) {
   call.report.wake_at = kNever;
   if (driver.phase == FalconPhase::kLive || driver.phase == FalconPhase::kHoming) {
-    driver.writes.under_way = false;  // whatever is on its way, this one is to be the last
-    let_go(driver, call);
+    write_last(driver.writes, call, packet_of(driver, {}));
   }
   driver.phase = FalconPhase::kNone;
 }

@@ -3,8 +3,8 @@
 // Novint Falcon: one packet out with the motors' values, one packet back with the encoders', about
 // a thousand times a second.
 
-#include "device/drivers/driver.hpp"
 #include "device/drivers/falcon_firmware.hpp"
+#include "device/drivers/motor_driver.hpp"
 #include "device/protocols/falcon_kinematics.hpp"
 
 namespace torsion {
@@ -40,5 +40,7 @@ void begin(FalconDriver& driver, DriverCall& call);
 void take(FalconDriver& driver, DriverCall& call, const UsbEvent& event);
 void wake(FalconDriver& driver, DriverCall& call);
 void rest(FalconDriver& driver, DriverCall& call);
+void let_go(FalconDriver& driver, DriverCall& call);
+void again_later(FalconDriver& driver, DriverCall& call, DeviceTrouble trouble);
 
 }  // namespace torsion

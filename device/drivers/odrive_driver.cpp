@@ -10,9 +10,6 @@
 namespace torsion {
 namespace {
 
-constexpr double kSilence = 5e-3;        // s: live, then it is told to let go and asked again
-constexpr double kLost = 0.25;           // s: then it is set up anew
-constexpr double kRetry = 0.5;           // s
 constexpr double kArms = 0.25;           // s: until it obeys, after it was told to
 constexpr std::uint32_t kAskEvery = 20;  // steps: asked how it is
 constexpr int kAxis = 0;
@@ -45,17 +42,6 @@ void step(OdriveDriver& driver, DriverCall& call, double torque) {
   write(driver, call, encode_odrive_step(kAxis, limited, asks).view());
 }
 
-void let_go(OdriveDriver& driver, DriverCall& call) {
-  let_go_through(driver.writes, call, bytes_of(encode_odrive_step(kAxis, 0.0).view()));
-}
-
-void again_later(OdriveDriver& driver, DriverCall& call, DeviceTrouble trouble) {
-  let_go_through(driver.writes, call, bytes_of(kIdle));
-  driver.phase = OdrivePhase::kClaimingControl;
-  set_state(call, DeviceState::kStarting, trouble);
-  call.report.wake_at = call.now + kRetry;
-}
-
 const UsbInterface* interface_of(const UsbIdentity& identity, std::uint8_t device_class) {
   const auto found =
       std::ranges::find(identity.interfaces, device_class, &UsbInterface::device_class);
@@ -63,8 +49,7 @@ const UsbInterface* interface_of(const UsbIdentity& identity, std::uint8_t devic
 }
 
 void take_feedback(OdriveDriver& driver, DriverCall& call, const OdriveFeedback& feedback) {
-  driver.heard_at = call.now;
-  call.report.wake_at = call.now + kSilence;
+  heard(driver, call);
   driver.phase = OdrivePhase::kLive;
   set_state(call, DeviceState::kLive);
   const double angle = 2.0 * std::numbers::pi * std::remainder(feedback.position, 1.0);
@@ -90,19 +75,29 @@ void take_status(OdriveDriver& driver, DriverCall& call, const OdriveStatus& sta
   call.report.sample.motor_errors = status.errors;
   again_later(driver, call, DeviceTrouble::kMotorError);
   if (status.errors != kOdriveWatchdog) {
-    driver.phase = OdrivePhase::kNone;
-    call.report.wake_at = kNever;
+    give_up(driver, call, DeviceTrouble::kMotorError);
+  }
+}
+
+void take_bytes(OdriveDriver& driver, DriverCall& call, Bytes bytes) {
+  const auto feedback = take_odrive_bytes(driver.stream, text_of(bytes));
+  const auto status = std::exchange(driver.stream.status, std::nullopt);
+  if (status && driver.phase == OdrivePhase::kLive) {
+    take_status(driver, call, *status);
+  }
+  if (feedback && obeys(driver)) {
+    take_feedback(driver, call, *feedback);
+  } else if (!bytes.empty() && !status && driver.stream.numbers == 0 &&
+             driver.stream.line.size == 0) {
+    call.report.counts.garbage += 1;
   }
 }
 
 void take_claim(OdriveDriver& driver, DriverCall& call, const UsbEvent& event) {
   if (event.status != UsbStatus::kCompleted) {
-    set_state(call, DeviceState::kStarting,
-              event.status == UsbStatus::kNoAccess ? DeviceTrouble::kNoAccess
-                                                   : DeviceTrouble::kHeldElsewhere);
-    driver.phase = OdrivePhase::kClaimingControl;
-    call.report.wake_at = call.now + kRetry;
-  } else if (driver.phase == OdrivePhase::kClaimingControl) {
+    driver.phase = OdrivePhase::kClaiming;
+    retry_claim(call, event);
+  } else if (driver.phase == OdrivePhase::kClaiming) {
     driver.phase = OdrivePhase::kClaimingData;
     claim_usb(call.requests, driver.data);
   } else {
@@ -128,13 +123,18 @@ void go_on(OdriveDriver& driver, DriverCall& call) {
 
 }  // namespace
 
+void let_go(OdriveDriver& driver, DriverCall& call) {
+  let_go_through(driver.writes, call, bytes_of(encode_odrive_step(kAxis, 0.0).view()));
+}
+
+void again_later(OdriveDriver& driver, DriverCall& call, DeviceTrouble trouble) {
+  let_go_through(driver.writes, call, bytes_of(kIdle));
+  driver.phase = OdrivePhase::kClaiming;
+  retry_later(call, trouble);
+}
+
 void begin(OdriveDriver& driver, DriverCall& call) {
-  const ReadQueue reads = driver.reads;  // those under way stay so
-  const WriteGate writes = driver.writes;
-  driver = {};
-  driver.reads = reads;
-  driver.reads.failures = 0;
-  driver.writes = writes;
+  driver = fresh(driver);
   DeviceSample& sample = call.report.sample;
   sample.sensed = kTwistAxis;
   sample.actuated = kTwistAxis;
@@ -143,21 +143,14 @@ void begin(OdriveDriver& driver, DriverCall& call) {
   sample.traits.encoder_turn_step = 2.0 * std::numbers::pi / 8192.0;  // rad: its usual encoder
   const UsbInterface* control = interface_of(call.identity, kCdcControl);
   const UsbInterface* data = interface_of(call.identity, kCdcData);
-  const UsbEndpoint* in =
-      data != nullptr ? find_endpoint(*data, UsbEndpointKind::kBulk, kUsbIn) : nullptr;
-  const UsbEndpoint* out =
-      data != nullptr ? find_endpoint(*data, UsbEndpointKind::kBulk, 0) : nullptr;
-  if (control == nullptr || in == nullptr || out == nullptr) {
-    driver.phase = OdrivePhase::kNone;
-    set_state(call, DeviceState::kStarting, DeviceTrouble::kNotUnderstood);
+  if (control == nullptr || data == nullptr) {
+    give_up(driver, call, DeviceTrouble::kNotUnderstood);
     return;
   }
-  driver.reads.endpoint = in->address;
-  driver.reads.length = 64;
-  driver.writes.endpoint = out->address;
   driver.data = data->number;
-  set_state(call, DeviceState::kStarting, sample.trouble);
-  claim_usb(call.requests, control->number);  // the kernel's driver holds both
+  // The kernel's driver holds both interfaces.
+  claim_for(driver, call, find_endpoint(*data, UsbEndpointKind::kBulk, kUsbIn),
+            find_endpoint(*data, UsbEndpointKind::kBulk, 0), control->number);
 }
 
 void take(OdriveDriver& driver, DriverCall& call, const UsbEvent& event) {
@@ -176,52 +169,17 @@ void take(OdriveDriver& driver, DriverCall& call, const UsbEvent& event) {
     take_claim(driver, call, event);
     return;
   }
-  switch (take_read(driver.reads, call, event)) {
-    case ReadOutcome::kData: {
-      const auto feedback = take_odrive_bytes(driver.stream, text_of(event.bytes));
-      const auto status = std::exchange(driver.stream.status, std::nullopt);
-      if (status && driver.phase == OdrivePhase::kLive) {
-        take_status(driver, call, *status);
-      }
-      if (feedback && obeys(driver)) {
-        take_feedback(driver, call, *feedback);
-      } else if (!event.bytes.empty() && !status && driver.stream.numbers == 0 &&
-                 driver.stream.line.size == 0) {
-        call.report.counts.garbage += 1;
-      }
-      keep_reading(driver.reads, call);
-      break;
-    }
-    case ReadOutcome::kBroken:
-      again_later(driver, call, DeviceTrouble::kSilent);
-      break;
-    case ReadOutcome::kNothing:
-      if (event.status != UsbStatus::kCompleted && driver.phase == OdrivePhase::kLive) {
-        let_go(driver, call);  // nothing is known of where it is: let go
-      }
-      break;
-  }
+  take_read_of(driver, call, event, [&](Bytes bytes) { take_bytes(driver, call, bytes); });
 }
 
 void wake(OdriveDriver& driver, DriverCall& call) {
-  if (driver.phase == OdrivePhase::kClaimingControl) {
-    call.report.wake_at = kNever;
-    begin(driver, call);
-  } else if (driver.phase == OdrivePhase::kNone) {
-    call.report.wake_at = kNever;
-  } else if (call.now - driver.heard_at > kLost) {
-    again_later(driver, call, DeviceTrouble::kSilent);
-  } else {
-    let_go(driver, call);
-    call.report.wake_at = call.now + kSilence;
-  }
+  wake_motors(driver, call);
 }
 
 void rest(OdriveDriver& driver, DriverCall& call) {
   call.report.wake_at = kNever;
   if (driver.phase == OdrivePhase::kSettingUp || driver.phase == OdrivePhase::kLive) {
-    driver.writes.under_way = false;  // whatever is on its way, this one is to be the last
-    write(driver, call, kIdle);
+    write_last(driver.writes, call, bytes_of(kIdle));
   }
   driver.phase = OdrivePhase::kNone;
 }

@@ -3,15 +3,15 @@
 // ODrive v3 as a knob: its motor's shaft is the tool's twist axis. Torque in N m goes out, turns
 // come back, as lines of text.
 
-#include "device/drivers/driver.hpp"
+#include "device/drivers/motor_driver.hpp"
 #include "device/protocols/odrive.hpp"
 
 namespace torsion {
 
-enum class OdrivePhase : std::uint8_t { kClaimingControl, kClaimingData, kSettingUp, kLive, kNone };
+enum class OdrivePhase : std::uint8_t { kClaiming, kClaimingData, kSettingUp, kLive, kNone };
 
 struct OdriveDriver {
-  OdrivePhase phase = OdrivePhase::kClaimingControl;
+  OdrivePhase phase = OdrivePhase::kClaiming;
   std::size_t at = 0;  // in the lines of the set-up
   WriteGate writes;
   std::uint8_t data = 0;  // number of the interface that has it
@@ -26,5 +26,7 @@ void begin(OdriveDriver& driver, DriverCall& call);
 void take(OdriveDriver& driver, DriverCall& call, const UsbEvent& event);
 void wake(OdriveDriver& driver, DriverCall& call);
 void rest(OdriveDriver& driver, DriverCall& call);
+void let_go(OdriveDriver& driver, DriverCall& call);
+void again_later(OdriveDriver& driver, DriverCall& call, DeviceTrouble trouble);
 
 }  // namespace torsion

@@ -12,7 +12,6 @@ constexpr double kTick = 1e-3;             // s: the pose goes on at the rate of
 constexpr double kLongestReport = 0.25;    // s: a deflection that nobody repeats is forgotten
 constexpr double kLargestSpeed = 0.1;      // m/s
 constexpr double kLargestTurnSpeed = 2.0;  // rad/s
-constexpr double kRetry = 0.5;             // s
 constexpr std::uint16_t kLongestDescriptor = 1024;
 // Source: Device Class Definition for HID 1.11, 7.1.1 and 7.2.2
 constexpr std::uint16_t kReportDescriptor = 0x2200;
@@ -92,10 +91,7 @@ void take_descriptor(SpaceMouseDriver& driver, DriverCall& call, const UsbEvent&
 
 void take_claim(SpaceMouseDriver& driver, DriverCall& call, const UsbEvent& event) {
   if (event.status != UsbStatus::kCompleted) {
-    set_state(call, DeviceState::kStarting,
-              event.status == UsbStatus::kNoAccess ? DeviceTrouble::kNoAccess
-                                                   : DeviceTrouble::kHeldElsewhere);
-    call.report.wake_at = call.now + kRetry;
+    retry_claim(call, event);
   } else if (driver.last_resort) {
     start_reading(driver, call, usual_space_mouse_layout());
   } else {
@@ -166,8 +162,7 @@ void take(SpaceMouseDriver& driver, DriverCall& call, const UsbEvent& event) {
       break;
     case ReadOutcome::kBroken:
       driver.phase = SpaceMousePhase::kClaiming;
-      set_state(call, DeviceState::kStarting, DeviceTrouble::kSilent);
-      call.report.wake_at = call.now + kRetry;
+      retry_later(call, DeviceTrouble::kSilent);
       break;
     case ReadOutcome::kNothing:
       break;

@@ -3,7 +3,7 @@
 // WoodenHaptics: one report out with the motors' currents, one report back, once a millisecond. It
 // speaks when spoken to and lets go by itself after half a second of silence.
 
-#include "device/drivers/driver.hpp"
+#include "device/drivers/motor_driver.hpp"
 #include "device/protocols/wooden_haptics.hpp"
 
 namespace torsion {
@@ -23,6 +23,8 @@ void begin(WoodenDriver& driver, DriverCall& call);
 void take(WoodenDriver& driver, DriverCall& call, const UsbEvent& event);
 void wake(WoodenDriver& driver, DriverCall& call);
 void rest(WoodenDriver& driver, DriverCall& call);
+void let_go(WoodenDriver& driver, DriverCall& call);
+void again_later(WoodenDriver& driver, DriverCall& call, DeviceTrouble trouble);
 
 /// The base's axes (x to the user, y to the right, z up) to the world's.
 glm::dvec3 wooden_to_world(const glm::dvec3& base);

@@ -1,0 +1,94 @@
+#pragma once
+
+// What drivers of devices with motors share, which say where they are when they are spoken to. Such
+// a driver D has phases from kClaiming to kLive and kNone, `reads`, `writes` and `heard_at`, and
+// besides the four functions of every driver
+//   let_go       takes the force off the motors, which the device answers
+//   again_later  does that and sets the device up anew in a while
+
+#include "device/drivers/driver.hpp"
+
+namespace torsion {
+
+inline constexpr double kSilence = 5e-3;  // s: then it is told to let go and asked again
+inline constexpr double kLost = 0.25;     // s: then it is set up anew
+
+/// A driver as it is at first, but for what is under way.
+template <class D>
+D fresh(const D& driver) {
+  D made;
+  made.reads = driver.reads;
+  made.reads.failures = 0;
+  made.writes = driver.writes;
+  return made;
+}
+
+/// Nothing more is tried until it is plugged in again.
+template <class D>
+void give_up(D& driver, DriverCall& call, DeviceTrouble trouble) {
+  driver.phase = decltype(D::phase)::kNone;
+  set_state(call, DeviceState::kStarting, trouble);
+  call.report.wake_at = kNever;
+}
+
+/// Begins to claim; all its talk will be through these endpoints. Null ones: gives up.
+template <class D>
+void claim_for(D& driver, DriverCall& call, const UsbEndpoint* in, const UsbEndpoint* out,
+               std::uint8_t interface) {
+  if (in == nullptr || out == nullptr) {
+    give_up(driver, call, DeviceTrouble::kNotUnderstood);
+    return;
+  }
+  driver.reads.endpoint = in->address;
+  driver.reads.length = 64;  // one packet
+  driver.writes.endpoint = out->address;
+  set_state(call, DeviceState::kStarting, call.report.sample.trouble);
+  claim_usb(call.requests, interface);
+}
+
+/// It was heard of, and is to be again before long.
+template <class D>
+void heard(D& driver, DriverCall& call) {
+  driver.heard_at = call.now;
+  call.report.wake_at = call.now + kSilence;
+}
+
+/// Keeps its reads going.
+/// @param take_bytes  called with what has come
+template <class D, class F>
+void take_read_of(D& driver, DriverCall& call, const UsbEvent& event, F&& take_bytes) {
+  using Phase = decltype(D::phase);
+  switch (take_read(driver.reads, call, event)) {
+    case ReadOutcome::kData:
+      take_bytes(event.bytes);
+      if (driver.phase != Phase::kNone) {
+        keep_reading(driver.reads, call);
+      }
+      break;
+    case ReadOutcome::kBroken:
+      again_later(driver, call, DeviceTrouble::kSilent);
+      break;
+    case ReadOutcome::kNothing:
+      if (event.status != UsbStatus::kCompleted && driver.phase == Phase::kLive) {
+        let_go(driver, call);  // nothing is known of where it is
+      }
+      break;
+  }
+}
+
+/// The time has come to claim it again, or it is silent.
+template <class D>
+void wake_motors(D& driver, DriverCall& call) {
+  using Phase = decltype(D::phase);
+  call.report.wake_at = kNever;
+  if (driver.phase == Phase::kClaiming) {
+    begin(driver, call);
+  } else if (driver.phase != Phase::kNone && call.now - driver.heard_at > kLost) {
+    again_later(driver, call, DeviceTrouble::kSilent);
+  } else if (driver.phase != Phase::kNone) {
+    let_go(driver, call);
+    call.report.wake_at = call.now + kSilence;
+  }
+}
+
+}  // namespace torsion

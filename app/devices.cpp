@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -123,6 +124,17 @@ int devices(const DevicesOptions& options) {
 }  // namespace
 
 void add_device_options(CLI::App& subcommand, DeviceChoice& choice) {
+  subcommand
+      .add_option_function<std::string>(
+          "--hold",
+          [&choice](const std::string& name) {
+            const auto found = std::ranges::find(kToolHoldNames, name);
+            choice.hold = static_cast<ToolHold>(found - kToolHoldNames.begin());
+          },
+          "How the tool is held: massless (where coupling and contact balance), with its mass, or "
+          "directly (it is where the hand is; the hand feels the contact) [massless]")
+      ->check(
+          CLI::IsMember(std::vector<std::string>(kToolHoldNames.begin(), kToolHoldNames.end())));
   subcommand.add_option("--falcon-firmware", choice.falcon_firmware,
                         "The maker's file, where the usual place has none");
   subcommand.add_option("--knob-torque", choice.largest_knob_torque, "Largest, N m, of an ODrive")

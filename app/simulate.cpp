@@ -71,7 +71,8 @@ Result<RunStatistics> run(const SimulateOptions& options, Session& session, std:
         return opened.error();
       }
       DeviceLink* const link = opened.value().link.get();
-      const RunDevice device{link, link != nullptr ? &interrupt : nullptr, opened.value().tool};
+      const RunDevice device{link, link != nullptr ? &interrupt : nullptr, opened.value().tool,
+                             options.device.hold};
       statistics = run_realtime(session, steps, files, device, progress, mode);
       facts.mode = describe(mode);
       if (device.link != nullptr) {

@@ -104,6 +104,7 @@ RunStatistics run_realtime(Session& session, std::uint64_t steps, const RunFiles
   if (device.link != nullptr) {
     loop.tools[device.tool].from = PoseFrom::kHandle;
     loop.tools[device.tool].slot = &device.link->slot();
+    loop.tools[device.tool].hold = device.hold;
   }
   bool told = false;
   std::thread physics(run_live, std::ref(loop));

@@ -24,6 +24,7 @@ struct RunDevice {
   DeviceLink* link = nullptr;
   const Interrupt* interrupt = nullptr;  // ends the run early
   std::uint32_t tool = 0;
+  ToolHold hold = ToolHold::kMassless;
 };
 
 /// Steps as fast as they go. Fails only where a replay switches to models that cannot be prepared.

@@ -22,6 +22,7 @@ struct HandleSample {
 struct HandleAnswer {
   Wrench wrench;             // that the handle is to feel, about its origin, world
   Pose tool;                 // where the tool is
+  Wrench contact;            // of the bodies on the tool, about its frame's origin, world
   double distance = 0.0;     // m: from handle to tool
   std::uint64_t sample = 0;  // the number of the sample that it answers
   std::int64_t time_ns = 0;  // CLOCK_MONOTONIC, when the step was done

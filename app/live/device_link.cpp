@@ -95,6 +95,7 @@ Result<std::unique_ptr<DeviceLink>> DeviceLink::open(const DeviceChoice& choice,
   auto link = std::make_unique<DeviceLink>(tool);
   link->firmware_ = std::move(firmware).value();
   link->side_.limits.longest_silence = choice.longest_silence;
+  link->side_.hold = choice.hold;
   UsbBusOptions options;
   options.loop.kinds = kinds.value();
   options.loop.twist_axis = tool.rotation * glm::dvec3(0.0, 1.0, 0.0);
@@ -122,6 +123,7 @@ Wrench DeviceLink::take(const DeviceSample& sample) {
   PhysicsResult result;
   result.any = answer.time_ns != 0;
   result.tool = answer.tool;
+  result.contact = answer.contact;
   result.time = seconds(answer.time_ns);
   result.faulty = answer.faults != 0;
   const double now = seconds(monotonic_now());
@@ -143,6 +145,7 @@ Wrench DeviceLink::take(const DeviceSample& sample) {
   now_.sample = sample;
   now_.outcome = outcome;
   now_.coupling = side_.coupling;
+  now_.hold = side_.hold;
   now_.guard = side_.guard.state;
   views_.back() = now_;
   views_.publish();

@@ -20,6 +20,7 @@ struct DeviceChoice {
   std::filesystem::path falcon_firmware;  // empty: in the user's data folder, if there
   double largest_knob_torque = 0.2;       // N m
   TurnButtons turn_buttons;               // of a device that senses no turn
+  ToolHold hold = ToolHold::kMassless;    // a mouse's too
   // s: without a result of the physics, then the force falls
   double longest_silence = GuardLimits{}.longest_silence;
 };
@@ -29,6 +30,7 @@ struct DeviceView {
   DeviceSample sample;
   HandleOutcome outcome;
   VirtualCoupling coupling;
+  ToolHold hold = ToolHold::kMassless;
   GuardState guard = GuardState::kWaiting;
   TimeHistogram answer_us;   // from a sample's arrival to the wrench that goes out with it
   TimeHistogram result_us;   // how old the physics' result in that wrench was

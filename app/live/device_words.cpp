@@ -1,9 +1,11 @@
 #include "app/live/device_words.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "device/device_text.hpp"
+#include "systems/held_tool/coupling_choice.hpp"
 
 namespace torsion {
 namespace {
@@ -12,13 +14,28 @@ std::string sensed_by(const DeviceSample& sample) {
   return sensed_text(sample.sensed) + (sample.buttons_turn ? ", two buttons turn" : "");
 }
 
-/// Of the coupling in translation, and in turning.
-std::string gain_text(const VirtualCoupling& coupling) {
-  return fmt::format("{:.4g} N/m, up to {:.3g} N", coupling.stiffness, coupling.largest_force);
-}
-std::string turn_gain_text(const VirtualCoupling& coupling) {
-  return fmt::format("{:.4g} N m/rad, up to {:.3g} N m", coupling.turn_stiffness,
-                     coupling.largest_torque);
+/// How a device holds a tool, and what set the stiffnesses of its coupling.
+std::vector<std::string> hold_lines(const DeviceView& view) {
+  const VirtualCoupling& coupling = view.coupling;
+  const CouplingChoice choice = choose_coupling(view.sample.traits);
+  if (view.hold == ToolHold::kDirect) {
+    std::string text =
+        fmt::format("held directly: the contact is felt, up to {:.3g} N and {:.3g} N m",
+                    coupling.largest_force, coupling.largest_torque);
+    if (choice.limit == StiffnessLimit::kPassivity) {
+      text += fmt::format("; one stiffer than {:.3g} N/m may shake", choice.coupling.stiffness);
+    }
+    return {text};
+  }
+  std::vector<std::string> lines = {
+      fmt::format("coupling {:.4g} N/m ({}), up to {:.3g} N", coupling.stiffness,
+                  limit_text(choice.limit), coupling.largest_force),
+      fmt::format("turning {:.4g} N m/rad ({}), up to {:.3g} N m", coupling.turn_stiffness,
+                  limit_text(choice.turn_limit), coupling.largest_torque)};
+  if (view.hold == ToolHold::kMass) {
+    lines.emplace_back("the tool has its mass");
+  }
+  return lines;
 }
 
 }  // namespace
@@ -32,9 +49,9 @@ std::string describe(const DeviceView& view) {
   if (sample.state != DeviceState::kLive) {
     return "not ready: " + (trouble.empty() ? "it is being set up" : trouble);
   }
-  std::string text = fmt::format("{:.0f} Hz; measures {}; displays {}; coupling {}; turning {}",
-                                 sample.rate, sensed_by(sample), actuated_text(sample.actuated),
-                                 gain_text(view.coupling), turn_gain_text(view.coupling));
+  std::string text =
+      fmt::format("{:.0f} Hz; measures {}; displays {}; {}", sample.rate, sensed_by(sample),
+                  actuated_text(sample.actuated), fmt::join(hold_lines(view), "; "));
   if (!view.outcome.holds) {
     text += fmt::format("; bring it to the tool: {:.0f} mm to go", 1e3 * view.outcome.distance);
   }
@@ -47,9 +64,13 @@ std::vector<std::string> device_lines(const DeviceView& view) {
     return {"device: " +
             std::string(sample.state == DeviceState::kAbsent ? "none is plugged in" : "not ready")};
   }
-  return {fmt::format("held by a device: {:.0f} Hz", sample.rate), "measures " + sensed_by(sample),
-          "displays " + actuated_text(sample.actuated), "coupling " + gain_text(view.coupling),
-          "turning " + turn_gain_text(view.coupling)};
+  std::vector<std::string> lines = {fmt::format("held by a device: {:.0f} Hz", sample.rate),
+                                    "measures " + sensed_by(sample),
+                                    "displays " + actuated_text(sample.actuated)};
+  for (std::string& line : hold_lines(view)) {
+    lines.push_back(std::move(line));
+  }
+  return lines;
 }
 
 std::string not_displayed(const DeviceView& view) {

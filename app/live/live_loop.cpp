@@ -9,7 +9,6 @@
 #include "device/scripted_motion.hpp"
 #include "systems/frames.hpp"
 #include "systems/held_tool/coupling_choice.hpp"
-#include "systems/held_tool/tool_equilibrium.hpp"
 #include "systems/rotation_vector.hpp"
 
 namespace torsion {
@@ -61,7 +60,7 @@ Pose next_pose(LiveLoop& loop, std::uint32_t row, Pose& handle) {
     tool.still_steps -= 1;
     return world.tools.at<ToolPose>(row).now;
   }
-  return next_tool_pose(world, row, tool.coupling, handle);
+  return next_held_pose(world, row, tool.hold, tool.coupling, handle);
 }
 
 /// What the handle is to feel of the step just done.
@@ -75,14 +74,15 @@ void answer(LiveLoop& loop, std::uint32_t row) {
   out.tool = world.tools.at<ToolPose>(row).now;
   out.faults = world.clock.at<Clock>(0).faults;
   out.sample = tool.sample;
+  out.contact = wrench_about_frame(world, row);
   out.wrench = Wrench{};
   out.distance = 0.0;
   if (tool.from == PoseFrom::kHandle && tool.sample != 0) {
-    const Wrench pull = coupling_wrench(tool.coupling, {tool.handle}, {out.tool});
-    out.wrench = keep_passive(tool.books, tool.limits, {-pull.force, -pull.torque},
-                              tool.handle.position - tool.last_handle.position,
-                              turn_between(tool.last_handle.rotation, tool.handle.rotation),
-                              world.clock.at<Clock>(0).dt);
+    out.wrench = keep_passive(
+        tool.books, tool.limits,
+        felt_wrench(tool.hold, tool.coupling, tool.handle, out.tool, out.contact),
+        tool.handle.position - tool.last_handle.position,
+        turn_between(tool.last_handle.rotation, tool.handle.rotation), world.clock.at<Clock>(0).dt);
     tool.last_handle = tool.handle;
     out.distance = glm::length(tool.handle.position - out.tool.position);
   }

@@ -17,7 +17,7 @@
 #include "ecs/snapshot.hpp"
 #include "ecs/triple_buffer.hpp"
 #include "systems/held_tool/passivity.hpp"
-#include "systems/held_tool/virtual_coupling.hpp"
+#include "systems/held_tool/tool_hold.hpp"
 
 namespace torsion {
 
@@ -42,6 +42,7 @@ struct LiveTool {
   Nanoseconds arrived = 0;
   std::uint32_t epoch = 0;        // of the device that it is from
   std::uint32_t still_steps = 0;  // for which a held tool stays where it is
+  ToolHold hold = ToolHold::kMassless;
 };
 
 /// A prepared world that the physics thread may go over to, and what draws it.

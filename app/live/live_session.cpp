@@ -92,6 +92,13 @@ void LiveSession::give(SceneDevice device) {
   device_view_ = &device_.link->view();
 }
 
+void LiveSession::hold_by(ToolHold way) {
+  way_ = way;
+  for (LiveTool& tool : loop_.tools) {
+    tool.hold = way;
+  }
+}
+
 void LiveSession::start(bool privileges) {
   loop_.wants_privileges = privileges;
   physics_ = std::thread(run_live, std::ref(loop_));

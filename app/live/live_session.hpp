@@ -35,6 +35,10 @@ class LiveSession {
     return device_.link != nullptr && device_.tool == tool;
   }
 
+  /// How tools are held, by a mouse or a device. @pre not started
+  void hold_by(ToolHold way);
+  [[nodiscard]] ToolHold way() const { return way_; }
+
   /// Starts the physics thread and waits until it knows what the system grants it.
   /// @param privileges  whether to ask for SCHED_FIFO and locked memory
   void start(bool privileges = true);
@@ -102,6 +106,7 @@ class LiveSession {
   std::vector<std::uint64_t> samples_;  // so many were sent, one count a tool
   std::vector<std::uint8_t> held_;
   std::vector<VirtualCoupling> couplings_;
+  ToolHold way_ = ToolHold::kMassless;
   std::filesystem::path record_;  // empty: to a file without a name
   std::optional<RecordingWriter> recording_;
   std::string recording_problem_;     // why that is not there

@@ -82,9 +82,11 @@ void controls(ViewState& state) {
 
 /// The device that holds the tool, and in red what of the contact it does not let one feel.
 void device_part(const DeviceView& device) {
+  ImGui::PushTextWrapPos();
   for (const std::string& line : device_lines(device)) {
     text(line);
   }
+  ImGui::PopTextWrapPos();
   if (const std::string missing = not_displayed(device); !missing.empty()) {
     ImGui::PushTextWrapPos();
     ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kRed), "%s", missing.c_str());
@@ -106,8 +108,11 @@ void state_lines(const ViewState& state, const LiveSession& session) {
   if (session.on_device(state.tool)) {
     device_part(*session.device());
   } else if (session.held(state.tool)) {
-    text(fmt::format("held by the mouse: {:.3g} N/m, up to {:.3g} N", coupling.stiffness,
-                     coupling.largest_force));
+    text(session.way() == ToolHold::kDirect
+             ? "held by the mouse, directly"
+             : fmt::format("held by the mouse: {:.3g} N/m, up to {:.3g} N{}", coupling.stiffness,
+                           coupling.largest_force,
+                           session.way() == ToolHold::kMass ? ", with its mass" : ""));
   } else {
     text("moved by the scene's animation");
   }

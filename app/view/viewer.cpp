@@ -106,6 +106,7 @@ Result<Done> Viewer::begin(Session session) {
       return;
     }
     session_->give(std::move(device).value());
+    session_->hold_by(options_.device.hold);
     session_->start();
   });
   if (!started) {

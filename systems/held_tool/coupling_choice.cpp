@@ -1,7 +1,5 @@
 #include "systems/held_tool/coupling_choice.hpp"
 
-#include <algorithm>
-#include <cstdio>
 #include <numbers>
 #include <tuple>
 
@@ -24,6 +22,8 @@ std::pair<double, StiffnessLimit> stiffness_for(double damping, double hold, dou
                        : std::pair(cautious, StiffnessLimit::kUnknown);
 }
 
+}  // namespace
+
 const char* limit_text(StiffnessLimit limit) {
   switch (limit) {
     case StiffnessLimit::kPassivity:
@@ -34,8 +34,6 @@ const char* limit_text(StiffnessLimit limit) {
       return "cautious, as the device's damping and limits are not known";
   }
 }
-
-}  // namespace
 
 double virtual_coupling_bound(double damping, double period) {
   return 2.0 * std::numbers::pi * damping / period;
@@ -54,18 +52,6 @@ CouplingChoice choose_coupling(const DeviceTraits& device) {
   choice.coupling.largest_torque =
       device.largest_torque > 0.0 ? device.largest_torque : kCautiousTorque;
   return choice;
-}
-
-std::string explain_coupling(const DeviceTraits& device, const CouplingChoice& choice) {
-  char text[320];
-  const int size = std::snprintf(
-      text, sizeof text,
-      "coupling %.4g N/m (%s), %.4g N m/rad (%s), up to %.3g N and %.3g N m; b %.3g N s/m, "
-      "T %.3g ms, t_d %.3g ms",
-      choice.coupling.stiffness, limit_text(choice.limit), choice.coupling.turn_stiffness,
-      limit_text(choice.turn_limit), choice.coupling.largest_force, choice.coupling.largest_torque,
-      device.damping, 1e3 * device.period, 1e3 * device.delay);
-  return {text, static_cast<std::size_t>(std::clamp(size, 0, 319))};
 }
 
 }  // namespace torsion

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "ecs/device_sample.hpp"
 #include "systems/held_tool/virtual_coupling.hpp"
 
@@ -25,8 +23,8 @@ struct CouplingChoice {
 /// (Hulin et al., 2014); nine tenths of that, and no damper, which would only cost stiffness.
 CouplingChoice choose_coupling(const DeviceTraits& device);
 
-/// One line for a person: what the coupling is and what set it.
-std::string explain_coupling(const DeviceTraits& device, const CouplingChoice& choice);
+/// For a person: what set a stiffness.
+const char* limit_text(StiffnessLimit limit);
 
 /// The stiffness up to which a pure spring between a device of damping b and a passive simulation
 /// is passive, N/m: b >= K T / (2 pi). Source: Llewellyn's criterion for a two-port whose device

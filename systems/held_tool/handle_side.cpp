@@ -68,11 +68,12 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
                                 sample.traits.encoder_turn_step, period);
   }
   outcome.handle = live ? handle_pose(side.map, side.device) : side.last;
-  const Wrench pull = coupling_wrench(side.coupling, {outcome.handle}, {tool});
   GuardInput input;
-  input.wanted = keep_passive(side.books, side.passivity, {-pull.force, -pull.torque},
-                              outcome.handle.position - side.last.position,
-                              turn_between(side.last.rotation, outcome.handle.rotation), period);
+  input.wanted =
+      keep_passive(side.books, side.passivity,
+                   felt_wrench(side.hold, side.coupling, outcome.handle, tool, result.contact),
+                   outcome.handle.position - side.last.position,
+                   turn_between(side.last.rotation, outcome.handle.rotation), period);
   input.result_age = result.any ? now - result.time : 1.0;
   input.faulty = !live || result.faulty;
   outcome.distance = glm::length(outcome.handle.position - tool.position);

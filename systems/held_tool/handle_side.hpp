@@ -3,6 +3,7 @@
 #include "ecs/device_sample.hpp"
 #include "systems/held_tool/output_guard.hpp"
 #include "systems/held_tool/passivity.hpp"
+#include "systems/held_tool/tool_hold.hpp"
 #include "systems/held_tool/virtual_coupling.hpp"
 
 namespace torsion {
@@ -21,6 +22,7 @@ Pose handle_pose(const HandleMap& map, const Pose& device);
 /// physics and the wrench that is sent.
 struct HandleSide {
   Pose home;  // of the tool, world: where the centre of a device's workspace is
+  ToolHold hold = ToolHold::kMassless;
   HandleMap map;
   VirtualCoupling coupling;
   PassivityLimits passivity;
@@ -39,6 +41,7 @@ struct PhysicsResult {
   double time = 0.0;  // s, steady clock
   bool faulty = false;
   bool any = false;  // false: nothing was said yet
+  Wrench contact;    // of the bodies on the tool, about its frame's origin, world axes
 };
 
 struct HandleOutcome {

@@ -38,8 +38,21 @@ TEST(DeviceWordsTest, GainsAndRateAreStated) {
     all += line + "\n";
   }
   EXPECT_TRUE(has(all, "998 Hz")) << all;
-  EXPECT_TRUE(has(all, "450 N/m, up to 3 N")) << all;
-  EXPECT_TRUE(has(all, "0.5 N m/rad, up to 0.1 N m")) << all;
+  EXPECT_TRUE(has(all, "450 N/m (cautious")) << all;
+  EXPECT_TRUE(has(all, "up to 3 N")) << all;
+  EXPECT_TRUE(has(all, "0.5 N m/rad (cautious")) << all;
+  EXPECT_TRUE(has(all, "up to 0.1 N m")) << all;
+}
+
+TEST(DeviceWordsTest, HowTheToolIsHeldIsStatedAndWhatSetItsStiffness) {
+  DeviceView view = live_view(kTranslationAxes);
+  view.sample.traits.damping = 0.25;  // 450 N/m at 1 kHz
+  EXPECT_TRUE(has(describe(view), "450 N/m (0.9 b / (T / 2 + t_d), so that it stays passive)"));
+  view.hold = ToolHold::kMass;
+  EXPECT_TRUE(has(describe(view), "the tool has its mass")) << describe(view);
+  view.hold = ToolHold::kDirect;
+  EXPECT_TRUE(has(describe(view), "held directly")) << describe(view);
+  EXPECT_TRUE(has(describe(view), "stiffer than 450 N/m may shake")) << describe(view);
 }
 
 TEST(DeviceWordsTest, ABannerWhereThereIsNoForceAndNoneWhereAllIsWell) {

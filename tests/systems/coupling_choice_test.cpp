@@ -55,8 +55,6 @@ TEST(CouplingChoiceTest, SaysWhatSetIt) {
   EXPECT_NEAR(choose_coupling(device).coupling.stiffness, 900.0, 1e-9);
   device.damping = 50.0;
   EXPECT_EQ(choose_coupling(device).limit, StiffnessLimit::kDevice);
-  const std::string text = explain_coupling(device, choose_coupling(device));
-  EXPECT_NE(text.find("2000 N/m (the device's largest)"), std::string::npos) << text;
 }
 
 TEST(CouplingChoiceTest, DelayCostsStiffness) {

@@ -9,8 +9,9 @@
 #include "systems/held_tool/coupling_choice.hpp"
 #include "systems/held_tool/output_guard.hpp"
 #include "systems/held_tool/passivity.hpp"
-#include "systems/held_tool/tool_equilibrium.hpp"
+#include "systems/held_tool/tool_hold.hpp"
 #include "systems/rotation_vector.hpp"
+#include "tests/reference/exact/hertz.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/systems/emulated_hand.hpp"
 
@@ -33,7 +34,8 @@ struct LoopOutcome {
 
 /// The hand lowers the ball onto the cube by 1.5 mm in 0.3 s, turns it by `turn` in 0.3 s, holds
 /// it.
-LoopOutcome run_loop(const HandTraits& traits, ContactModel model, double turn, int steps) {
+LoopOutcome run_loop(const HandTraits& traits, ContactModel model, double turn, int steps,
+                     ToolHold hold = ToolHold::kMassless) {
   PrepareOptions options;
   options.contact_model = model;
   options.body_model = BodyModel::kNone;
@@ -63,12 +65,12 @@ LoopOutcome run_loop(const HandTraits& traits, ContactModel model, double turn, 
     wanted.position.y = 0.1505 - 2e-3 * down;
     wanted.rotation = glm::angleAxis(turn * round, glm::dvec3(0.0, 1.0, 0.0));
     const Pose handle = hand.measured();
-    physics.step_to({next_tool_pose(physics.world(), 0, coupling, handle)});
-    const Pose& tool = physics.world().tools.at<ToolPose>(0).now;
-    const Wrench pull = coupling_wrench(coupling, {handle}, {tool});
-    const Wrench passive =
-        keep_passive(books, limits, {-pull.force, -pull.torque}, handle.position - last.position,
-                     turn_between(last.rotation, handle.rotation), kPeriod);
+    physics.step_to({next_held_pose(physics.world(), 0, hold, coupling, handle)});
+    const Wrench felt =
+        felt_wrench(hold, coupling, handle, physics.world().tools.at<ToolPose>(0).now,
+                    wrench_about_frame(physics.world(), 0));
+    const Wrench passive = keep_passive(books, limits, felt, handle.position - last.position,
+                                        turn_between(last.rotation, handle.rotation), kPeriod);
     last = handle;
     GuardInput input;
     input.wanted = passive;
@@ -104,6 +106,54 @@ TEST(HeldToolLoopTest, IsStillInEveryGripAndModel) {
       EXPECT_LT(outcome.turn_ripple, 0.01 * std::abs(outcome.mean_torque));
     }
   }
+}
+
+TEST(HeldToolLoopTest, AToolWithMassIsStillInEveryGripToo) {
+  for (const double grip : {50.0, 200.0, 1000.0}) {
+    HandTraits traits;
+    traits.grip_stiffness = grip;
+    const LoopOutcome outcome = run_loop(traits, ContactModel::kMdr, 0.3, 4000, ToolHold::kMass);
+    const LoopOutcome massless = run_loop(traits, ContactModel::kMdr, 0.3, 4000);
+    SCOPED_TRACE(testing::Message() << "grip " << grip);
+    EXPECT_EQ(outcome.faults, 0U);
+    EXPECT_LT(outcome.ripple, 0.01 * outcome.mean_force);
+    EXPECT_LT(outcome.turn_ripple, 0.01 * std::abs(outcome.mean_torque));
+    // At rest mass makes no difference.
+    EXPECT_NEAR(outcome.mean_force, massless.mean_force, 0.01 * massless.mean_force);
+    EXPECT_LT(outcome.most_gained, 1e-5);  // J: of one sample
+  }
+}
+
+TEST(HeldToolLoopTest, HeldDirectlyTheHandFeelsASoftContactItself) {
+  // Soft enough for the device: K = 2 E* a is under 2 b / T for E = 1 kPa. See below for stiff
+  // ones.
+  SceneDescription scene = test::ball_on_cube();
+  scene.bodies[0].elasticity.youngs_modulus = 1e3;
+  PrepareOptions options;
+  options.contact_model = ContactModel::kMdr;
+  options.body_model = BodyModel::kNone;
+  test::Hand physics(scene, options);
+  Pose wanted{{0.0, 0.1505, 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)};
+  physics.step_to({wanted});
+  const HandTraits traits;
+  EmulatedHand hand(traits, wanted);
+  const VirtualCoupling coupling = choose_coupling(test::device_of(traits, kPeriod)).coupling;
+  Wrench felt;
+  for (int i = 0; i < 2000; ++i) {
+    wanted.position.y = 0.1505 - 4e-3 * std::min(1.0, i / 300.0);
+    const Pose handle = hand.measured();
+    physics.step_to({next_held_pose(physics.world(), 0, ToolHold::kDirect, coupling, handle)});
+    const Pose& tool = physics.world().tools.at<ToolPose>(0).now;
+    EXPECT_EQ(tool.position, handle.position);
+    felt = felt_wrench(ToolHold::kDirect, coupling, handle, tool,
+                       wrench_about_frame(physics.world(), 0));
+    hand.move(felt, wanted, kPeriod);
+  }
+  const double depth = 0.15 - hand.measured().position.y;
+  EXPECT_GT(depth, 1e-3);
+  const double modulus = scene.bodies[0].elasticity.contact_modulus();
+  const double force = reference::sneddon_sphere_at_depth(0.05, modulus, depth).force;
+  EXPECT_NEAR(felt.force.y, force, 1e-3 * force);  // the body's own bound for an exact shape
 }
 
 TEST(HeldToolLoopTest, StaysStableWithDelayLostSamplesAndCoarseEncoders) {

@@ -108,11 +108,13 @@ void state_lines(const ViewState& state, const LiveSession& session) {
   if (session.on_device(state.tool)) {
     device_part(*session.device());
   } else if (session.held(state.tool)) {
+    ImGui::PushTextWrapPos();
     text(session.way() == ToolHold::kDirect
              ? "held by the mouse, directly"
              : fmt::format("held by the mouse: {:.3g} N/m, up to {:.3g} N{}", coupling.stiffness,
                            coupling.largest_force,
                            session.way() == ToolHold::kMass ? ", with its mass" : ""));
+    ImGui::PopTextWrapPos();
   } else {
     text("moved by the scene's animation");
   }

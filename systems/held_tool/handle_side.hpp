@@ -41,7 +41,7 @@ struct PhysicsResult {
   double time = 0.0;  // s, steady clock
   bool faulty = false;
   bool any = false;  // false: nothing was said yet
-  Wrench contact;    // of the bodies on the tool, about its frame's origin, world axes
+  Wrench contact{};  // of the bodies on the tool, about its frame's origin, world axes
 };
 
 struct HandleOutcome {

@@ -1,12 +1,12 @@
 #include "systems/grid_cells.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 
-#include "systems/distance_shapes.hpp"
+#include "systems/cell_finder.hpp"
 #include "systems/frames.hpp"
+#include "systems/lanes.hpp"
 #include "systems/patch_grid.hpp"
 #include "systems/tool_surface.hpp"
 #include "systems/widest.hpp"
@@ -42,19 +42,6 @@ void find_rest_surface(const Grid& grid) {
   const auto parts = parts_under(grid, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts,
                                  grid.frame.origin);
   signed_distances(grid.world, parts, grid_in_body(grid.frame), grid.scratch.cell_columns.points);
-}
-
-/// How many cells a loop takes at a time that looks for a largest value: one at a time would wait
-/// for the one before.
-constexpr std::size_t kLanes = 8;
-using Lanes = std::array<double, kLanes>;
-
-double largest(const Lanes& lanes) {
-  double most = 0.0;
-  for (const double lane : lanes) {
-    most = larger(lane, most);
-  }
-  return most;
 }
 
 /// Depth under the body's rest surface, how much it changes across a cell, and the share of the
@@ -168,7 +155,7 @@ CellBits find_coverage(const Grid& grid) {
       coverage[first] = 0.0;
     }
   }
-  if (largest(beside_edge) > 0.0) {
+  if (largest_of(beside_edge) > 0.0) {
     const std::span<const double> normal = columns.points.gradient_z;
     for (std::size_t cell = 0; cell < count; ++cell) {
       if (normal[cell] < kFullyFacing && coverage[cell] > 0.0) {
@@ -194,22 +181,12 @@ void store_cells(const Grid& grid) {
 /// Marks the cells under a region's contact points, those of other clusters in `foreign`.
 /// @return true when there are any of others in the grid
 bool mark_points(const Grid& grid, const RegionPoints& contact, CellBits& own, CellBits& foreign) {
-  const RegionFrame& frame = grid.frame;
-  const glm::dvec2 cells_over_length = 0.5 * static_cast<double>(grid.side) / frame.half_size;
-  const double half_side = 0.5 * static_cast<double>(grid.side);
-  const auto last = static_cast<double>(grid.side - 1);
+  const CellFinder finder(grid.frame, grid.side);
   bool any_foreign = false;
   for (const ContactPoint& point : points_of(grid.scratch, contact)) {
-    const glm::dvec3 offset = point.position - frame.origin;
-    const double x = glm::dot(offset, frame.tangent_x);
-    const double y = glm::dot(offset, frame.tangent_y);
-    if (std::abs(x) <= frame.half_size.x && std::abs(y) <= frame.half_size.y) {
-      const auto i =
-          static_cast<std::uint32_t>(std::min(x * cells_over_length.x + half_side, last));
-      const auto j =
-          static_cast<std::uint32_t>(std::min(y * cells_over_length.y + half_side, last));
+    if (const auto cell = finder.under(point.position)) {
       const bool is_own = point.cluster == contact.cluster;
-      (is_own ? own : foreign)[j] |= std::uint64_t{1} << i;
+      (is_own ? own : foreign)[cell->j] |= std::uint64_t{1} << cell->i;
       any_foreign = any_foreign || !is_own;
     }
   }

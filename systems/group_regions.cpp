@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/cell_finder.hpp"
 #include "systems/fault.hpp"
 #include "systems/frames.hpp"
 #include "systems/region_grid.hpp"
@@ -18,40 +19,24 @@ struct PairPoints {
   std::uint32_t clusters;
 };
 
-/// A region's grid, to find the cell over which a point lies.
-class GridPlaces {
- public:
-  GridPlaces(const World& world, std::uint32_t region)
-      : frame_(world.regions.at<RegionFrame>(region)),
-        side_(world.settings.at<Settings>(0).grid_side),
-        cells_over_length_(0.5 * static_cast<double>(side_) / frame_.half_size),
-        cells_(world.cells.rows<CellGeometry>(world.regions.at<RegionIdentity>(region).cells)) {}
+/// A region's cells under contact points.
+struct RegionCells {
+  RegionCells(const World& world, std::uint32_t region)
+      : finder(world.regions.at<RegionFrame>(region), world.settings.at<Settings>(0).grid_side),
+        cells(world.cells.rows<CellGeometry>(world.regions.at<RegionIdentity>(region).cells)) {}
 
   /// Share of a point that lies over the region: 1 on its covered cells, a little on the others of
   /// its grid.
   [[nodiscard]] double overlap_with(const glm::dvec3& point) const {
-    const glm::dvec3 offset = point - frame_.origin;
-    const double x = glm::dot(offset, frame_.tangent_x);
-    const double y = glm::dot(offset, frame_.tangent_y);
-    // Written so that NaN overlaps nothing.
-    if (!(std::abs(x) <= frame_.half_size.x && std::abs(y) <= frame_.half_size.y)) {
+    const auto cell = finder.under(point);
+    if (!cell) {
       return 0.0;
     }
-    const std::uint32_t cell = at(y * cells_over_length_.y) * side_ + at(x * cells_over_length_.x);
-    return cells_[cell].coverage > 0.0 ? 1.0 : 1e-2;
+    return cells[cell->j * finder.side + cell->i].coverage > 0.0 ? 1.0 : 1e-2;
   }
 
- private:
-  /// @param from_middle  in cells
-  [[nodiscard]] std::uint32_t at(double from_middle) const {
-    const double half = 0.5 * static_cast<double>(side_);
-    return std::min(static_cast<std::uint32_t>(std::max(from_middle + half, 0.0)), side_ - 1);
-  }
-
-  const RegionFrame& frame_;
-  std::uint32_t side_;
-  glm::dvec2 cells_over_length_;  // 1/m
-  std::span<const CellGeometry> cells_;
+  CellFinder finder;
+  std::span<const CellGeometry> cells;
 };
 
 bool of_pair(const RegionIdentity& region, const ContactPair& pair) {
@@ -141,9 +126,9 @@ void match_by_overlap(const World& world, Scratch& scratch, const ContactPair& p
       continue;
     }
     scratch.overlaps.assign(pair.clusters, 0.0);
-    const GridPlaces places(world, region);
+    const RegionCells cells(world, region);
     for (const ContactPoint& point : points) {
-      scratch.overlaps[point.cluster] += places.overlap_with(point.position);
+      scratch.overlaps[point.cluster] += cells.overlap_with(point.position);
     }
     const auto best = std::ranges::max_element(scratch.overlaps);
     if (best == scratch.overlaps.end() || *best <= 0.0) {
@@ -194,9 +179,9 @@ void match_clusters(const World& world, Scratch& scratch, const ContactPair& pai
 /// kNoRow.
 std::uint32_t heir_of(const World& world, const Scratch& scratch, std::uint32_t region,
                       std::span<const ContactPoint> points) {
-  const GridPlaces places(world, region);
+  const RegionCells cells(world, region);
   for (const ContactPoint& point : points) {
-    if (places.overlap_with(point.position) >= 1.0) {
+    if (cells.overlap_with(point.position) >= 1.0) {
       return scratch.owners[point.cluster].region;
     }
   }
@@ -211,7 +196,7 @@ void note_splits(World& world, const Scratch& scratch, std::span<const ContactPo
     }
     for (const ClusterOwner& owner : scratch.owners) {
       if (owner.region != kNoRow &&
-          GridPlaces(world, owner.region).overlap_with(point.position) >= 1.0) {
+          RegionCells(world, owner.region).overlap_with(point.position) >= 1.0) {
         world.regions.at<RegionWrench>(owner.region).event_now =
             static_cast<std::uint32_t>(RegionEvent::kTakesOver);
       }

@@ -1,11 +1,10 @@
 #include "systems/tool_surface.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "systems/distance_shapes.hpp"
 #include "systems/frames.hpp"
+#include "systems/lanes.hpp"
 #include "systems/widest.hpp"
 
 namespace torsion {
@@ -28,11 +27,6 @@ void place_centers(const Grid& grid) {
   }
 }
 
-/// How many cells the loop below takes at a time, for one at a time would wait for the
-/// one before.
-constexpr std::size_t kLanes = 8;
-using Lanes = std::array<double, kLanes>;
-
 /// The largest of sign * values and 0; NaN counts as 0.
 TORSION_WIDEST
 void find_largest(const double* __restrict values, std::size_t count, double sign,
@@ -49,11 +43,7 @@ void find_largest(const double* __restrict values, std::size_t count, double sig
 double largest(std::span<const double> column, double sign) {
   Lanes lanes;
   find_largest(column.data(), column.size(), sign, lanes);
-  double most = 0.0;
-  for (const double lane : lanes) {
-    most = larger(lane, most);
-  }
-  return most;
+  return largest_of(lanes);
 }
 
 /// How far the cells' places are below the grid's plane, m.

@@ -5,6 +5,7 @@
 # said, and screenshots that the P key took. LAYERS: where the layer's manifest lies.
 set -euo pipefail
 torsion=$1 scene=$2 layers=$3 folder=$4
+source "$(dirname "${BASH_SOURCE[0]}")/window_person.sh"
 cd "$folder"
 name=$(basename "$scene" .gltf)
 export VK_LAYER_PATH=/usr/share/vulkan/explicit_layer.d:$layers
@@ -12,31 +13,8 @@ export VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation:VK_LAYER_TORSION_lose_surf
 export VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT
 export TORSION_LOSE_SURFACE="acquire:5 capabilities:1 present:5 swapchain:1"
 
-"$torsion" view "$scene" --seconds 120 --json >session.json 2>session.err &
-session=$!
-trap 'kill $session 2>/dev/null || true' EXIT
-id=$(timeout 30 xdotool search --sync --onlyvisible --name Torsion | head -n 1)
-xdotool windowfocus "$id"
+open_window "$scene" --seconds 3000
 
-# until COMMAND...: waits until it is true
-until_true() {
-  for _ in $(seq 200); do
-    ! "$@" || return 0
-    sleep 0.1
-  done
-  echo "never: $*" >&2
-  return 1
-}
-# Does something and waits for a picture after it: a slow machine, too, sees every step by itself.
-taken=0
-act() {
-  xdotool "$@"
-  xdotool key p
-  taken=$((taken + 1))
-  until_true test -s "${name}_$taken.png"
-}
-# keep NAME: that picture once more
-keep() { ln "${name}_$taken.png" "$1.png"; }
 # What a window manager does; there is none here.
 minimise() {
   xprop -id "$id" -f WM_STATE 32c -set WM_STATE 3
@@ -86,5 +64,4 @@ act mousedown 1
 act mousemove 700 140
 act mouseup 1
 keep again
-xdotool key Escape
-wait $session
+close_window

@@ -47,7 +47,7 @@ void check_sizes(const World& world, Findings& findings) {
   const std::uint64_t layers = std::uint64_t{world.regions.capacity()} * kMdrLayers;
   findings.require(world.mdr_layers.empty() || world.mdr_layers.size() == layers, "mdr_layers", 0,
                    "there must be a row for each layer of each region, or none");
-  const std::uint64_t tables = 12 * side * (2 * side - 1);  // kInfluenceKinds tables of one grid
+  const std::uint64_t tables = 16 * side * (2 * side - 1);  // kInfluenceKinds tables of one grid
   findings.require(world.layer_influences.empty() ||
                        world.layer_influences.size() == world.regions.capacity() * tables,
                    "layer_influences", 0, "there must be one grid's for each region, or none");

@@ -46,6 +46,12 @@ class Table {
     size_ -= 1;
   }
 
+  /// Zeroes some rows, as append does.
+  void zero(Range rows) {
+    TORSION_ASSERT(rows.end() <= size_);
+    (clear_rows<Ts>(rows), ...);
+  }
+
   /// Empties the table and keeps its memory.
   void clear() { size_ = 0; }
 

@@ -71,7 +71,9 @@ using RegionTable =
           RegionGeometry, RegionMotion, RegionNormal, RegionFriction, PatchState, LayerGrid,
           SmoothContact, MdrState, RegionField, AnchorTurns, RegionWrench>;
 using CellTable = Table<CellGeometry, CellTraction>;
-using PatchCellTable = Table<PatchCell, PatchChange>;
+using PatchCellTable = Table<PatchMovedX, PatchMovedY, PatchDepression, PatchHeldX, PatchHeldY,
+                             PatchKnown, PatchChangeX, PatchChangeY, PatchChangePressure,
+                             PatchChangeMovedX, PatchChangeMovedY, PatchChangeDepression>;
 using MdrLayerTable = Table<MdrLayer>;
 using AnchorTable = Table<AnchorRest, AnchorMotion>;
 

@@ -102,8 +102,7 @@ void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t c
     world.footings.at<Footing>(cells.first / cells.count) = Footing{};
   }
   if (!world.patch_cells.empty()) {
-    std::ranges::fill(world.patch_cells.rows<PatchCell>(cells), PatchCell{});
-    std::ranges::fill(world.patch_cells.rows<PatchChange>(cells), PatchChange{});
+    world.patch_cells.zero(cells);
   }
   place_new_grid(context, row, {pair.points, cluster});
   // on_tool is zero: what it exerts at birth fades in.

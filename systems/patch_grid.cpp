@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "systems/contact_models/influence.hpp"
+#include "systems/contact_models/patch_cells.hpp"
 #include "systems/frames.hpp"
 #include "systems/grid_cells.hpp"
 #include "systems/region_wrenches.hpp"
@@ -101,7 +102,7 @@ std::array<double, 4> cubic_weights(double x) {
 
 /// What the cells were before the grid moved.
 struct Before {
-  std::span<const PatchCell> cells;
+  std::span<const double> held_x, held_y;  // m
   std::span<const CellTraction> tractions;
   int side;
   int spare;  // columns that hold nothing
@@ -109,7 +110,8 @@ struct Before {
 
 /// Between the old cells around `place` (in cells, from the first one's centre).
 struct Resampled {
-  PatchCell cell;
+  glm::dvec2 held{0.0};  // m
+  bool known = false;    // whether there is one
   CellTraction traction;
 };
 
@@ -159,11 +161,11 @@ Resampled resample(const Before& before, const glm::dvec2& cells) {
       const glm::ivec2 at = corner + between * glm::ivec2(x - 1, y - 1);
       const double weight =
           cubic_x[static_cast<std::size_t>(x)] * cubic_y[static_cast<std::size_t>(y)];
-      result.cell.held +=
-          weight * before.cells[static_cast<std::size_t>(at.y * before.side + at.x)].held;
+      const auto cell = static_cast<std::size_t>(at.y * before.side + at.x);
+      result.held += weight * glm::dvec2(before.held_x[cell], before.held_y[cell]);
     }
   }
-  result.cell.known = 1;
+  result.known = true;
   return result;
 }
 
@@ -173,30 +175,32 @@ struct CellMove {
   glm::dvec2 scale{1.0};
 };
 
-void copy_cells(const Grid& grid) {
-  std::ranges::copy(grid.world.patch_cells.rows<PatchCell>(grid.identity.cells),
-                    grid.scratch.patch_before.begin());
+void copy_cells(const Grid& grid, const PatchSurface& surface) {
+  std::ranges::copy(surface.held_x, grid.scratch.held_before.x.begin());
+  std::ranges::copy(surface.held_y, grid.scratch.held_before.y.begin());
   std::ranges::copy(grid.world.cells.rows<CellTraction>(grid.identity.cells),
                     grid.scratch.tractions_before.begin());
 }
 
 void move_cells(const Grid& grid, const CellMove& move, double depth) {
-  copy_cells(grid);
-  const Before before{grid.scratch.patch_before, grid.scratch.tractions_before,
-                      static_cast<int>(grid.side), static_cast<int>(patch_spare(grid.side))};
-  const auto cells = grid.world.patch_cells.rows<PatchCell>(grid.identity.cells);
-  const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
+  const PatchRows rows = patch_rows(grid.world, grid.identity.cells);
+  copy_cells(grid, rows.surface);
+  const HeldBefore& held = grid.scratch.held_before;
+  const Before before{held.x, held.y, grid.scratch.tractions_before, static_cast<int>(grid.side),
+                      static_cast<int>(patch_spare(grid.side))};
+  grid.world.patch_cells.zero(grid.identity.cells);
   std::size_t cell = 0;
   for (std::uint32_t j = 0; j < grid.side; ++j) {
     for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
       const glm::dvec2 here(static_cast<double>(i), static_cast<double>(j));
       const Resampled from = resample(before, move.origin + move.scale * here);
-      cells[cell] = from.cell;
-      tractions[cell] = from.traction;
+      rows.surface.held_x[cell] = from.held.x;
+      rows.surface.held_y[cell] = from.held.y;
+      rows.surface.known[cell] = from.known ? 1.0 : 0.0;
+      rows.tractions[cell] = from.traction;
       grid.cells[cell].height = -depth;
     }
   }
-  std::ranges::fill(grid.world.patch_cells.rows<PatchChange>(grid.identity.cells), PatchChange{});
 }
 
 /// Puts the origin back on the body's rest surface.

@@ -27,7 +27,7 @@ void Scratch::reserve(const World& world) {
   const bool patches = !world.patch_cells.empty();
   // Columns end in zeros up to a multiple of 8, so that loops may take eight cells at a time.
   const std::size_t stride = (cells + 7) / 8 * 8;
-  const std::size_t columns = patches ? 41 : 21;
+  const std::size_t columns = patches ? 40 : 21;
   column_memory.reserve(static_cast<std::uint32_t>(columns * stride));
   std::size_t next = 0;
   const auto column = [&] {
@@ -57,18 +57,19 @@ void Scratch::reserve(const World& world) {
   if (patches) {
     PatchColumns& patch = patch_columns;
     for (std::span<double>* each :
-         {&patch.depth,        &patch.friction,      &patch.target_x,      &patch.target_y,
-          &patch.pressure,     &patch.traction_x,    &patch.traction_y,    &patch.depression,
-          &patch.moved_x,      &patch.moved_y,       &patch.slips,         &patch_places.x,
-          &patch_places.y,     &patch_places.height, &patch_places.from_x, &patch_places.from_y,
-          &patch_places.known, &support_columns.x,   &support_columns.y,   &support_columns.z}) {
+         {&patch.depth, &patch.friction, &patch.target_x, &patch.target_y, &patch.pressure,
+          &patch.traction_x, &patch.traction_y, &patch.depression, &patch.moved_x, &patch.moved_y,
+          &patch.slips, &patch_places.x, &patch_places.y, &patch_places.height,
+          &patch_places.from_x, &patch_places.from_y, &support_columns.x, &support_columns.y,
+          &support_columns.z}) {
       *each = column();
     }
     if (!world.footings.empty()) {
       patch_support.assign(kSupportTerms * stride, 0.0);
     }
     patch_work.reserve(side);
-    patch_before.assign(cells, PatchCell{});
+    held_before.x.assign(cells, 0.0);
+    held_before.y.assign(cells, 0.0);
     tractions_before.assign(cells, CellTraction{});
   }
   carried_cells.assign(std::size_t{side + 2} * (side + 2), CarriedCell(0.0));

@@ -133,13 +133,13 @@ struct Scratch {
   // mdr_forces
   MdrTables mdr_tables;  // constant; empty without contact model mdr
   // patch_forces
-  PatchColumns patch_columns;           // (cells of one region)
-  PatchPlaces patch_places;             // likewise
-  SupportColumns support_columns;       // (cells of one region)
-  std::vector<double> patch_support;    // (kSupportTerms x cells of one region)
-  PatchWork patch_work;                 // likewise
-  std::vector<PatchCell> patch_before;  // (cells of one region) while its grid moves
-  std::vector<CellTraction> tractions_before;
+  PatchColumns patch_columns;                  // (cells of one region)
+  PatchPlaces patch_places;                    // likewise
+  SupportColumns support_columns;              // (cells of one region)
+  std::vector<double> patch_support;           // (kSupportTerms x cells of one region)
+  PatchWork patch_work;                        // likewise
+  HeldBefore held_before;                      // (cells of one region) while its grid moves
+  std::vector<CellTraction> tractions_before;  // likewise
 
   Column<double> column_memory;            // what the columns above are in
   std::vector<std::uint32_t> cell_memory;  // what the cells of left_cells are in

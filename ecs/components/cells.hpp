@@ -39,23 +39,29 @@ struct LayerGrid {
   glm::dvec2 half_size{0.0};  // m
 };
 
-/// The body's surface under one cell of a region with contact model `patch`. Written by:
-/// patch_forces.
-struct PatchCell {
-  glm::dvec2 displacement{0.0};  // m, grid: of the local half-space, tangential
-  double depression = 0.0;       // m: into the body
-  glm::dvec2 held{0.0};          // m, grid: the displacement at which friction holds or has left it
-  std::uint32_t known = 0;       // 0: `held` is what the displacement is
-  std::uint32_t padding = 0;
+/// One number of a cell of a region with contact model `patch`, a column each, so that loops take
+/// whole vectors. `Part` says which.
+template <class Part>
+struct PatchValue {
+  double value = 0.0;
 };
 
-/// What the last step changed of it, from which the next one starts. Written by: patch_forces.
-struct PatchChange {
-  glm::dvec2 traction{0.0};      // Pa, grid, on the body
-  double pressure = 0.0;         // Pa
-  glm::dvec2 displacement{0.0};  // m, grid
-  double depression = 0.0;       // m
-};
+// The body's surface under the cell. Written by: patch_forces and, when the grid moves,
+// region_grids.
+using PatchMovedX = PatchValue<struct MovedX>;  // m, grid: displacement of the local half-space
+using PatchMovedY = PatchValue<struct MovedY>;  // m
+using PatchDepression = PatchValue<struct Depression>;  // m: into the body
+using PatchHeldX = PatchValue<struct HeldX>;  // m, grid: where friction holds or has left it
+using PatchHeldY = PatchValue<struct HeldY>;  // m
+using PatchKnown = PatchValue<struct Known>;  // 1, or 0: where it is held is where it has moved to
+
+// What the last step changed, from which the next one starts. Written by: as above.
+using PatchChangeX = PatchValue<struct ChangeX>;  // Pa, grid: of the traction, on the body
+using PatchChangeY = PatchValue<struct ChangeY>;  // Pa
+using PatchChangePressure = PatchValue<struct ChangePressure>;      // Pa
+using PatchChangeMovedX = PatchValue<struct ChangeMovedX>;          // m
+using PatchChangeMovedY = PatchValue<struct ChangeMovedY>;          // m
+using PatchChangeDepression = PatchValue<struct ChangeDepression>;  // m
 
 inline constexpr std::uint32_t kMdrLayers = 32;
 

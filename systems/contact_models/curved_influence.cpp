@@ -59,7 +59,7 @@ void fill_curved_influences(const InfluenceTables& half_space, const CurvedRespo
   TORSION_ASSERT(values.size() == layer_influence_count(half_space.side));
   const std::size_t width = half_space.width();
   const std::size_t table = values.size() / kInfluenceKinds;
-  for (std::size_t kind = 0; kind < kInfluenceKinds; ++kind) {
+  for (std::size_t kind = 0; kind < kSolvedKinds; ++kind) {
     std::copy_n(half_space.kinds[kind], table, &values[kind * table]);
   }
   constexpr double kGauss = 0.28867513459481287;  // of the cell, from its centre
@@ -86,6 +86,7 @@ void fill_curved_influences(const InfluenceTables& half_space, const CurvedRespo
       }
     }
   }
+  fill_differences(values);
 }
 
 }  // namespace torsion

@@ -1,6 +1,8 @@
 #include "systems/contact_models/influence.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "ecs/assert.hpp"
@@ -61,7 +63,7 @@ void fill_influences(double poisson_ratio, std::uint32_t side, std::span<double>
         const double y = (static_cast<double>(row) - static_cast<double>(side - 1)) * height;
         const Integrals over = rectangle(x, y, 0.5, 0.5 * height);
         const double both = over.x2 + over.y2;  // of 1 / rho
-        const std::array<double, kInfluenceKinds> kinds{
+        const std::array<double, kSolvedKinds> kinds{
             shear * (1.0 - poisson_ratio) * both,
             shear * ((1.0 - poisson_ratio) * both + poisson_ratio * over.x2),
             shear * poisson_ratio * over.xy,
@@ -73,8 +75,21 @@ void fill_influences(double poisson_ratio, std::uint32_t side, std::span<double>
         }
       }
     }
+    fill_differences(values.subspan(first, kInfluenceKinds * table));
     first += kInfluenceKinds * table;
   }
+}
+
+void fill_differences(std::span<double> values) {
+  const std::size_t table = values.size() / kInfluenceKinds;
+  const auto of = [&](InfluenceKind kind) {
+    return values.subspan(static_cast<std::size_t>(kind) * table, table);
+  };
+  const std::span<const double> mixed = of(InfluenceKind::kXY);
+  std::ranges::transform(of(InfluenceKind::kXX), mixed, of(InfluenceKind::kXXLessXY).begin(),
+                         std::minus<>{});
+  std::ranges::transform(of(InfluenceKind::kYY), mixed, of(InfluenceKind::kYYLessXY).begin(),
+                         std::minus<>{});
 }
 
 InfluenceTables influence_tables(std::span<const double> values, std::uint32_t side,

@@ -11,8 +11,10 @@
 namespace torsion {
 
 /// Displacement (first letter) by traction (second letter); z points into the body.
-enum class InfluenceKind : std::uint32_t { kZZ, kXX, kXY, kYY, kZX, kZY };
-inline constexpr std::uint32_t kInfluenceKinds = 6;
+/// The last two are differences of others, for sum_tangential.
+enum class InfluenceKind : std::uint32_t { kZZ, kXX, kXY, kYY, kZX, kZY, kXXLessXY, kYYLessXY };
+inline constexpr std::uint32_t kSolvedKinds = 6;
+inline constexpr std::uint32_t kInfluenceKinds = 8;
 
 /// Cells are 2^aspect times as long along x as along y; a grid takes the nearest of these.
 inline constexpr std::int32_t kMostAspect = 2;
@@ -24,7 +26,7 @@ constexpr std::size_t influence_count(std::uint32_t side) {
          (2 * std::size_t{side});
 }
 
-/// Tables for one Poisson's ratio: for every aspect the six kinds, each (2 side - 1) rows of 2 side
+/// Tables for one Poisson's ratio: for every aspect the kinds, each (2 side - 1) rows of 2 side
 /// values (the last of a row is padding); the value for a displacement at cell (i + di, j + dj) by
 /// a traction on cell (i, j) is in row dj + side - 1 at di + side - 1. Times the cell's length
 /// along x over the shear modulus it is m/Pa. u_x by the pressure is minus kZX, u_y minus kZY
@@ -33,6 +35,10 @@ constexpr std::size_t influence_count(std::uint32_t side) {
 /// @param poisson_ratio  0 to 0.5
 /// @param values         (influence_count(side)) out
 void fill_influences(double poisson_ratio, std::uint32_t side, std::span<double> values);
+
+/// Fills the kinds that are differences from those that are not.
+/// @param values  all kinds of one grid, one after another
+void fill_differences(std::span<double> values);
 
 /// The tables of one aspect.
 struct InfluenceTables {

@@ -9,17 +9,16 @@ namespace torsion {
 namespace {
 
 /// Mean over a cell at `offset` from a force, in the order of InfluenceKind.
-std::array<double, kInfluenceKinds> mean_response(std::span<const double> kernel,
-                                                  double poisson_ratio, const glm::dvec2& offset,
-                                                  const glm::dvec2& cell) {
+std::array<double, kSolvedKinds> mean_response(std::span<const double> kernel, double poisson_ratio,
+                                               const glm::dvec2& offset, const glm::dvec2& cell) {
   constexpr double kGauss = 0.28867513459481287;  // of the cell, from its centre
-  std::array<double, kInfluenceKinds> sum{};
+  std::array<double, kSolvedKinds> sum{};
   for (const double x : {-kGauss, kGauss}) {
     for (const double y : {-kGauss, kGauss}) {
       const LayerResponse at =
           layer_response(kernel, poisson_ratio, offset + cell * glm::dvec2(x, y));
-      const std::array<double, kInfluenceKinds> kinds{at.zz, at.xx, at.xy, at.yy, at.zx, at.zy};
-      for (std::size_t kind = 0; kind < kInfluenceKinds; ++kind) {
+      const std::array<double, kSolvedKinds> kinds{at.zz, at.xx, at.xy, at.yy, at.zx, at.zy};
+      for (std::size_t kind = 0; kind < kSolvedKinds; ++kind) {
         sum[kind] += 0.25 * kinds[kind];
       }
     }
@@ -36,12 +35,12 @@ void fill_layer_influences(const InfluenceTables& half_space, std::span<const do
   const std::size_t width = half_space.width();
   const std::size_t table = values.size() / kInfluenceKinds;
   // Signs under x -> -x and y -> -y, in the order of InfluenceKind.
-  constexpr std::array<double, kInfluenceKinds> kOddInX{1.0, 1.0, -1.0, 1.0, -1.0, 1.0};
-  constexpr std::array<double, kInfluenceKinds> kOddInY{1.0, 1.0, -1.0, 1.0, 1.0, -1.0};
+  constexpr std::array<double, kSolvedKinds> kOddInX{1.0, 1.0, -1.0, 1.0, -1.0, 1.0};
+  constexpr std::array<double, kSolvedKinds> kOddInY{1.0, 1.0, -1.0, 1.0, 1.0, -1.0};
   for (std::uint32_t j = 0; j < side; ++j) {
     for (std::uint32_t i = 0; i < side; ++i) {
       const auto response = mean_response(kernel, poisson_ratio, cell * glm::dvec2(i, j), cell);
-      for (std::size_t kind = 0; kind < kInfluenceKinds; ++kind) {
+      for (std::size_t kind = 0; kind < kSolvedKinds; ++kind) {
         // Over the cell's length along x: its area leaves its width.
         const double value = response[kind] * cell.y;
         for (const bool left : {false, true}) {
@@ -57,6 +56,7 @@ void fill_layer_influences(const InfluenceTables& half_space, std::span<const do
       }
     }
   }
+  fill_differences(values);
 }
 
 InfluenceTables layer_influence_tables(std::span<const double> values, std::uint32_t side) {

@@ -80,10 +80,7 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
           settings.grid_side,
           frame,
           world.regions.at<RegionMotion>(region),
-          {world.cells.rows<CellGeometry>(identity.cells),
-           world.cells.rows<CellTraction>(identity.cells),
-           world.patch_cells.rows<PatchCell>(identity.cells),
-           world.patch_cells.rows<PatchChange>(identity.cells)},
+          patch_rows(world, identity.cells),
           world.regions.at<PatchState>(region),
           problem};
 }
@@ -102,27 +99,17 @@ double foresight(const Patch& patch, double deepened) {
   return square > 0.0 ? std::clamp(along / square, 0.0, most) : 0.0;
 }
 
-double deepest(const Patch& patch) {
-  double depth = 0.0;
-  for (const CellGeometry& cell : patch.rows.geometry) {
-    depth = std::max(depth, cell.coverage > 0.0 ? cell.depth : 0.0);
-  }
-  return depth;
-}
-
 bool has_support(const Patch& patch) {
   return patch.problem.support.response != nullptr;
 }
 
 /// The body's own motion at every cell beyond what the tool's overlap has of it already.
+/// @pre it gives way by more than a half-space does
 void find_support(const Patch& patch) {
   const PatchColumns& columns = patch.columns;
   const PatchField moved{patch.support.x, patch.support.y, patch.support.z};
   for (const std::span<double>& each : {moved.x, moved.y, moved.z}) {
     std::ranges::fill(each, 0.0);
-  }
-  if (!has_support(patch)) {
-    return;
   }
   SupportPolynomials polynomials =
       support_by(patch.problem.support, {columns.traction_x, columns.traction_y, columns.pressure});
@@ -135,9 +122,6 @@ void find_support(const Patch& patch) {
 
 /// Adds it, `sign` times, to the half-space's displacements.
 void add_motion_of_body(const Patch& patch, double sign) {
-  if (!has_support(patch)) {
-    return;
-  }
   const PatchColumns& columns = patch.columns;
   const auto add = [sign](std::span<const double> motion, std::span<double> to) {
     add_scaled(motion.size(), sign, motion.data(), to.data());
@@ -153,7 +137,7 @@ void add_motion_of_body(const Patch& patch, double sign) {
 /// there.
 void start_anew(Patch& patch) {
   const PatchColumns& columns = patch.columns;
-  for (std::uint32_t cell = 0; cell < patch.rows.cells.size(); ++cell) {
+  for (std::size_t cell = 0; cell < patch.rows.tractions.size(); ++cell) {
     if (columns.pressure[cell] <= 0.0 || columns.depth[cell] == kNoContact) {
       columns.pressure[cell] = 0.0;
       columns.traction_x[cell] = 0.0;
@@ -161,13 +145,15 @@ void start_anew(Patch& patch) {
     }
   }
   displace_patch(patch.problem, columns, patch.work);
-  for (std::size_t cell = 0; cell < patch.rows.cells.size(); ++cell) {
-    patch.rows.cells[cell].displacement = {columns.moved_x[cell], columns.moved_y[cell]};
-    if (patch.rows.cells[cell].known == 0) {
+  const PatchSurface& surface = patch.rows.surface;
+  std::ranges::copy(columns.moved_x, surface.moved_x.begin());
+  std::ranges::copy(columns.moved_y, surface.moved_y.begin());
+  std::ranges::copy(columns.depression, surface.depression.begin());
+  for (std::size_t cell = 0; cell < patch.rows.tractions.size(); ++cell) {
+    if (surface.known[cell] == 0.0) {
       patch.places.from_x[cell] = columns.moved_x[cell];
       patch.places.from_y[cell] = columns.moved_y[cell];
     }
-    patch.rows.cells[cell].depression = columns.depression[cell];
     patch.rows.tractions[cell].pressure = columns.pressure[cell];
     patch.rows.tractions[cell].traction =
         -glm::dvec2(columns.traction_x[cell], columns.traction_y[cell]);
@@ -181,14 +167,9 @@ void start_anew(Patch& patch) {
 
 /// A pressure to measure changes by: the mean of what is there, or what the depth will ask for.
 double reference_pressure(const Patch& patch, double depth) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const double pressure : patch.columns.pressure) {
-    sum += pressure;
-    count += pressure > 0.0 ? 1.0 : 0.0;
-  }
-  if (count > 0.0) {
-    return sum / count;
+  const double mean = mean_pressure(patch.columns);
+  if (mean > 0.0) {
+    return mean;
   }
   const double reach = std::max(patch.frame.half_size.x, patch.frame.half_size.y);
   return depth / (reach * patch.problem.compliance * static_cast<double>(patch.side)) * reach;
@@ -210,7 +191,7 @@ void update_kinetic_shares(const Patch& patch, double force) {
   const double inverse =
       inverse_of(stiffness > 0.0 ? friction.static_friction * force / stiffness : 0.0);
   const PatchColumns& columns = patch.columns;
-  for (std::size_t cell = 0; cell < patch.rows.cells.size(); ++cell) {
+  for (std::size_t cell = 0; cell < patch.rows.tractions.size(); ++cell) {
     double& share = patch.rows.tractions[cell].kinetic_share;
     const glm::dvec2 moved(columns.moved_x[cell], columns.moved_y[cell]);
     if (columns.pressure[cell] <= 0.0) {
@@ -219,7 +200,8 @@ void update_kinetic_shares(const Patch& patch, double force) {
       const glm::dvec2 target(columns.target_x[cell], columns.target_y[cell]);
       share += (1.0 - share) * travelled(glm::distance(target, moved), inverse / kSlipLength);
     } else if (share > 0.0) {
-      share *= 1.0 - travelled(glm::distance(moved, patch.rows.cells[cell].displacement), inverse);
+      const glm::dvec2 was(patch.rows.surface.moved_x[cell], patch.rows.surface.moved_y[cell]);
+      share *= 1.0 - travelled(glm::distance(moved, was), inverse);
     }
   }
 }
@@ -263,32 +245,41 @@ void summarize(const Patch& patch, const PatchSums& sums) {
 
 void solve_region(StepContext& context, std::uint32_t region) {
   Patch patch = patch_of(context, region);
-  const double depth = deepest(patch);
-  const double deepened = depth - patch.state.depth;
   const bool anew = patch.state.started == 0 || patch.state.moved != 0;
   const std::uint32_t body = patch.world.regions.at<RegionIdentity>(region).body;
-  load_cells(patch.rows, patch.world.bodies.at<Friction>(body),
-             anew ? 0.0 : foresight(patch, deepened), patch.columns, patch.places, patch.work,
-             patch.problem);
+  load_cells(patch.rows, patch.world.bodies.at<Friction>(body), patch.columns, patch.places);
+  const double depth = largest(whole_lanes(patch.columns.depth.size()), patch.columns.depth.data());
+  const double deepened = depth - patch.state.depth;
+  foresee_cells(patch.rows, anew ? 0.0 : foresight(patch, deepened), patch.columns, patch.problem);
   if (anew) {
     start_anew(patch);
   } else {
     let_go_cells(patch.problem, patch.columns, patch.work, kNoContact);
   }
-  find_support(patch);
-  set_targets(patch.motion, patch.places, patch.support.x, patch.support.y, patch.columns);
-  add_motion_of_body(patch, 1.0);
+  set_targets(patch.motion, patch.places, patch.columns);
+  if (has_support(patch)) {
+    find_support(patch);
+    take_off_support(patch.rows.surface.known, patch.support.x, patch.support.y, patch.columns);
+    add_motion_of_body(patch, 1.0);
+  }
   patch.problem.reference = reference_pressure(patch, depth);
   const PatchOutcome outcome = solve_patch(patch.problem, patch.columns, patch.work);
-  find_support(patch);
-  add_motion_of_body(patch, -1.0);
+  if (has_support(patch)) {
+    find_support(patch);
+    add_motion_of_body(patch, -1.0);
+  }
   const bool started = patch.state.started != 0;
-  const PatchSums sums =
-      sum_cells(patch.columns, patch.places, cell_area(patch.frame, patch.side), patch.work);
+  const PatchSums sums = sum_cells(patch.columns, patch.places, cell_area(patch.frame, patch.side));
   update_kinetic_shares(patch, sums.force);
-  store_cells(patch.columns, patch.support.x, patch.support.y, patch.rows);
+  const std::span<const double> none;
+  store_cells(patch.columns, has_support(patch) ? patch.support.x : none,
+              has_support(patch) ? patch.support.y : none, patch.rows);
   if (!started) {
-    std::ranges::fill(patch.rows.changes, PatchChange{});
+    const PatchChange& change = patch.rows.change;
+    for (const std::span<double>& each : {change.traction_x, change.traction_y, change.pressure,
+                                          change.moved_x, change.moved_y, change.depression}) {
+      std::ranges::fill(each, 0.0);
+    }
   }
   patch.state = {patch.motion.slide,
                  patch.motion.spin,

@@ -8,7 +8,7 @@ namespace torsion {
 // with pressure and Coulomb friction solved together (docs/models.md).
 
 /// Pressures, tractions, forces and couple of every region of a body with this model. Writes
-/// CellTraction, PatchCell, PatchChange, PatchState, RegionCarrier, RegionNormal, RegionFriction
+/// CellTraction, all PatchValue, PatchState, RegionCarrier, RegionNormal, RegionFriction
 /// and, from the pressures, RegionGeometry.
 void patch_forces(StepContext& context);
 

@@ -1,15 +1,32 @@
 #include "systems/contact_models/patch_cells.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
 
 #include <glm/geometric.hpp>
 
 #include "systems/contact_models/patch_passes.hpp"
+#include "systems/distance_shapes.hpp"
 #include "systems/frames.hpp"
 #include "systems/widest.hpp"
 
 namespace torsion {
 namespace {
+
+using Wide = double __attribute__((vector_size(sizeof(double) * kPatchLanes)));
+
+double sum(const Wide& lanes) {
+  return ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) +
+         ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]));
+}
+
+template <class T>
+std::span<double> values_of(std::span<T> rows) {
+  static_assert(sizeof(T) == sizeof(double));
+  return {&rows.front().value, rows.size()};
+}
 
 TORSION_WIDEST
 void go_with_tool(std::size_t count, const RegionMotion& motion, const double* __restrict x,
@@ -33,38 +50,178 @@ void take_off(std::size_t count, const double* __restrict known, const double* _
   }
 }
 
-/// What counts how often: 1 for every cell with pressure, and for those of them that stick.
+/// Where cells start from: where they are held, or where they have moved to.
 TORSION_WIDEST
-void find_loaded(std::size_t count, const double* __restrict pressure,
-                 const double* __restrict slips, double* __restrict loaded,
-                 double* __restrict sticks) {
+void find_starts(std::size_t count, const double* __restrict known, const double* __restrict held,
+                 const double* __restrict moved, double* __restrict from) {
   for (std::size_t cell = 0; cell < count; ++cell) {
-    const double one = pressure[cell] > 0.0 ? 1.0 : 0.0;
-    loaded[cell] = one;
-    sticks[cell] = one * (1.0 - slips[cell]);
+    from[cell] = known[cell] != 0.0 ? held[cell] : moved[cell];
   }
 }
 
+/// to = values, and `share` of what they have changed by.
 TORSION_WIDEST
-void multiply(std::size_t count, const double* __restrict a, const double* __restrict b,
-              double* __restrict product) {
+void carry_on(std::size_t count, double share, const double* __restrict values,
+              const double* __restrict change, double* __restrict to) {
   for (std::size_t cell = 0; cell < count; ++cell) {
-    product[cell] = a[cell] * b[cell];
+    to[cell] = values[cell] + share * change[cell];
   }
+}
+
+/// values = now, change = what that changes.
+TORSION_WIDEST
+void take_over(std::size_t count, const double* __restrict now, double* __restrict values,
+               double* __restrict change) {
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    change[cell] = now[cell] - values[cell];
+    values[cell] = now[cell];
+  }
+}
+
+/// Where friction holds a cell that sticks, or has left one that slips.
+TORSION_WIDEST
+void find_held(std::size_t count, const double* __restrict slips, const double* __restrict target,
+               const double* __restrict moved, double* __restrict held) {
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    held[cell] = slips[cell] == 0.0 ? target[cell] : moved[cell];
+  }
+}
+
+/// to += share * change.
+/// @param sums  of the changes' sizes, out
+TORSION_WIDEST
+void foresee(std::size_t count, double share, const double* __restrict change,
+             double* __restrict to, Wide& __restrict sums) {
+  Wide total{};
+  std::size_t cell = 0;
+  for (; cell + kPatchLanes <= count; cell += kPatchLanes) {
+    Wide by;
+    Wide value;
+    std::memcpy(&by, change + cell, sizeof by);
+    std::memcpy(&value, to + cell, sizeof value);
+    value += share * by;
+    total += by < 0.0 ? -by : by;
+    std::memcpy(to + cell, &value, sizeof value);
+  }
+  for (std::size_t lane = 0; cell < count; ++cell, ++lane) {
+    to[cell] += share * change[cell];
+    total[lane] += std::abs(change[cell]);
+  }
+  sums = total;
+}
+
+/// @return the sum of the changes' sizes
+double foresee(double share, std::span<const double> change, std::span<double> to) {
+  Wide sums;
+  foresee(change.size(), share, change.data(), to.data(), sums);
+  return sum(sums);
+}
+
+/// What sum_cells adds up, in this order.
+enum Sum : std::size_t {
+  kPressure,
+  kPlaceX,  // what is named like PatchSums' numbers but for the pressure, times the pressure
+  kPlaceY,
+  kHeight,
+  kDepth,
+  kMovedX,
+  kMovedY,
+  kMoment,        // of the displacements about the origin
+  kSecondMoment,  // of the pressure about the origin
+  kTractionX,
+  kTractionY,
+  kCouple,
+  kLoaded,
+  kStuck,
+  kSums
+};
+
+TORSION_WIDEST
+void add_up(std::size_t count, const PatchColumns& columns, const PatchPlaces& places,
+            std::array<Wide, kSums>& totals) {
+  const Wide one = Wide{} + 1.0;
+  const Wide none{};
+  std::array<Wide, kSums> sums{};
+  for (std::size_t cell = 0; cell < count; cell += kPatchLanes) {
+    Wide pressure;
+    Wide x;
+    Wide y;
+    Wide height;
+    Wide depth;
+    Wide moved_x;
+    Wide moved_y;
+    Wide traction_x;
+    Wide traction_y;
+    Wide slips;
+    std::memcpy(&pressure, &columns.pressure[cell], sizeof(Wide));
+    std::memcpy(&x, &places.x[cell], sizeof(Wide));
+    std::memcpy(&y, &places.y[cell], sizeof(Wide));
+    std::memcpy(&height, &places.height[cell], sizeof(Wide));
+    std::memcpy(&depth, &columns.depth[cell], sizeof(Wide));
+    std::memcpy(&moved_x, &columns.moved_x[cell], sizeof(Wide));
+    std::memcpy(&moved_y, &columns.moved_y[cell], sizeof(Wide));
+    std::memcpy(&traction_x, &columns.traction_x[cell], sizeof(Wide));
+    std::memcpy(&traction_y, &columns.traction_y[cell], sizeof(Wide));
+    std::memcpy(&slips, &columns.slips[cell], sizeof(Wide));
+    const Wide by_x = pressure * x;
+    const Wide by_y = pressure * y;
+    const Wide loaded = pressure > 0.0 ? one : none;
+    sums[kPressure] += pressure;
+    sums[kPlaceX] += by_x;
+    sums[kPlaceY] += by_y;
+    sums[kHeight] += pressure * height;
+    sums[kDepth] += pressure * depth;
+    sums[kMovedX] += pressure * moved_x;
+    sums[kMovedY] += pressure * moved_y;
+    sums[kMoment] += by_x * moved_y - by_y * moved_x;
+    sums[kSecondMoment] += by_x * x + by_y * y;
+    sums[kTractionX] += loaded * traction_x;
+    sums[kTractionY] += loaded * traction_y;
+    sums[kCouple] += x * traction_y - y * traction_x;
+    sums[kLoaded] += loaded;
+    sums[kStuck] += loaded * (one - slips);
+  }
+  totals = sums;
+}
+
+/// The pressures, and how many there are.
+TORSION_WIDEST
+void add_up(std::size_t count, const double* __restrict pressures, Wide& __restrict total,
+            Wide& __restrict loaded) {
+  Wide sums{};
+  Wide counts{};
+  for (std::size_t cell = 0; cell < count; cell += kPatchLanes) {
+    Wide pressure;
+    std::memcpy(&pressure, pressures + cell, sizeof pressure);
+    sums += pressure;
+    counts += pressure > 0.0 ? Wide{} + 1.0 : Wide{};
+  }
+  total = sums;
+  loaded = counts;
 }
 
 }  // namespace
 
-void load_cells(const PatchRows& rows, const Friction& friction, double share,
-                const PatchColumns& columns, const PatchPlaces& places, PatchWork& work,
-                PatchProblem& problem) {
-  const std::size_t count = rows.cells.size();
+PatchRows patch_rows(World& world, Range cells) {
+  PatchCellTable& table = world.patch_cells;
+  return {world.cells.rows<CellGeometry>(cells),
+          world.cells.rows<CellTraction>(cells),
+          {values_of(table.rows<PatchMovedX>(cells)), values_of(table.rows<PatchMovedY>(cells)),
+           values_of(table.rows<PatchDepression>(cells)), values_of(table.rows<PatchHeldX>(cells)),
+           values_of(table.rows<PatchHeldY>(cells)), values_of(table.rows<PatchKnown>(cells))},
+          {values_of(table.rows<PatchChangeX>(cells)), values_of(table.rows<PatchChangeY>(cells)),
+           values_of(table.rows<PatchChangePressure>(cells)),
+           values_of(table.rows<PatchChangeMovedX>(cells)),
+           values_of(table.rows<PatchChangeMovedY>(cells)),
+           values_of(table.rows<PatchChangeDepression>(cells))}};
+}
+
+void load_cells(const PatchRows& rows, const Friction& friction, const PatchColumns& columns,
+                const PatchPlaces& places) {
+  const std::size_t count = rows.geometry.size();
   const PatchColumns to = columns;
   const PatchPlaces at = places;
   const double fall = friction.dynamic_friction - friction.static_friction;
-  double* const change_x = work.change_x.data();
-  double* const change_y = work.change_y.data();
-  double* const change_pressure = work.change_pressure.data();
   for (std::size_t cell = 0; cell < count; ++cell) {
     const CellGeometry& geometry = rows.geometry[cell];
     const CellTraction& traction = rows.tractions[cell];
@@ -75,111 +232,101 @@ void load_cells(const PatchRows& rows, const Friction& friction, double share,
     to.traction_x[cell] = -traction.traction.x;
     to.traction_y[cell] = -traction.traction.y;
   }
-  for (std::size_t cell = 0; cell < count; ++cell) {
-    const PatchCell& held = rows.cells[cell];
-    const bool known = held.known != 0;
-    at.from_x[cell] = known ? held.held.x : held.displacement.x;
-    at.from_y[cell] = known ? held.held.y : held.displacement.y;
-    at.known[cell] = known ? 1.0 : 0.0;
-    to.depression[cell] = held.depression;
-    to.moved_x[cell] = held.displacement.x;
-    to.moved_y[cell] = held.displacement.y;
+  const PatchSurface& from = rows.surface;
+  find_starts(count, from.known.data(), from.held_x.data(), from.moved_x.data(), at.from_x.data());
+  find_starts(count, from.known.data(), from.held_y.data(), from.moved_y.data(), at.from_y.data());
+}
+
+void foresee_cells(const PatchRows& rows, double share, const PatchColumns& columns,
+                   PatchProblem& problem) {
+  const std::size_t count = rows.geometry.size();
+  const PatchSurface& from = rows.surface;
+  const PatchChange& change = rows.change;
+  const PatchColumns to = columns;
+  carry_on(count, share, from.moved_x.data(), change.moved_x.data(), to.moved_x.data());
+  carry_on(count, share, from.moved_y.data(), change.moved_y.data(), to.moved_y.data());
+  carry_on(count, share, from.depression.data(), change.depression.data(), to.depression.data());
+  if (share > 0.0) {
+    problem.foreseen_pressure = share * foresee(share, change.pressure, to.pressure);
+    problem.foreseen_traction = share * (foresee(share, change.traction_x, to.traction_x) +
+                                         foresee(share, change.traction_y, to.traction_y));
   }
-  if (share == 0.0) {
-    return;
-  }
-  for (std::size_t cell = 0; cell < count; ++cell) {
-    const PatchChange& change = rows.changes[cell];
-    change_pressure[cell] = change.pressure;
-    change_x[cell] = change.traction.x;
-    change_y[cell] = change.traction.y;
-    to.depression[cell] += share * change.depression;
-    to.moved_x[cell] += share * change.displacement.x;
-    to.moved_y[cell] += share * change.displacement.y;
-  }
-  add_scaled(count, share, change_pressure, to.pressure.data());
-  add_scaled(count, share, change_x, to.traction_x.data());
-  add_scaled(count, share, change_y, to.traction_y.data());
-  const std::size_t whole = whole_lanes(count);
-  problem.foreseen_pressure = share * size_of_change(whole, change_pressure).sum;
-  problem.foreseen_traction =
-      share * (size_of_change(whole, change_x).sum + size_of_change(whole, change_y).sum);
 }
 
 void store_cells(const PatchColumns& columns, std::span<const double> support_x,
                  std::span<const double> support_y, const PatchRows& rows) {
+  const std::size_t count = rows.tractions.size();
   const PatchColumns from = columns;
-  for (std::size_t cell = 0; cell < rows.cells.size(); ++cell) {
-    PatchCell& at = rows.cells[cell];
+  const PatchChange to = rows.change;
+  for (std::size_t cell = 0; cell < count; ++cell) {
     CellTraction& traction = rows.tractions[cell];
-    const glm::dvec2 on_body(from.traction_x[cell], from.traction_y[cell]);
-    const glm::dvec2 moved(from.moved_x[cell], from.moved_y[cell]);
+    const double x = from.traction_x[cell];
+    const double y = from.traction_y[cell];
     const double pressure = from.pressure[cell];
-    const double depression = from.depression[cell];
-    const bool sticks = from.slips[cell] == 0.0;
-    rows.changes[cell] = {on_body + traction.traction, pressure - traction.pressure,
-                          moved - at.displacement, depression - at.depression};
-    at.displacement = moved;
-    at.depression = depression;
-    at.held = {(sticks ? from.target_x[cell] : moved.x) + support_x[cell],
-               (sticks ? from.target_y[cell] : moved.y) + support_y[cell]};
-    at.known = 1;
-    traction.traction = -on_body;
+    to.traction_x[cell] = x + traction.traction.x;
+    to.traction_y[cell] = y + traction.traction.y;
+    to.pressure[cell] = pressure - traction.pressure;
+    traction.traction = {-x, -y};
     traction.pressure = pressure;
     traction.coverage = pressure > 0.0 ? 1.0 : 0.0;
-    traction.sticks = sticks ? 1U : 0U;
+    traction.sticks = from.slips[cell] == 0.0 ? 1U : 0U;
   }
+  const PatchSurface& surface = rows.surface;
+  take_over(count, from.moved_x.data(), surface.moved_x.data(), to.moved_x.data());
+  take_over(count, from.moved_y.data(), surface.moved_y.data(), to.moved_y.data());
+  take_over(count, from.depression.data(), surface.depression.data(), to.depression.data());
+  const double* const slips = from.slips.data();
+  find_held(count, slips, from.target_x.data(), from.moved_x.data(), surface.held_x.data());
+  find_held(count, slips, from.target_y.data(), from.moved_y.data(), surface.held_y.data());
+  add_scaled(support_x.size(), 1.0, support_x.data(), surface.held_x.data());
+  add_scaled(support_y.size(), 1.0, support_y.data(), surface.held_y.data());
+  std::ranges::fill(surface.known, 1.0);
 }
 
 void set_targets(const RegionMotion& motion, const PatchPlaces& places,
-                 std::span<const double> support_x, std::span<const double> support_y,
                  const PatchColumns& columns) {
-  const std::size_t count = columns.target_x.size();
-  go_with_tool(count, motion, places.x.data(), places.y.data(), places.from_x.data(),
-               places.from_y.data(), columns.target_x.data(), columns.target_y.data());
-  take_off(count, places.known.data(), support_x.data(), columns.target_x.data());
-  take_off(count, places.known.data(), support_y.data(), columns.target_y.data());
+  go_with_tool(columns.target_x.size(), motion, places.x.data(), places.y.data(),
+               places.from_x.data(), places.from_y.data(), columns.target_x.data(),
+               columns.target_y.data());
 }
 
-PatchSums sum_cells(const PatchColumns& columns, const PatchPlaces& places, double cell_area,
-                    PatchWork& work) {
-  const std::size_t count = whole_lanes(columns.pressure.size());
-  const auto sum = [count](const auto& a, const auto& b) {
-    return dot(count, a.data(), b.data());
-  };
-  std::vector<double>& loaded = work.step_x;
-  std::vector<double>& sticks = work.step_y;
-  find_loaded(columns.pressure.size(), columns.pressure.data(), columns.slips.data(), loaded.data(),
-              sticks.data());
+void take_off_support(std::span<const double> known, std::span<const double> support_x,
+                      std::span<const double> support_y, const PatchColumns& columns) {
+  take_off(known.size(), known.data(), support_x.data(), columns.target_x.data());
+  take_off(known.size(), known.data(), support_y.data(), columns.target_y.data());
+}
+
+PatchSums sum_cells(const PatchColumns& columns, const PatchPlaces& places, double cell_area) {
+  std::array<Wide, kSums> totals;
+  add_up(whole_lanes(columns.pressure.size()), columns, places, totals);
   PatchSums sums;
-  const double pressure = sum(columns.pressure, loaded);
+  const double pressure = sum(totals[kPressure]);
   if (pressure <= 0.0) {
     return sums;
   }
-  std::vector<double>& by_x = work.moves_x;  // pressure times place
-  std::vector<double>& by_y = work.moves_y;
-  multiply(count, columns.pressure.data(), places.x.data(), by_x.data());
-  multiply(count, columns.pressure.data(), places.y.data(), by_y.data());
   sums.force = pressure * cell_area;
-  sums.center = glm::dvec2(sum(by_x, loaded), sum(by_y, loaded)) / pressure;
-  sums.height = sum(columns.pressure, places.height) / pressure;
-  sums.depth = sum(columns.pressure, columns.depth) / pressure;
-  sums.moved =
-      glm::dvec2(sum(columns.pressure, columns.moved_x), sum(columns.pressure, columns.moved_y)) /
-      pressure;
-  const double moment = sum(by_x, columns.moved_y) - sum(by_y, columns.moved_x) -
+  sums.center = glm::dvec2(sum(totals[kPlaceX]), sum(totals[kPlaceY])) / pressure;
+  sums.height = sum(totals[kHeight]) / pressure;
+  sums.depth = sum(totals[kDepth]) / pressure;
+  sums.moved = glm::dvec2(sum(totals[kMovedX]), sum(totals[kMovedY])) / pressure;
+  const double moment = sum(totals[kMoment]) -
                         pressure * (sums.center.x * sums.moved.y - sums.center.y * sums.moved.x);
   const double second_moment =
-      sum(by_x, places.x) + sum(by_y, places.y) - pressure * glm::dot(sums.center, sums.center);
+      sum(totals[kSecondMoment]) - pressure * glm::dot(sums.center, sums.center);
   sums.turn = second_moment > 0.0 ? moment / second_moment : 0.0;
   // The columns' tractions are on the body.
-  sums.friction =
-      -cell_area * glm::dvec2(sum(columns.traction_x, loaded), sum(columns.traction_y, loaded));
-  sums.couple =
-      -cell_area * (sum(places.x, columns.traction_y) - sum(places.y, columns.traction_x));
-  sums.loaded_cells = sum(loaded, loaded);
-  sums.stuck_cells = sum(sticks, loaded);
+  sums.friction = -cell_area * glm::dvec2(sum(totals[kTractionX]), sum(totals[kTractionY]));
+  sums.couple = -cell_area * sum(totals[kCouple]);
+  sums.loaded_cells = sum(totals[kLoaded]);
+  sums.stuck_cells = sum(totals[kStuck]);
   return sums;
+}
+
+double mean_pressure(const PatchColumns& columns) {
+  Wide total;
+  Wide loaded;
+  add_up(whole_lanes(columns.pressure.size()), columns.pressure.data(), total, loaded);
+  return sum(total) / larger(sum(loaded), 1.0);
 }
 
 }  // namespace torsion

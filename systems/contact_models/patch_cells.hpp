@@ -5,8 +5,9 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
-#include "ecs/components.hpp"
+#include "ecs/world.hpp"
 #include "systems/contact_models/patch_solver.hpp"
 
 namespace torsion {
@@ -16,35 +17,60 @@ struct PatchPlaces {
   std::span<double> x, y;            // m, grid: the cells' centres
   std::span<double> height;          // m, grid: of the tool
   std::span<double> from_x, from_y;  // m: where friction holds a cell, or how it is displaced
-  std::span<double> known;           // 1: that is with the body's motion, 0: the half-space's alone
 };
 
 inline constexpr double kNoContact = -1e30;  // m: depth of a cell that cannot touch
+
+/// The columns of the table `patch_cells`, rows of one region. Units and frames are those of
+/// PatchMovedX and so on (ecs/components/cells.hpp).
+struct PatchSurface {
+  std::span<double> moved_x, moved_y, depression;
+  std::span<double> held_x, held_y;
+  std::span<double> known;  // 1: what is held is with the body's motion, 0: nothing is held
+};
+struct PatchChange {
+  std::span<double> traction_x, traction_y, pressure;
+  std::span<double> moved_x, moved_y, depression;
+};
 
 /// The rows of one region's cells.
 struct PatchRows {
   std::span<const CellGeometry> geometry;
   std::span<CellTraction> tractions;
-  std::span<PatchCell> cells;
-  std::span<PatchChange> changes;
+  PatchSurface surface;
+  PatchChange change;
 };
 
-/// Fills the columns: what the last step left, carried on by `share` of what it changed. Sets what
+PatchRows patch_rows(World& world, Range cells);
+
+/// Where cells were held while their grid moves, m, (side x side).
+struct HeldBefore {
+  std::vector<double> x, y;
+};
+
+/// Fills the columns with what the last step left, except displacements.
+void load_cells(const PatchRows& rows, const Friction& friction, const PatchColumns& columns,
+                const PatchPlaces& places);
+
+/// Fills the displacements and carries all on by `share` of what the last step changed. Sets what
 /// of it is foreseen in `problem`.
-void load_cells(const PatchRows& rows, const Friction& friction, double share,
-                const PatchColumns& columns, const PatchPlaces& places, PatchWork& work,
-                PatchProblem& problem);
+void foresee_cells(const PatchRows& rows, double share, const PatchColumns& columns,
+                   PatchProblem& problem);
 
 /// Puts the columns back into the rows.
-/// @param support_x, support_y  m: the body's motion, which what is held is with
+/// @param support_x, support_y  m: the body's motion, which what is held is with; empty without
 void store_cells(const PatchColumns& columns, std::span<const double> support_x,
                  std::span<const double> support_y, const PatchRows& rows);
 
 /// Where the cells go if they stick: on from where they are held, with the tool.
-/// @param support_x, support_y  m: the body's motion, which what is sought is without
 void set_targets(const RegionMotion& motion, const PatchPlaces& places,
-                 std::span<const double> support_x, std::span<const double> support_y,
                  const PatchColumns& columns);
+
+/// Takes the body's motion off the targets that have it.
+/// @param known                 of PatchSurface
+/// @param support_x, support_y  m: the body's motion, which what is sought is without
+void take_off_support(std::span<const double> known, std::span<const double> support_x,
+                      std::span<const double> support_y, const PatchColumns& columns);
 
 /// Sums over the cells, in the grid's frame. What is weighted with the pressure is zero without.
 struct PatchSums {
@@ -61,7 +87,9 @@ struct PatchSums {
 };
 
 /// @param cell_area  m^2
-PatchSums sum_cells(const PatchColumns& columns, const PatchPlaces& places, double cell_area,
-                    PatchWork& work);
+PatchSums sum_cells(const PatchColumns& columns, const PatchPlaces& places, double cell_area);
+
+/// The mean of the pressures that there are, Pa; 0 without.
+double mean_pressure(const PatchColumns& columns);
 
 }  // namespace torsion

@@ -39,22 +39,6 @@ void sum_products(std::size_t count, const double* __restrict a, const double* _
 }
 
 TORSION_WIDEST
-void largest_and_sum(std::size_t count, const double* __restrict values, Lanes& __restrict most,
-                     Lanes& __restrict sums) {
-  Lanes high{};
-  Lanes total{};
-  for (std::size_t first = 0; first < count; first += kPatchLanes) {
-    for (std::size_t lane = 0; lane < kPatchLanes; ++lane) {
-      const double size = std::abs(values[first + lane]);
-      high[lane] = larger(size, high[lane]);
-      total[lane] += size;
-    }
-  }
-  most = high;
-  sums = total;
-}
-
-TORSION_WIDEST
 void add_to(std::size_t count, double scale, const double* __restrict values,
             double* __restrict to) {
   for (std::size_t k = 0; k < count; ++k) {
@@ -91,43 +75,119 @@ void overlaps(std::size_t count, const double* __restrict depth,
 }
 
 TORSION_WIDEST
-void keep(std::size_t count, const double* __restrict residual, double* __restrict asked) {
-  for (std::size_t k = 0; k < count; ++k) {
-    asked[k] = residual[k] != 0.0 ? asked[k] : 0.0;
-  }
-}
-
-TORSION_WIDEST
-void mix_steps(std::size_t count, const double* __restrict asked, double kept,
-               double* __restrict step) {
-  for (std::size_t k = 0; k < count; ++k) {
-    const double mixed = asked[k] + kept * step[k];
-    step[k] = asked[k] != 0.0 ? mixed : 0.0;
-  }
-}
-
-/// Goes `length` of a step of tractions of one direction.
-TORSION_WIDEST
-void change_along(std::size_t count, double length, const double* __restrict moves,
-                  double* __restrict step, double* __restrict traction, double* __restrict moved) {
-  for (std::size_t k = 0; k < count; ++k) {
-    const double way = length * step[k];
-    step[k] = way;
-    traction[k] += way;
-    moved[k] += length * moves[k];
-  }
-}
-
-TORSION_WIDEST
-void find_largest_pull(std::size_t count, const double* __restrict pressure,
-                       Lanes& __restrict most) {
+void find_largest(std::size_t count, const double* __restrict values, Lanes& __restrict most) {
   Lanes high{};
   for (std::size_t first = 0; first < count; first += kPatchLanes) {
     for (std::size_t lane = 0; lane < kPatchLanes; ++lane) {
-      high[lane] = larger(-pressure[first + lane], high[lane]);
+      high[lane] = larger(values[first + lane], high[lane]);
     }
   }
   most = high;
+}
+
+/// @param squares  residual times asked, out
+TORSION_WIDEST
+void keep(std::size_t count, const double* __restrict residual, double* __restrict asked,
+          Lanes& __restrict squares) {
+  Lanes sums{};
+  for (std::size_t first = 0; first < count; first += kPatchLanes) {
+    for (std::size_t lane = 0; lane < kPatchLanes; ++lane) {
+      const std::size_t k = first + lane;
+      const double kept = residual[k] != 0.0 ? asked[k] : 0.0;
+      asked[k] = kept;
+      sums[lane] += residual[k] * kept;
+    }
+  }
+  squares = sums;
+}
+
+/// @param slopes  residual times step, out
+TORSION_WIDEST
+void mix_steps(std::size_t count, const double* __restrict residual, const double* __restrict asked,
+               double kept, double* __restrict step, Lanes& __restrict slopes) {
+  Lanes sums{};
+  for (std::size_t first = 0; first < count; first += kPatchLanes) {
+    for (std::size_t lane = 0; lane < kPatchLanes; ++lane) {
+      const std::size_t k = first + lane;
+      const double mixed = asked[k] + kept * step[k];
+      const double way = asked[k] != 0.0 ? mixed : 0.0;
+      step[k] = way;
+      sums[lane] += residual[k] * way;
+    }
+  }
+  slopes = sums;
+}
+
+/// Goes `length` of a step of the pressures.
+/// @param most, sums  of the changes' sizes, out
+/// @param pulls       the largest negative pressures, out
+TORSION_WIDEST
+void change(std::size_t count, double length, const double* __restrict moves,
+            double* __restrict step, double* __restrict pressure, double* __restrict depression,
+            Lanes& __restrict most, Lanes& __restrict sums, Lanes& __restrict pulls) {
+  Lanes high{};
+  Lanes total{};
+  Lanes pull{};
+  for (std::size_t first = 0; first < count; first += kPatchLanes) {
+    for (std::size_t lane = 0; lane < kPatchLanes; ++lane) {
+      const std::size_t k = first + lane;
+      const double way = length * step[k];
+      const double to = pressure[k] + way;
+      step[k] = way;
+      pressure[k] = to;
+      depression[k] += length * moves[k];
+      high[lane] = larger(std::abs(way), high[lane]);
+      total[lane] += std::abs(way);
+      pull[lane] = larger(-to, pull[lane]);
+    }
+  }
+  most = high;
+  sums = total;
+  pulls = pull;
+}
+
+/// Goes `length` of a step of the tractions.
+TORSION_WIDEST
+void change_both(const TractionColumns& cells, double length, Lanes& __restrict most,
+                 Lanes& __restrict sums) {
+  Lanes high{};
+  Lanes total{};
+  const double* __restrict const moves_x = cells.moves_x;
+  const double* __restrict const moves_y = cells.moves_y;
+  double* __restrict const step_x = cells.step_x;
+  double* __restrict const step_y = cells.step_y;
+  double* __restrict const traction_x = cells.traction_x;
+  double* __restrict const traction_y = cells.traction_y;
+  double* __restrict const moved_x = cells.moved_x;
+  double* __restrict const moved_y = cells.moved_y;
+  for (std::size_t first = 0; first < cells.count; first += kPatchLanes) {
+    for (std::size_t lane = 0; lane < kPatchLanes; ++lane) {
+      const std::size_t k = first + lane;
+      const double way_x = length * step_x[k];
+      const double way_y = length * step_y[k];
+      step_x[k] = way_x;
+      step_y[k] = way_y;
+      traction_x[k] += way_x;
+      traction_y[k] += way_y;
+      moved_x[k] += length * moves_x[k];
+      moved_y[k] += length * moves_y[k];
+      high[lane] = larger(larger(std::abs(way_x), std::abs(way_y)), high[lane]);
+      total[lane] += std::abs(way_x) + std::abs(way_y);
+    }
+  }
+  most = high;
+  sums = total;
+}
+
+/// 1 for cells that can carry a load or have to lose one, else 0.
+TORSION_WIDEST
+void loads(std::size_t count, const double* __restrict friction, const double* __restrict pressure,
+           const double* __restrict traction_x, const double* __restrict traction_y,
+           double* __restrict loaded) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const double traction = larger(std::abs(traction_x[k]), std::abs(traction_y[k]));
+    loaded[k] = larger(friction[k] * pressure[k], traction) > 0.0 ? 1.0 : 0.0;
+  }
 }
 
 TORSION_WIDEST
@@ -270,11 +330,10 @@ double dot(std::size_t count, const double* a, const double* b) {
   return sum(lanes);
 }
 
-SweepChange size_of_change(std::size_t count, const double* values) {
+double largest(std::size_t count, const double* values) {
   Lanes most;
-  Lanes sums;
-  largest_and_sum(count, values, most, sums);
-  return {largest(most), sum(sums)};
+  find_largest(count, values, most);
+  return largest(most);
 }
 
 void add_scaled(std::size_t count, double scale, const double* values, double* to) {
@@ -295,24 +354,26 @@ void find_overlaps(std::size_t count, const double* depth, const double* depress
 }
 
 double keep_asked(std::size_t count, const double* residual, double* asked) {
-  keep(count, residual, asked);
-  return dot(count, residual, asked);
+  Lanes squares;
+  keep(count, residual, asked, squares);
+  return sum(squares);
 }
 
 double mix_pressures(std::size_t count, const double* residual, const double* asked, double kept,
                      double* step) {
-  mix_steps(count, asked, kept, step);
-  return dot(count, residual, step);
+  Lanes slopes;
+  mix_steps(count, residual, asked, kept, step, slopes);
+  return sum(slopes);
 }
 
 SweepChange change_pressures(std::size_t count, double length, const double* moves, double* step,
                              double* pressure, double* depression, double& pull) {
-  change_along(count, length, moves, step, pressure, depression);
-  const SweepChange result = size_of_change(count, step);
+  Lanes most;
+  Lanes sums;
   Lanes pulls;
-  find_largest_pull(count, pressure, pulls);
+  change(count, length, moves, step, pressure, depression, most, sums, pulls);
   pull = largest(pulls);
-  return result;
+  return {largest(most), sum(sums)};
 }
 
 void find_pulls(std::size_t count, const double* pressure, double* step) {
@@ -348,11 +409,15 @@ TractionStep mix_tractions(const TractionColumns& cells, const Mix& mix) {
 }
 
 SweepChange change_tractions(const TractionColumns& cells, double length) {
-  change_along(cells.count, length, cells.moves_x, cells.step_x, cells.traction_x, cells.moved_x);
-  change_along(cells.count, length, cells.moves_y, cells.step_y, cells.traction_y, cells.moved_y);
-  const SweepChange along_x = size_of_change(cells.count, cells.step_x);
-  const SweepChange along_y = size_of_change(cells.count, cells.step_y);
-  return {larger(along_x.largest, along_y.largest), along_x.sum + along_y.sum};
+  Lanes most;
+  Lanes sums;
+  change_both(cells, length, most, sums);
+  return {largest(most), sum(sums)};
+}
+
+void find_loads(std::size_t count, const double* friction, const double* pressure,
+                const double* traction_x, const double* traction_y, double* loaded) {
+  loads(count, friction, pressure, traction_x, traction_y, loaded);
 }
 
 }  // namespace torsion

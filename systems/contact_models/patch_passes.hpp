@@ -27,8 +27,8 @@ struct SweepChange {
 /// Sum of products.
 double dot(std::size_t count, const double* a, const double* b);
 
-/// Largest size of the values, and the sum of all.
-SweepChange size_of_change(std::size_t count, const double* values);
+/// The largest of the values and 0.
+double largest(std::size_t count, const double* values);
 
 /// to += scale * values; of any length.
 void add_scaled(std::size_t count, double scale, const double* values, double* to);
@@ -117,5 +117,9 @@ TractionStep mix_tractions(const TractionColumns& cells, const Mix& mix);
 
 /// Goes `length` of the step, which becomes the change.
 SweepChange change_tractions(const TractionColumns& cells, double length);
+
+/// Which cells can carry a load or have to lose one: 1, else 0. Of any length.
+void find_loads(std::size_t count, const double* friction, const double* pressure,
+                const double* traction_x, const double* traction_y, double* loaded);
 
 }  // namespace torsion

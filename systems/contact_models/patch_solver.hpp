@@ -44,7 +44,9 @@ struct PatchWork {
   // Cells with a traction
   std::vector<double> scales_x, scales_y;
   std::vector<std::uint32_t> places;    // as in InfluenceSources
+  std::uint32_t pairs = 0;              // likewise
   std::vector<std::uint32_t> cells;     // those that can carry a load
+  std::vector<std::uint32_t> slots;     // (cells) where their scales are
   std::vector<std::uint32_t> bordered;  // (cells) their rows among those with a border
   std::vector<double> listed;           // what TractionColumns are in
   void reserve(std::uint32_t side);

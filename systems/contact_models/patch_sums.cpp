@@ -14,10 +14,10 @@ void add(std::span<double> to, double scale, const std::vector<double>& values) 
 /// moves_x, moves_y = displacement along the surface by what has been gathered.
 void sum_tractions(const PatchProblem& problem, const InfluenceSources& sources, PatchWork& work) {
   const InfluenceTables& tables = problem.influences;
-  sum_tangential(
-      block_of(tables), sources,
-      {tables.of(InfluenceKind::kXX), tables.of(InfluenceKind::kXY), tables.of(InfluenceKind::kYY),
-       work.scales_x.data(), work.scales_y.data(), work.moves_x.data(), work.moves_y.data()});
+  sum_tangential(block_of(tables), sources,
+                 {tables.of(InfluenceKind::kXXLessXY), tables.of(InfluenceKind::kXY),
+                  tables.of(InfluenceKind::kYYLessXY), work.scales_x.data(), work.scales_y.data(),
+                  work.moves_x.data(), work.moves_y.data()});
 }
 
 /// So short that a call of memcpy would take longer.
@@ -38,14 +38,22 @@ InfluenceSources gather_sources(const PatchProblem& problem, std::span<const dou
                                 std::span<const double> change_y, PatchWork& work) {
   const std::uint32_t side = problem.influences.side;
   const auto width = static_cast<std::uint32_t>(problem.influences.width());
+  const std::uint32_t above = side > 1 ? side : 0;
   std::uint32_t count = 0;
-  std::uint32_t cell = 0;
-  for (std::uint32_t j = 0; j < side; ++j) {
+  for (std::uint32_t row = 0; row < side; row += 2) {
+    const PairedRows rows = paired_rows(side, row);
+    const double first = rows.first * problem.compliance;
+    const double second = rows.second * problem.compliance;
+    std::uint32_t cell = rows.row * side;
     for (std::uint32_t i = 0; i < side; ++i, ++cell) {
-      work.places[count] = j * width + i;
-      work.scales_x[count] = problem.compliance * change_x[cell];
-      work.scales_y[count] = problem.compliance * change_y[cell];
-      count += change_x[cell] != 0.0 || change_y[cell] != 0.0 ? 1U : 0U;
+      double* const x = &work.scales_x[std::size_t{2} * count];
+      double* const y = &work.scales_y[std::size_t{2} * count];
+      x[0] = first * change_x[cell];
+      x[1] = second * change_x[cell + above];
+      y[0] = first * change_y[cell];
+      y[1] = second * change_y[cell + above];
+      work.places[count] = rows.row * width + i;
+      count += x[0] != 0.0 || x[1] != 0.0 || y[0] != 0.0 || y[1] != 0.0 ? 1U : 0U;
     }
   }
   return {work.places.data(), count};
@@ -118,13 +126,19 @@ void move_by_pressure(const PatchProblem& problem, PatchWork& work) {
   const InfluenceTables& tables = problem.influences;
   const std::uint32_t side = tables.side;
   const auto width = static_cast<std::uint32_t>(tables.width());
+  const std::uint32_t above = side > 1 ? side + 2 : 0;
   std::uint32_t count = 0;
-  for (std::uint32_t j = 0; j < side; ++j) {
-    const double* const step = work.step.data() + std::size_t{j + 1} * (side + 2) + 1;
-    for (std::uint32_t i = 0; i < side; ++i) {
-      work.places[count] = j * width + i;
-      work.scales_x[count] = problem.compliance * step[i];
-      count += step[i] != 0.0 ? 1U : 0U;
+  for (std::uint32_t row = 0; row < side; row += 2) {
+    const PairedRows rows = paired_rows(side, row);
+    const double first = rows.first * problem.compliance;
+    const double second = rows.second * problem.compliance;
+    const double* step = work.step.data() + std::size_t{rows.row + 1} * (side + 2) + 1;
+    for (std::uint32_t i = 0; i < side; ++i, ++step) {
+      double* const scales = &work.scales_x[std::size_t{2} * count];
+      scales[0] = first * step[0];
+      scales[1] = second * step[above];
+      work.places[count] = rows.row * width + i;
+      count += scales[0] != 0.0 || scales[1] != 0.0 ? 1U : 0U;
     }
   }
   GridBlock block = block_of(tables);
@@ -139,19 +153,20 @@ void move_by_pressure(const PatchProblem& problem, PatchWork& work) {
   }
 }
 
-void move_by_traction(const PatchProblem& problem, PatchWork& work) {
-  const InfluenceTables& tables = problem.influences;
-  const std::uint32_t side = tables.side;
-  const std::uint32_t beside = static_cast<std::uint32_t>(tables.width()) - side;
-  std::uint32_t count = 0;
-  for (const std::uint32_t cell : work.cells) {
-    work.places[count] = cell + cell / side * beside;
-    work.scales_x[count] = problem.compliance * work.step_x[cell];
-    work.scales_y[count] = problem.compliance * work.step_y[cell];
-    ++count;
+void move_by_traction(const PatchProblem& problem, const double* step_x, const double* step_y,
+                      PatchWork& work) {
+  for (std::size_t k = 0; k < work.cells.size(); ++k) {
+    work.scales_x[work.slots[k]] = problem.compliance * step_x[k];
+    work.scales_y[work.slots[k]] = problem.compliance * step_y[k];
   }
-  sum_tractions(problem, {work.places.data(), count}, work);
-  add_support(problem.support, {work.step_x, work.step_y, {}}, {work.moves_x, work.moves_y, {}});
+  sum_tractions(problem, {work.places.data(), work.pairs}, work);
+  if (problem.support.response != nullptr) {
+    for (std::size_t k = 0; k < work.cells.size(); ++k) {
+      work.step_x[work.cells[k]] = step_x[k];
+      work.step_y[work.cells[k]] = step_y[k];
+    }
+    add_support(problem.support, {work.step_x, work.step_y, {}}, {work.moves_x, work.moves_y, {}});
+  }
 }
 
 }  // namespace torsion

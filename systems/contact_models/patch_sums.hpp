@@ -48,9 +48,10 @@ void add_depression(const PatchProblem& problem, const PatchColumns& columns,
 /// work.moves = depression by work.step.
 void move_by_pressure(const PatchProblem& problem, PatchWork& work);
 
-/// work.moves_x, moves_y = displacement along the surface by work.step_x, step_y, which only the
-/// cells of work.cells have.
-void move_by_traction(const PatchProblem& problem, PatchWork& work);
+/// work.moves_x, moves_y = displacement along the surface by steps of the tractions.
+/// @param step_x, step_y  Pa, (work.cells)
+void move_by_traction(const PatchProblem& problem, const double* step_x, const double* step_y,
+                      PatchWork& work);
 
 /// Sweeps over the pressures until they change by less than what ends it.
 PatchOutcome relax_pressures(const PatchProblem& problem, const PatchColumns& columns,

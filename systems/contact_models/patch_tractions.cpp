@@ -152,32 +152,46 @@ void ask_alone(const Inverses& inverses, const TractionColumns& cells) {
 /// What the step displaces.
 /// @return the energy's curvature along it, Pa m
 double move(const PatchProblem& problem, const TractionColumns& cells, PatchWork& work) {
-  for (std::size_t k = 0; k < work.cells.size(); ++k) {
-    work.step_x[work.cells[k]] = cells.step_x[k];
-    work.step_y[work.cells[k]] = cells.step_y[k];
-  }
-  move_by_traction(problem, work);
+  move_by_traction(problem, cells.step_x, cells.step_y, work);
   gather(work, work.cells, work.moves_x, cells.moves_x);
   gather(work, work.cells, work.moves_y, cells.moves_y);
   return dot(cells.count, cells.step_x, cells.moves_x) +
          dot(cells.count, cells.step_y, cells.moves_y);
 }
 
-/// Lists the cells that carry a load or have to lose one.
-void list_cells(const PatchColumns& columns, std::uint32_t side, PatchWork& work) {
-  work.cells.resize(columns.pressure.size());
-  std::size_t count = 0;
-  std::uint32_t cell = 0;
-  for (std::uint32_t j = 0; j < side; ++j) {
-    for (std::uint32_t i = 0; i < side; ++i, ++cell) {
-      const bool loaded = columns.friction[cell] * columns.pressure[cell] > 0.0 ||
-                          columns.traction_x[cell] != 0.0 || columns.traction_y[cell] != 0.0;
-      work.bordered[count] = (j + 1) * (side + 2) + i + 1;
+/// Lists the cells that carry a load or have to lose one, and the pairs that they are in.
+void list_cells(const PatchColumns& columns, const InfluenceTables& tables, PatchWork& work) {
+  const std::uint32_t side = tables.side;
+  const auto width = static_cast<std::uint32_t>(tables.width());
+  const std::uint32_t above = side > 1 ? side : 0;
+  find_loads(columns.pressure.size(), columns.friction.data(), columns.pressure.data(),
+             columns.traction_x.data(), columns.traction_y.data(), work.moves_x.data());
+  work.cells.resize(columns.pressure.size() + 1);
+  std::uint32_t count = 0;
+  std::uint32_t pairs = 0;
+  for (std::uint32_t row = 0; row < side; row += 2) {
+    const PairedRows rows = paired_rows(side, row);
+    std::uint32_t cell = rows.row * side;
+    std::uint32_t bordered = (rows.row + 1) * (side + 2) + 1;
+    for (std::uint32_t i = 0; i < side; ++i, ++cell, ++bordered) {
+      const std::uint32_t first = rows.first * work.moves_x[cell] > 0.0 ? 1 : 0;
+      const std::uint32_t second = rows.second * work.moves_x[cell + above] > 0.0 ? 1 : 0;
       work.cells[count] = cell;
-      count += loaded ? 1U : 0U;
+      work.bordered[count] = bordered;
+      work.slots[count] = 2 * pairs;
+      count += first;
+      work.cells[count] = cell + above;
+      work.bordered[count] = bordered + side + 2;
+      work.slots[count] = 2 * pairs + 1;
+      count += second;
+      work.places[pairs] = rows.row * width + i;
+      pairs += first | second;
     }
   }
   work.cells.resize(count);
+  work.pairs = pairs;
+  std::fill_n(work.scales_x.begin(), 2 * pairs, 0.0);
+  std::fill_n(work.scales_y.begin(), 2 * pairs, 0.0);
 }
 
 /// Fills the list's columns.
@@ -189,10 +203,10 @@ bool load(const PatchColumns& columns, const TractionColumns& cells, PatchWork& 
   }
   std::fill_n(cells.step_x, cells.count, 0.0);
   std::fill_n(cells.step_y, cells.count, 0.0);
-  for (std::vector<double>* each :
-       {&work.step_x, &work.step_y, &work.residual_x, &work.residual_y}) {
-    std::ranges::fill(*each, 0.0);
-  }
+  std::ranges::fill(work.residual_x, 0.0);
+  std::ranges::fill(work.residual_y, 0.0);
+  std::ranges::fill(work.step_x, 0.0);
+  std::ranges::fill(work.step_y, 0.0);
   bool outside = false;
   for (std::size_t k = 0; k < work.cells.size(); ++k) {
     const std::uint32_t cell = work.cells[k];
@@ -239,7 +253,7 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
   const Inverses inverses{local_inverse(tables, InfluenceKind::kXX),
                           local_inverse(tables, InfluenceKind::kYY),
                           1.0 / (softest * problem.compliance)};
-  list_cells(columns, tables.side, work);
+  list_cells(columns, tables, work);
   const TractionColumns cells = columns_of(work);
   bool outside = load(columns, cells, work);
   PatchOutcome outcome;

@@ -2,9 +2,9 @@
 
 #include <cstring>
 
-// The same loops in the widest vectors that the machine has. Every displacement is one chain of
-// sums over the sources in their order, and without fused multiply-add (CMakeLists.txt) all
-// versions give the same bits.
+// The same loops in the widest vectors that the machine has. Every displacement is made of
+// chains of sums over the sources in their order, and without fused multiply-add (CMakeLists.txt)
+// all versions give the same bits.
 #if defined(__x86_64__) && defined(__GNUC__)
 #define TORSION_WIDE_VERSIONS 1
 #endif
@@ -31,13 +31,20 @@ template <class Vector, std::uint32_t Rows>
 TORSION_INLINE void sum_block(const Sums& at, const double* table, const double* scales,
                               double* displacement) {
   Vector sums[Rows] = {};
-  for (std::uint32_t source = 0; source < at.sources.count; ++source) {
-    const double* const from = table - at.sources.places[source];
-    const double scale = scales[source];
-    for (std::uint32_t row = 0; row < Rows; ++row) {
+  for (std::uint32_t pair = 0; pair < at.sources.count; ++pair) {
+    // Row by row: what is a pair's first for one row is its second for the next.
+    const double* from = table - at.sources.places[pair] - at.block.width;
+    const double first = scales[2 * pair];
+    const double second = scales[2 * pair + 1];
+    for (std::uint32_t row = 0; row <= Rows; ++row, from += at.block.width) {
       Vector value;
-      std::memcpy(&value, from + std::size_t{row} * at.block.width, sizeof value);
-      sums[row] += scale * value;
+      std::memcpy(&value, from, sizeof value);
+      if (row > 0) {
+        sums[row - 1] += first * value;
+      }
+      if (row < Rows) {
+        sums[row] += second * value;
+      }
     }
   }
   for (std::uint32_t row = 0; row < Rows; ++row) {
@@ -49,23 +56,35 @@ template <class Vector, std::uint32_t Rows>
 TORSION_INLINE void sum_block(const Sums& at, const TangentialSums& of) {
   Vector sums_x[Rows] = {};
   Vector sums_y[Rows] = {};
-  for (std::uint32_t source = 0; source < at.sources.count; ++source) {
-    const std::uint32_t place = at.sources.places[source];
-    const double scale_x = of.scales_x[source];
-    const double scale_y = of.scales_y[source];
-    for (std::uint32_t row = 0; row < Rows; ++row) {
+  Vector sums_both[Rows] = {};
+  for (std::uint32_t pair = 0; pair < at.sources.count; ++pair) {
+    const std::size_t place = at.sources.places[pair] + at.block.width;
+    const double* const x = of.scales_x + std::size_t{2} * pair;
+    const double* const y = of.scales_y + std::size_t{2} * pair;
+    const double both[2] = {x[0] + y[0], x[1] + y[1]};
+    for (std::uint32_t row = 0; row <= Rows; ++row) {
       const std::size_t to = std::size_t{row} * at.block.width;
-      Vector xx;
-      Vector xy;
-      Vector yy;
-      std::memcpy(&xx, of.xx - place + to, sizeof xx);
-      std::memcpy(&xy, of.xy - place + to, sizeof xy);
-      std::memcpy(&yy, of.yy - place + to, sizeof yy);
-      sums_x[row] += scale_x * xx + scale_y * xy;
-      sums_y[row] += scale_x * xy + scale_y * yy;
+      Vector by_x;
+      Vector by_both;
+      Vector by_y;
+      std::memcpy(&by_x, of.x - place + to, sizeof by_x);
+      std::memcpy(&by_both, of.xy - place + to, sizeof by_both);
+      std::memcpy(&by_y, of.y - place + to, sizeof by_y);
+      if (row > 0) {
+        sums_x[row - 1] += x[0] * by_x;
+        sums_both[row - 1] += both[0] * by_both;
+        sums_y[row - 1] += y[0] * by_y;
+      }
+      if (row < Rows) {
+        sums_x[row] += x[1] * by_x;
+        sums_both[row] += both[1] * by_both;
+        sums_y[row] += y[1] * by_y;
+      }
     }
   }
   for (std::uint32_t row = 0; row < Rows; ++row) {
+    sums_x[row] += sums_both[row];
+    sums_y[row] += sums_both[row];
     std::memcpy(of.moved_x + std::size_t{row} * at.block.pitch, &sums_x[row], sizeof(Vector));
     std::memcpy(of.moved_y + std::size_t{row} * at.block.pitch, &sums_y[row], sizeof(Vector));
   }
@@ -96,8 +115,8 @@ TORSION_INLINE void sum_rows(const Sums& at, const double* table, const double* 
 
 TORSION_INLINE TangentialSums shifted(const TangentialSums& of, std::size_t table,
                                       std::size_t cell) {
-  return {of.xx + table, of.xy + table,     of.yy + table,    of.scales_x,
-          of.scales_y,   of.moved_x + cell, of.moved_y + cell};
+  return {of.x + table, of.xy + table,     of.y + table,     of.scales_x,
+          of.scales_y,  of.moved_x + cell, of.moved_y + cell};
 }
 
 template <std::uint32_t Lanes, std::uint32_t Rows>
@@ -135,7 +154,7 @@ TORSION_INLINE void sum_all(const Sums& at, const double* table, const double* s
 
 template <std::uint32_t Lanes>
 TORSION_INLINE void sum_all(const Sums& at, const TangentialSums& of) {
-  // Half as many rows: there are two sums each, and narrow vectors run out of registers.
+  // Half as many rows: there are three sums each, and narrow vectors run out of registers.
   constexpr std::uint32_t kPairs = Lanes >= 8 ? kRows : kRows / 2;
   std::uint32_t row = 0;
   for (; row + kPairs <= at.block.side; row += kPairs) {
@@ -167,6 +186,10 @@ __attribute__((target("avx2"))) void sum_wide(const Sums& at, const TangentialSu
 
 void sum_influence(const GridBlock& block, const InfluenceSources& sources, const double* table,
                    const double* scales, double* displacement) {
+  if (block.side == 1) {  // there is no row for a pair's second
+    displacement[0] = sources.count > 0 ? scales[0] * table[block.self] : 0.0;
+    return;
+  }
   const Sums at{block, sources};
 #ifdef TORSION_WIDE_VERSIONS
   if (__builtin_cpu_supports("avx512f")) {
@@ -181,6 +204,11 @@ void sum_influence(const GridBlock& block, const InfluenceSources& sources, cons
 
 void sum_tangential(const GridBlock& block, const InfluenceSources& sources,
                     const TangentialSums& sums) {
+  if (block.side == 1) {
+    sum_influence(block, sources, sums.x, sums.scales_x, sums.moved_x);
+    sum_influence(block, sources, sums.y, sums.scales_y, sums.moved_y);
+    return;
+  }
   const Sums at{block, sources};
 #ifdef TORSION_WIDE_VERSIONS
   if (__builtin_cpu_supports("avx512f")) {

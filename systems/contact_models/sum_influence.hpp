@@ -16,27 +16,51 @@ struct GridBlock {
   std::size_t self = 0;     // index in a table
 };
 
-/// Cells with a traction.
+/// Cells with a traction, in pairs: one and the next row's in the same column, which share what is
+/// read of a table.
 struct InfluenceSources {
-  const std::uint32_t* places = nullptr;  // row times the tables' width plus column, each
-  std::uint32_t count = 0;
+  const std::uint32_t* places = nullptr;  // (count) row times the tables' width plus column of the
+                                          // pair's first
+  std::uint32_t count = 0;                // pairs
 };
+
+/// How many pairs the cells of a grid make at most.
+constexpr std::size_t most_pairs(std::uint32_t side) {
+  return std::size_t{side} * ((std::size_t{side} + 1) / 2);
+}
+
+/// The pairs of a row of cells and the next one. A last row that is left alone is paired with the
+/// one before, whose cells have been in a pair already and count for nothing here.
+struct PairedRows {
+  std::uint32_t row = 0;  // the first one
+  double first = 1.0;     // what its cells count for
+  double second = 1.0;
+};
+/// @param row  even
+constexpr PairedRows paired_rows(std::uint32_t side, std::uint32_t row) {
+  if (row + 1 < side) {
+    return {row, 1.0, 1.0};
+  }
+  return side == 1 ? PairedRows{0, 1.0, 0.0} : PairedRows{row - 1, 0.0, 1.0};
+}
 
 /// displacement = the sum over the sources of scale times table, at its first of `side` rows and
 /// the next ones, each `pitch` after the one before.
-/// @param scales        (sources.count)
+/// @param scales        (2 sources.count)
 /// @param displacement  (side x side)
 void sum_influence(const GridBlock& block, const InfluenceSources& sources, const double* table,
                    const double* scales, double* displacement);
 
-/// Both components of a tangential displacement by both of the tractions.
-/// @param xx, xy, yy            tables
-/// @param scales_x, scales_y    (sources.count)
+/// Both components of a tangential displacement by both of the tractions:
+/// u_x = sum of (xx - xy) q_x + s, u_y = sum of (yy - xy) q_y + s with s = sum of xy (q_x + q_y),
+/// which takes three products instead of four.
+/// @param x, xy, y              tables: xx - xy, xy, yy - xy
+/// @param scales_x, scales_y    (2 sources.count)
 /// @param moved_x, moved_y      (side x side) out
 struct TangentialSums {
-  const double* xx = nullptr;
+  const double* x = nullptr;
   const double* xy = nullptr;
-  const double* yy = nullptr;
+  const double* y = nullptr;
   const double* scales_x = nullptr;
   const double* scales_y = nullptr;
   double* moved_x = nullptr;

@@ -85,7 +85,7 @@ World small_world(unsigned seed) {
   capacities.influences = 3;
   capacities.patch_bodies = 1;
   capacities.mdr_bodies = 1;
-  capacities.layer_influences = 336;
+  capacities.layer_influences = 448;
   capacities.ports = 3;
   capacities.compliance_values = 162;
   Settings settings;

@@ -34,6 +34,10 @@ double point_load(InfluenceKind kind, double nu, double x, double y) {
       return (1.0 - 2.0 * nu) * x / (4.0 * kPi * square);
     case InfluenceKind::kZY:
       return (1.0 - 2.0 * nu) * y / (4.0 * kPi * square);
+    case InfluenceKind::kXXLessXY:
+      return ((1.0 - nu) / distance + nu * x * (x - y) / cube) / (2.0 * kPi);
+    case InfluenceKind::kYYLessXY:
+      return ((1.0 - nu) / distance + nu * y * (y - x) / cube) / (2.0 * kPi);
   }
   return 0.0;
 }
@@ -60,8 +64,17 @@ double integrated(InfluenceKind kind, double nu, const Rectangle& cell, double x
 /// singularity, and what is left is the ray's length times the kernel at distance 1. What is odd
 /// along one axis cancels.
 double integrated_at_centre(InfluenceKind kind, double nu, const Rectangle& cell) {
-  if (kind != InfluenceKind::kZZ && kind != InfluenceKind::kXX && kind != InfluenceKind::kYY) {
-    return 0.0;
+  switch (kind) {
+    case InfluenceKind::kXY:
+    case InfluenceKind::kZX:
+    case InfluenceKind::kZY:
+      return 0.0;
+    case InfluenceKind::kXXLessXY:
+      return integrated_at_centre(InfluenceKind::kXX, nu, cell);
+    case InfluenceKind::kYYLessXY:
+      return integrated_at_centre(InfluenceKind::kYY, nu, cell);
+    default:
+      break;
   }
   const double corner = std::atan2(cell.half_y, cell.half_x);
   const auto ray = [&](double angle) {
@@ -73,8 +86,9 @@ double integrated_at_centre(InfluenceKind kind, double nu, const Rectangle& cell
                 reference::integrate(reference::gauss_legendre(40, corner, 0.5 * kPi), ray));
 }
 
-constexpr InfluenceKind kKinds[] = {InfluenceKind::kZZ, InfluenceKind::kXX, InfluenceKind::kXY,
-                                    InfluenceKind::kYY, InfluenceKind::kZX, InfluenceKind::kZY};
+constexpr InfluenceKind kKinds[] = {
+    InfluenceKind::kZZ, InfluenceKind::kXX, InfluenceKind::kXY,       InfluenceKind::kYY,
+    InfluenceKind::kZX, InfluenceKind::kZY, InfluenceKind::kXXLessXY, InfluenceKind::kYYLessXY};
 
 std::vector<double> filled(double nu) {
   std::vector<double> values(influence_count(kSide));

@@ -32,7 +32,7 @@ double worst_difference(const Hand& hand) {
   const auto influences =
       world.influences.rows<Influence>(world.bodies.at<OwnedRows>(region.body).influences);
   const auto tractions = world.cells.rows<CellTraction>(region.cells);
-  const auto held = world.patch_cells.rows<PatchCell>(region.cells);
+  const auto held = world.patch_cells.rows<PatchDepression>(region.cells);
   std::vector<std::vector<double>> columns(11, std::vector<double>(tractions.size(), 0.0));
   for (std::size_t cell = 0; cell < tractions.size(); ++cell) {
     columns[4][cell] = tractions[cell].pressure;
@@ -52,7 +52,7 @@ double worst_difference(const Hand& hand) {
                  work);
   double worst = 0.0;
   for (std::size_t cell = 0; cell < tractions.size(); ++cell) {
-    worst = std::max(worst, std::abs(columns[7][cell] - held[cell].depression));
+    worst = std::max(worst, std::abs(columns[7][cell] - held[cell].value));
   }
   return worst / world.regions.at<RegionGeometry>(0).largest_depth;
 }

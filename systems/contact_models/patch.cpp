@@ -18,9 +18,11 @@ namespace {
 
 // Of a region that begins or whose grid moved, at most: sweeps of either, of both in all rounds
 // together, and rounds of pressures and tractions in turn. What is left to do then is done in the
-// next steps, of which each has its own sweeps.
+// next steps, of which each has its own sweeps. Where there are more such regions in a step they
+// share out what there is, or the step would be long.
 constexpr std::uint32_t kSweepsAnew = 8;
 constexpr std::uint32_t kSweepsOfRounds = 12;
+constexpr std::uint32_t kSweepsOfAll = 16;
 constexpr std::uint32_t kRoundsAnew = 8;
 constexpr double kSkipAnew = 1e-5;      // the residual that will do then
 constexpr double kMostForesight = 1.5;  // of the last step's change
@@ -135,7 +137,8 @@ void add_motion_of_body(const Patch& patch, double sign) {
 
 /// After the grid has moved, or at a region's beginning: displacements of the tractions that are
 /// there.
-void start_anew(Patch& patch) {
+/// @param regions_anew  how many such regions the step has
+void start_anew(Patch& patch, std::uint32_t regions_anew) {
   const PatchColumns& columns = patch.columns;
   for (std::size_t cell = 0; cell < patch.rows.tractions.size(); ++cell) {
     if (columns.pressure[cell] <= 0.0 || columns.depth[cell] == kNoContact) {
@@ -158,8 +161,10 @@ void start_anew(Patch& patch) {
     patch.rows.tractions[cell].traction =
         -glm::dvec2(columns.traction_x[cell], columns.traction_y[cell]);
   }
-  patch.problem.sweeps = std::max(patch.problem.sweeps, kSweepsAnew);
-  patch.problem.sweeps_of_rounds = std::max(patch.problem.sweeps, kSweepsOfRounds);
+  const std::uint32_t least = patch.world.settings.at<Settings>(0).sweeps;
+  const std::uint32_t share = kSweepsOfAll / regions_anew;
+  patch.problem.sweeps = std::max(least, std::min(kSweepsAnew, share));
+  patch.problem.sweeps_of_rounds = std::max(least, std::min(kSweepsOfRounds, share));
   patch.problem.rounds = kRoundsAnew;
   patch.problem.skip = kSkipAnew;
   patch.problem.settled = 0.0;
@@ -243,16 +248,21 @@ void summarize(const Patch& patch, const PatchSums& sums) {
   carrier.rotation = patch.frame.normal * turn;
 }
 
-void solve_region(StepContext& context, std::uint32_t region) {
+/// True where the last step's displacements are no start.
+bool is_anew(const PatchState& state) {
+  return state.started == 0 || state.moved != 0;
+}
+
+void solve_region(StepContext& context, std::uint32_t region, std::uint32_t regions_anew) {
   Patch patch = patch_of(context, region);
-  const bool anew = patch.state.started == 0 || patch.state.moved != 0;
+  const bool anew = is_anew(patch.state);
   const std::uint32_t body = patch.world.regions.at<RegionIdentity>(region).body;
   load_cells(patch.rows, patch.world.bodies.at<Friction>(body), patch.columns, patch.places);
   const double depth = largest(whole_lanes(patch.columns.depth.size()), patch.columns.depth.data());
   const double deepened = depth - patch.state.depth;
   foresee_cells(patch.rows, anew ? 0.0 : foresight(patch, deepened), patch.columns, patch.problem);
   if (anew) {
-    start_anew(patch);
+    start_anew(patch, std::max(regions_anew, 1U));
   } else {
     let_go_cells(patch.problem, patch.columns, patch.work, kNoContact);
   }
@@ -297,9 +307,16 @@ void solve_region(StepContext& context, std::uint32_t region) {
 
 void patch_forces(StepContext& context) {
   World& world = context.world;
+  std::uint32_t anew = 0;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    anew += has_patch(world, world.regions.at<RegionIdentity>(region)) &&
+                    is_anew(world.regions.at<PatchState>(region))
+                ? 1U
+                : 0U;
+  }
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
     if (has_patch(world, world.regions.at<RegionIdentity>(region))) {
-      solve_region(context, region);
+      solve_region(context, region, anew);
     }
   }
 }

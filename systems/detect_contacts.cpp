@@ -120,6 +120,18 @@ bool is_local_minimum(const Search& search, const Candidate& candidate) {
   return true;
 }
 
+/// Whether no neighbour of a sample is in contact.
+bool stands_alone(const Search& search, const Candidate& candidate) {
+  const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(candidate.sample);
+  return std::ranges::none_of(sample.neighbours, [&search](std::uint32_t neighbour) {
+    if (neighbour == kNoRow) {
+      return false;
+    }
+    const SampleState& state = search.scratch.sample_states[search.tool.samples.first + neighbour];
+    return state.stamp == search.scratch.stamp && state.distance < 0.0;
+  });
+}
+
 /// Slides a point on the tool's surface towards the body, with step halving.
 /// @return the point, m, body, and its distance to the body
 ContactPoint descend(const Search& search, const Candidate& start) {
@@ -195,12 +207,16 @@ void find_points(Search& search) {
   find_candidates(search);
   Scratch& scratch = search.scratch;
   for (const Candidate& candidate : scratch.candidates) {
-    if (candidate.distance < 0.0) {
+    // A sample alone in contact is told by the lowest point near it, as one beside the contact is:
+    // where it comes into contact nothing jumps, and two samples at one contact's rim that are no
+    // neighbours meet at its bottom instead of standing for a contact each.
+    const bool inside = candidate.distance < 0.0;
+    if (inside && !stands_alone(search, candidate)) {
       const glm::dvec3& position =
           search.world.samples.at<SurfaceSample>(candidate.sample).position;
       add_point(scratch, candidate.sample,
                 {to_outer(search.tool_in_body, position), -candidate.distance, 0});
-    } else if (is_local_minimum(search, candidate)) {
+    } else if (inside || is_local_minimum(search, candidate)) {
       const ContactPoint lowest = descend(search, candidate);
       if (lowest.depth > 0.0) {
         add_point(scratch, candidate.sample, lowest);

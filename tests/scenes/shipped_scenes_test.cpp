@@ -1,6 +1,7 @@
 // Every scene that ships loads without a problem, is prepared, and steps.
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -66,6 +67,32 @@ TEST_P(ShippedSceneTest, LoadsPreparesAndSteps) {
   const Clock& clock = simulation.world.clock.at<Clock>(0);
   EXPECT_EQ(clock.step, 10U);
   EXPECT_EQ(clock.faults_ever, 0U);
+}
+
+TEST(ShippedScenesTest, AMalletThatJustTouchesHasOneContact) {
+  // Two samples of its head that are no neighbours come into contact one after the other, 4.7 mm
+  // apart: each stood for a contact of its own, with the whole force twice.
+  const auto path = std::filesystem::path(source_folder()) / "scenes/mallet_on_ellipsoid.gltf";
+  const LoadedScene loaded = load_gltf(path);
+  ASSERT_TRUE(loaded.scene.has_value()) << to_text(loaded.problems);
+  PrepareOptions options;
+  options.contact_model = ContactModel::kMdr;
+  options.body_model = BodyModel::kNone;
+  Result<Simulation> prepared = prepare(*loaded.scene, options);
+  ASSERT_TRUE(prepared.ok()) << prepared.error().text;
+  Simulation& simulation = prepared.value();
+  const World& world = simulation.world;
+  double before = 0.0;
+  for (int i = 0; i < 400; ++i) {
+    const double depth = 5e-7 * (i + 0.5) - 1e-5;  // m: of its lowest point
+    const std::array<Pose, 1> poses = {{{{0.0, 0.1 - depth, 0.0}, {1.0, 0.0, 0.0, 0.0}}}};
+    step(simulation, poses);
+    ASSERT_EQ(world.regions.size(), depth > 0.0 ? 1U : 0U) << depth << " m deep";
+    const double force = world.tools.at<ToolWrench>(0).total.force.y;
+    EXPECT_GE(force, before);
+    before = force;
+  }
+  EXPECT_GT(before, 1.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ShippedSceneTest, testing::ValuesIn(shipped_scenes()), test_name);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include <fmt/format.h>
@@ -128,8 +129,8 @@ void add_device_options(CLI::App& subcommand, DeviceChoice& choice) {
       .add_option_function<std::string>(
           "--hold",
           [&choice](const std::string& name) {
-            const auto found = std::ranges::find(kToolHoldNames, name);
-            choice.hold = static_cast<ToolHold>(found - kToolHoldNames.begin());
+            const auto* const found = std::ranges::find(kToolHoldNames, name);
+            choice.hold = static_cast<ToolHold>(std::distance(kToolHoldNames.begin(), found));
           },
           "How the tool is held: massless (where coupling and contact balance), with its mass, or "
           "directly (it is where the hand is; the hand feels the contact) [massless]")

@@ -31,7 +31,7 @@ template <class Vector, std::uint32_t Rows>
 TORSION_INLINE void sum_block(const Sums& at, const double* table, const double* scales,
                               double* displacement) {
   Vector sums[Rows] = {};
-  for (std::uint32_t pair = 0; pair < at.sources.count; ++pair) {
+  for (std::size_t pair = 0; pair < at.sources.count; ++pair) {
     // Row by row: what is a pair's first for one row is its second for the next.
     const double* from = table - at.sources.places[pair] - at.block.width;
     const double first = scales[2 * pair];
@@ -57,7 +57,7 @@ TORSION_INLINE void sum_block(const Sums& at, const TangentialSums& of) {
   Vector sums_x[Rows] = {};
   Vector sums_y[Rows] = {};
   Vector sums_both[Rows] = {};
-  for (std::uint32_t pair = 0; pair < at.sources.count; ++pair) {
+  for (std::size_t pair = 0; pair < at.sources.count; ++pair) {
     const std::size_t place = at.sources.places[pair] + at.block.width;
     const double* const x = of.scales_x + std::size_t{2} * pair;
     const double* const y = of.scales_y + std::size_t{2} * pair;

@@ -11,7 +11,8 @@
 namespace torsion {
 
 /// Displacement (first letter) by traction (second letter); z points into the body.
-/// The last two are differences of others, for sum_tangential.
+/// The last two are differences of others: u_x = sum of (xx - xy) q_x + s, u_y = sum of
+/// (yy - xy) q_y + s with s = sum of xy (q_x + q_y) takes three products instead of four.
 enum class InfluenceKind : std::uint32_t { kZZ, kXX, kXY, kYY, kZX, kZY, kXXLessXY, kYYLessXY };
 inline constexpr std::uint32_t kSolvedKinds = 6;
 inline constexpr std::uint32_t kInfluenceKinds = 8;

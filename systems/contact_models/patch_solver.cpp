@@ -63,12 +63,13 @@ void PatchWork::reserve(std::uint32_t side) {
   for (auto* each : {&rigid_x, &rigid_y, &rigid_asks_x, &rigid_asks_y}) {
     each->fill(std::vector<double>(with_border, 0.0));
   }
-  for (std::vector<double>* each :
-       {&step_x, &step_y, &moves_x, &moves_y, &change_pressure, &change_x, &change_y}) {
+  for (std::vector<double>* each : {&step_x, &step_y, &moves_x, &moves_y, &moves_both,
+                                    &change_pressure, &change_x, &change_y}) {
     each->assign(whole_lanes(count), 0.0);
   }
   scales_x.assign(2 * most_pairs(side), 0.0);
   scales_y.assign(2 * most_pairs(side), 0.0);
+  scales.assign(2 * most_pairs(side), 0.0);
   places.assign(most_pairs(side), 0);
   bordered.assign(count + 1, 0);  // one more: what does not count is written, too
   slots.assign(count + 1, 0);

@@ -40,9 +40,10 @@ struct PatchWork {
   // (side x side), and zeros up to whole lanes
   std::vector<double> step_x, step_y;                       // Pa: the last change
   std::vector<double> moves_x, moves_y;                     // m: what it displaces
+  std::vector<double> moves_both;                           // m: what both components share
   std::vector<double> change_pressure, change_x, change_y;  // Pa, in this solution
   // Cells with a traction
-  std::vector<double> scales_x, scales_y;
+  std::vector<double> scales_x, scales_y, scales;
   std::vector<std::uint32_t> places;    // as in InfluenceSources
   std::uint32_t pairs = 0;              // likewise
   std::vector<std::uint32_t> cells;     // those that can carry a load

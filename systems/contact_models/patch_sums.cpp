@@ -11,13 +11,26 @@ void add(std::span<double> to, double scale, const std::vector<double>& values) 
   }
 }
 
+/// displacement = what the sources do by one table.
+void sum_of(const PatchProblem& problem, const InfluenceSources& sources, InfluenceKind kind,
+            const std::vector<double>& scales, std::vector<double>& displacement) {
+  sum_influence(block_of(problem.influences), sources, problem.influences.of(kind), scales.data(),
+                nullptr, displacement.data());
+}
+
 /// moves_x, moves_y = displacement along the surface by what has been gathered.
 void sum_tractions(const PatchProblem& problem, const InfluenceSources& sources, PatchWork& work) {
   const InfluenceTables& tables = problem.influences;
-  sum_tangential(block_of(tables), sources,
-                 {tables.of(InfluenceKind::kXXLessXY), tables.of(InfluenceKind::kXY),
-                  tables.of(InfluenceKind::kYYLessXY), work.scales_x.data(), work.scales_y.data(),
-                  work.moves_x.data(), work.moves_y.data()});
+  const GridBlock block = block_of(tables);
+  for (std::size_t k = 0; k < std::size_t{2} * sources.count; ++k) {
+    work.scales[k] = work.scales_x[k] + work.scales_y[k];
+  }
+  const double* const both = work.moves_both.data();
+  sum_of(problem, sources, InfluenceKind::kXY, work.scales, work.moves_both);
+  sum_influence(block, sources, tables.of(InfluenceKind::kXXLessXY), work.scales_x.data(), both,
+                work.moves_x.data());
+  sum_influence(block, sources, tables.of(InfluenceKind::kYYLessXY), work.scales_y.data(), both,
+                work.moves_y.data());
 }
 
 /// So short that a call of memcpy would take longer.
@@ -75,13 +88,10 @@ void from_border(std::uint32_t side, std::span<const double> bordered, std::span
 
 void add_sideways(const PatchProblem& problem, const PatchColumns& columns,
                   std::span<const double> change, PatchWork& work) {
-  const InfluenceTables& tables = problem.influences;
   const InfluenceSources sources = gather_sources(problem, change, change, work);
   // Minus: by reciprocity (influence.hpp).
-  sum_influence(block_of(tables), sources, tables.of(InfluenceKind::kZX), work.scales_x.data(),
-                work.moves_x.data());
-  sum_influence(block_of(tables), sources, tables.of(InfluenceKind::kZY), work.scales_x.data(),
-                work.moves_y.data());
+  sum_of(problem, sources, InfluenceKind::kZX, work.scales_x, work.moves_x);
+  sum_of(problem, sources, InfluenceKind::kZY, work.scales_x, work.moves_y);
   add(columns.moved_x, -1.0, work.moves_x);
   add(columns.moved_y, -1.0, work.moves_y);
 }
@@ -89,22 +99,17 @@ void add_sideways(const PatchProblem& problem, const PatchColumns& columns,
 void add_depression(const PatchProblem& problem, const PatchColumns& columns,
                     std::span<const double> change_x, std::span<const double> change_y,
                     PatchWork& work) {
-  const InfluenceTables& tables = problem.influences;
   const InfluenceSources sources = gather_sources(problem, change_x, change_y, work);
-  sum_influence(block_of(tables), sources, tables.of(InfluenceKind::kZX), work.scales_x.data(),
-                work.moves_x.data());
-  sum_influence(block_of(tables), sources, tables.of(InfluenceKind::kZY), work.scales_y.data(),
-                work.moves_y.data());
+  sum_of(problem, sources, InfluenceKind::kZX, work.scales_x, work.moves_x);
+  sum_of(problem, sources, InfluenceKind::kZY, work.scales_y, work.moves_y);
   add(columns.depression, 1.0, work.moves_x);
   add(columns.depression, 1.0, work.moves_y);
 }
 
 void add_pressure(const PatchProblem& problem, const PatchColumns& columns,
                   std::span<const double> change, PatchWork& work) {
-  const InfluenceTables& tables = problem.influences;
   const InfluenceSources sources = gather_sources(problem, change, change, work);
-  sum_influence(block_of(tables), sources, tables.of(InfluenceKind::kZZ), work.scales_x.data(),
-                work.moves_x.data());
+  sum_of(problem, sources, InfluenceKind::kZZ, work.scales_x, work.moves_x);
   add(columns.depression, 1.0, work.moves_x);
   if (problem.coupled) {
     add_sideways(problem, columns, change, work);
@@ -144,7 +149,7 @@ void move_by_pressure(const PatchProblem& problem, PatchWork& work) {
   GridBlock block = block_of(tables);
   block.pitch = side + 2;
   sum_influence(block, {work.places.data(), count}, tables.of(InfluenceKind::kZZ),
-                work.scales_x.data(), work.moves.data() + side + 3);
+                work.scales_x.data(), nullptr, work.moves.data() + side + 3);
   if (problem.support.response != nullptr) {
     from_border(side, work.step, work.step_x);
     from_border(side, work.moves, work.moves_x);

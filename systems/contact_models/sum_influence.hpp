@@ -44,29 +44,12 @@ constexpr PairedRows paired_rows(std::uint32_t side, std::uint32_t row) {
   return side == 1 ? PairedRows{0, 1.0, 0.0} : PairedRows{row - 1, 0.0, 1.0};
 }
 
-/// displacement = the sum over the sources of scale times table, at its first of `side` rows and
-/// the next ones, each `pitch` after the one before.
+/// displacement = start and the sum over the sources of scale times table, at its first of `side`
+/// rows and the next ones, each `pitch` after the one before.
 /// @param scales        (2 sources.count)
-/// @param displacement  (side x side)
+/// @param start         as displacement; null: zeros
+/// @param displacement  (side x side) out, elsewhere than `start`
 void sum_influence(const GridBlock& block, const InfluenceSources& sources, const double* table,
-                   const double* scales, double* displacement);
-
-/// Both components of a tangential displacement by both of the tractions:
-/// u_x = sum of (xx - xy) q_x + s, u_y = sum of (yy - xy) q_y + s with s = sum of xy (q_x + q_y),
-/// which takes three products instead of four.
-/// @param x, xy, y              tables: xx - xy, xy, yy - xy
-/// @param scales_x, scales_y    (2 sources.count)
-/// @param moved_x, moved_y      (side x side) out
-struct TangentialSums {
-  const double* x = nullptr;
-  const double* xy = nullptr;
-  const double* y = nullptr;
-  const double* scales_x = nullptr;
-  const double* scales_y = nullptr;
-  double* moved_x = nullptr;
-  double* moved_y = nullptr;
-};
-void sum_tangential(const GridBlock& block, const InfluenceSources& sources,
-                    const TangentialSums& sums);
+                   const double* scales, const double* start, double* displacement);
 
 }  // namespace torsion

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
 #include <glm/geometric.hpp>
 
@@ -14,13 +13,6 @@
 
 namespace torsion {
 namespace {
-
-using Wide = double __attribute__((vector_size(sizeof(double) * kPatchLanes)));
-
-double sum(const Wide& lanes) {
-  return ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) +
-         ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]));
-}
 
 template <class T>
 std::span<double> values_of(std::span<T> rows) {
@@ -95,13 +87,9 @@ void foresee(std::size_t count, double share, const double* __restrict change,
   Wide total{};
   std::size_t cell = 0;
   for (; cell + kPatchLanes <= count; cell += kPatchLanes) {
-    Wide by;
-    Wide value;
-    std::memcpy(&by, change + cell, sizeof by);
-    std::memcpy(&value, to + cell, sizeof value);
-    value += share * by;
+    const Wide by = lanes_at(change + cell);
+    lanes_at(to + cell) += share * by;
     total += by < 0.0 ? -by : by;
-    std::memcpy(to + cell, &value, sizeof value);
   }
   for (std::size_t lane = 0; cell < count; ++cell, ++lane) {
     to[cell] += share * change[cell];
@@ -114,7 +102,7 @@ void foresee(std::size_t count, double share, const double* __restrict change,
 double foresee(double share, std::span<const double> change, std::span<double> to) {
   Wide sums;
   foresee(change.size(), share, change.data(), to.data(), sums);
-  return sum(sums);
+  return sum_of(sums);
 }
 
 /// What sum_cells adds up, in this order.
@@ -143,34 +131,21 @@ void add_up(std::size_t count, const PatchColumns& columns, const PatchPlaces& p
   const Wide none{};
   std::array<Wide, kSums> sums{};
   for (std::size_t cell = 0; cell < count; cell += kPatchLanes) {
-    Wide pressure;
-    Wide x;
-    Wide y;
-    Wide height;
-    Wide depth;
-    Wide moved_x;
-    Wide moved_y;
-    Wide traction_x;
-    Wide traction_y;
-    Wide slips;
-    std::memcpy(&pressure, &columns.pressure[cell], sizeof(Wide));
-    std::memcpy(&x, &places.x[cell], sizeof(Wide));
-    std::memcpy(&y, &places.y[cell], sizeof(Wide));
-    std::memcpy(&height, &places.height[cell], sizeof(Wide));
-    std::memcpy(&depth, &columns.depth[cell], sizeof(Wide));
-    std::memcpy(&moved_x, &columns.moved_x[cell], sizeof(Wide));
-    std::memcpy(&moved_y, &columns.moved_y[cell], sizeof(Wide));
-    std::memcpy(&traction_x, &columns.traction_x[cell], sizeof(Wide));
-    std::memcpy(&traction_y, &columns.traction_y[cell], sizeof(Wide));
-    std::memcpy(&slips, &columns.slips[cell], sizeof(Wide));
+    const Wide pressure = lanes_at(&columns.pressure[cell]);
+    const Wide x = lanes_at(&places.x[cell]);
+    const Wide y = lanes_at(&places.y[cell]);
+    const Wide moved_x = lanes_at(&columns.moved_x[cell]);
+    const Wide moved_y = lanes_at(&columns.moved_y[cell]);
+    const Wide traction_x = lanes_at(&columns.traction_x[cell]);
+    const Wide traction_y = lanes_at(&columns.traction_y[cell]);
     const Wide by_x = pressure * x;
     const Wide by_y = pressure * y;
     const Wide loaded = pressure > 0.0 ? one : none;
     sums[kPressure] += pressure;
     sums[kPlaceX] += by_x;
     sums[kPlaceY] += by_y;
-    sums[kHeight] += pressure * height;
-    sums[kDepth] += pressure * depth;
+    sums[kHeight] += pressure * lanes_at(&places.height[cell]);
+    sums[kDepth] += pressure * lanes_at(&columns.depth[cell]);
     sums[kMovedX] += pressure * moved_x;
     sums[kMovedY] += pressure * moved_y;
     sums[kMoment] += by_x * moved_y - by_y * moved_x;
@@ -179,7 +154,7 @@ void add_up(std::size_t count, const PatchColumns& columns, const PatchPlaces& p
     sums[kTractionY] += loaded * traction_y;
     sums[kCouple] += x * traction_y - y * traction_x;
     sums[kLoaded] += loaded;
-    sums[kStuck] += loaded * (one - slips);
+    sums[kStuck] += loaded * (one - lanes_at(&columns.slips[cell]));
   }
   totals = sums;
 }
@@ -191,8 +166,7 @@ void add_up(std::size_t count, const double* __restrict pressures, Wide& __restr
   Wide sums{};
   Wide counts{};
   for (std::size_t cell = 0; cell < count; cell += kPatchLanes) {
-    Wide pressure;
-    std::memcpy(&pressure, pressures + cell, sizeof pressure);
+    const Wide pressure = lanes_at(pressures + cell);
     sums += pressure;
     counts += pressure > 0.0 ? Wide{} + 1.0 : Wide{};
   }
@@ -300,25 +274,25 @@ PatchSums sum_cells(const PatchColumns& columns, const PatchPlaces& places, doub
   std::array<Wide, kSums> totals;
   add_up(whole_lanes(columns.pressure.size()), columns, places, totals);
   PatchSums sums;
-  const double pressure = sum(totals[kPressure]);
+  const double pressure = sum_of(totals[kPressure]);
   if (pressure <= 0.0) {
     return sums;
   }
   sums.force = pressure * cell_area;
-  sums.center = glm::dvec2(sum(totals[kPlaceX]), sum(totals[kPlaceY])) / pressure;
-  sums.height = sum(totals[kHeight]) / pressure;
-  sums.depth = sum(totals[kDepth]) / pressure;
-  sums.moved = glm::dvec2(sum(totals[kMovedX]), sum(totals[kMovedY])) / pressure;
-  const double moment = sum(totals[kMoment]) -
+  sums.center = glm::dvec2(sum_of(totals[kPlaceX]), sum_of(totals[kPlaceY])) / pressure;
+  sums.height = sum_of(totals[kHeight]) / pressure;
+  sums.depth = sum_of(totals[kDepth]) / pressure;
+  sums.moved = glm::dvec2(sum_of(totals[kMovedX]), sum_of(totals[kMovedY])) / pressure;
+  const double moment = sum_of(totals[kMoment]) -
                         pressure * (sums.center.x * sums.moved.y - sums.center.y * sums.moved.x);
   const double second_moment =
-      sum(totals[kSecondMoment]) - pressure * glm::dot(sums.center, sums.center);
+      sum_of(totals[kSecondMoment]) - pressure * glm::dot(sums.center, sums.center);
   sums.turn = second_moment > 0.0 ? moment / second_moment : 0.0;
   // The columns' tractions are on the body.
-  sums.friction = -cell_area * glm::dvec2(sum(totals[kTractionX]), sum(totals[kTractionY]));
-  sums.couple = -cell_area * sum(totals[kCouple]);
-  sums.loaded_cells = sum(totals[kLoaded]);
-  sums.stuck_cells = sum(totals[kStuck]);
+  sums.friction = -cell_area * glm::dvec2(sum_of(totals[kTractionX]), sum_of(totals[kTractionY]));
+  sums.couple = -cell_area * sum_of(totals[kCouple]);
+  sums.loaded_cells = sum_of(totals[kLoaded]);
+  sums.stuck_cells = sum_of(totals[kStuck]);
   return sums;
 }
 
@@ -326,7 +300,7 @@ double mean_pressure(const PatchColumns& columns) {
   Wide total;
   Wide loaded;
   add_up(whole_lanes(columns.pressure.size()), columns.pressure.data(), total, loaded);
-  return sum(total) / larger(sum(loaded), 1.0);
+  return sum_of(total) / larger(sum_of(loaded), 1.0);
 }
 
 }  // namespace torsion

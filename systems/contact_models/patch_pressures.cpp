@@ -11,28 +11,12 @@
 namespace torsion {
 namespace {
 
-/// Brings the columns into those with a border.
-void begin(const PatchProblem& problem, const PatchColumns& columns, PatchWork& work) {
-  const std::uint32_t side = problem.influences.side;
-  to_border(side, columns.depth, work.depth);
-  to_border(side, columns.depression, work.depression);
-  to_border(side, columns.pressure, work.pressure);
-  std::ranges::fill(work.step, 0.0);
-}
-
-void end(const PatchProblem& problem, const PatchWork& work, const PatchColumns& columns) {
-  const std::uint32_t side = problem.influences.side;
-  from_border(side, work.depression, columns.depression);
-  from_border(side, work.pressure, columns.pressure);
-}
-
 /// The rigid motions of all cells: sinking, and tilting about the grid's axes.
 void find_rigid_motions(const PatchProblem& problem, PatchWork& work) {
-  const std::uint32_t side = problem.influences.side;
-  std::ranges::fill(work.moves_x, 1.0);
-  to_border(side, work.moves_x, work.rigid_x[0]);
-  to_border(side, problem.support.place_x, work.rigid_x[1]);
-  to_border(side, problem.support.place_y, work.rigid_x[2]);
+  const std::span<const double>& x = problem.support.place_x;
+  std::fill_n(work.rigid_x[0].begin(), x.size(), 1.0);
+  std::ranges::copy(x, work.rigid_x[1].begin());
+  std::ranges::copy(problem.support.place_y, work.rigid_x[2].begin());
 }
 
 /// Takes back what of `asked` the body as a whole gives way by, so that a soft body is not asked
@@ -48,8 +32,7 @@ void yield_to_rigid_motions(const PatchProblem& problem, const LocalInverse& inv
     std::vector<double>& motion = work.rigid_y[k];  // of the cells that count
     std::ranges::copy(work.rigid_x[k], motion.begin());
     keep_asked(count, work.residual_x.data(), motion.data());
-    apply_local_inverse(inverse, 1.0 / problem.compliance, problem.influences.side, motion.data(),
-                        asks.data());
+    ask_for(problem, inverse, motion.data(), work, asks.data());
     const auto column = static_cast<int>(k);
     asked[column] = keep_asked(count, work.residual_x.data(), asks.data());
     for (std::size_t other = 0; other <= k; ++other) {
@@ -67,12 +50,12 @@ void yield_to_rigid_motions(const PatchProblem& problem, const LocalInverse& inv
 
 /// @return the sum of the residual's squares under the preconditioner, after which `asked` holds
 /// what it asks
-double ask(const PatchProblem& problem, const LocalInverse& inverse, PatchWork& work) {
+double ask(const PatchProblem& problem, const LocalInverse& inverse, const PatchColumns& columns,
+           PatchWork& work) {
   const std::size_t count = work.residual_x.size();
-  find_overlaps(count, work.depth.data(), work.depression.data(), work.pressure.data(),
+  find_overlaps(count, columns.depth.data(), columns.depression.data(), columns.pressure.data(),
                 work.residual_x.data());
-  apply_local_inverse(inverse, 1.0 / problem.compliance, problem.influences.side,
-                      work.residual_x.data(), work.asked_x.data());
+  ask_for(problem, inverse, work.residual_x.data(), work, work.asked_x.data());
   if (problem.support.soft) {
     yield_to_rigid_motions(problem, inverse, work);
   }
@@ -81,17 +64,17 @@ double ask(const PatchProblem& problem, const LocalInverse& inverse, PatchWork& 
 
 /// Changes pressures by `length` of the step and displaces the surface.
 /// @param pull  the largest that there is then, Pa
-SweepChange go(double length, PatchWork& work, double& pull) {
-  return change_pressures(work.step.size(), length, work.moves.data(), work.step.data(),
-                          work.pressure.data(), work.depression.data(), pull);
+SweepChange go(double length, const PatchColumns& columns, PatchWork& work, double& pull) {
+  return change_pressures(work.step_x.size(), length, work.moves_x.data(), work.step_x.data(),
+                          columns.pressure.data(), columns.depression.data(), pull);
 }
 
 /// Lets the cells go that pull.
-void let_go(const PatchProblem& problem, PatchWork& work) {
-  find_pulls(work.step.size(), work.pressure.data(), work.step.data());
+void let_go(const PatchProblem& problem, const PatchColumns& columns, PatchWork& work) {
+  find_pulls(work.step_x.size(), columns.pressure.data(), work.step_x.data());
   move_by_pressure(problem, work);
   double none = 0.0;
-  go(1.0, work, none);
+  go(1.0, columns, work, none);
 }
 
 }  // namespace
@@ -99,28 +82,28 @@ void let_go(const PatchProblem& problem, PatchWork& work) {
 PatchOutcome relax_pressures(const PatchProblem& problem, const PatchColumns& columns,
                              PatchWork& work) {
   const LocalInverse inverse = local_inverse(problem.influences, InfluenceKind::kZZ);
-  begin(problem, columns, work);
+  std::ranges::fill(work.step_x, 0.0);
   if (problem.support.soft) {
     find_rigid_motions(problem, work);
   }
   PatchOutcome outcome;
   double before = 0.0;  // the residual's square, 0: no direction to keep
   double whole = problem.foreseen_pressure;
-  const std::size_t count = work.step.size();
+  const std::size_t count = work.step_x.size();
   while (outcome.sweeps < problem.sweeps) {
-    const double square = ask(problem, inverse, work);
+    const double square = ask(problem, inverse, columns, work);
     const double slope = mix_pressures(count, work.residual_x.data(), work.asked_x.data(),
-                                       before > 0.0 ? square / before : 0.0, work.step.data());
+                                       before > 0.0 ? square / before : 0.0, work.step_x.data());
     move_by_pressure(problem, work);
-    const double stiffness = dot(count, work.step.data(), work.moves.data());
+    const double stiffness = dot(count, work.step_x.data(), work.moves_x.data());
     if (stiffness <= 0.0) {
       outcome.residual = 0.0;
       break;
     }
     double pull = 0.0;
-    SweepChange change = go(slope / stiffness, work, pull);
+    SweepChange change = go(slope / stiffness, columns, work, pull);
     if (pull > 0.0) {
-      let_go(problem, work);
+      let_go(problem, columns, work);
     }
     before = pull > 0.0 ? 0.0 : square;
     change.largest = std::max(change.largest, pull);
@@ -131,7 +114,6 @@ PatchOutcome relax_pressures(const PatchProblem& problem, const PatchColumns& co
       break;
     }
   }
-  end(problem, work, columns);
   return outcome;
 }
 

@@ -54,27 +54,21 @@ PatchOutcome solve_in_turn(const PatchProblem& problem, const PatchColumns& colu
 }  // namespace
 
 void PatchWork::reserve(std::uint32_t side) {
-  const std::size_t count = std::size_t{side} * side;
-  const std::size_t with_border = whole_lanes(std::size_t{side + 2} * (side + 2));
-  for (std::vector<double>* each : {&depth, &depression, &pressure, &residual_x, &residual_y,
-                                    &asked_x, &asked_y, &step, &moves}) {
-    each->assign(with_border, 0.0);
+  const std::size_t count = whole_lanes(std::size_t{side} * side);
+  for (std::vector<double>* each : {&residual_x, &residual_y, &asked_x, &asked_y, &step_x, &step_y,
+                                    &moves_x, &moves_y, &moves_both, &limit, &along_x, &along_y,
+                                    &softened, &clips, &change_pressure, &change_x, &change_y}) {
+    each->assign(count, 0.0);
   }
   for (auto* each : {&rigid_x, &rigid_y, &rigid_asks_x, &rigid_asks_y}) {
-    each->fill(std::vector<double>(with_border, 0.0));
+    each->fill(std::vector<double>(count, 0.0));
   }
-  for (std::vector<double>* each : {&step_x, &step_y, &moves_x, &moves_y, &moves_both,
-                                    &change_pressure, &change_x, &change_y}) {
-    each->assign(whole_lanes(count), 0.0);
+  bordered.assign(std::size_t{side + 2} * (side + 2), 0.0);
+  // One more: what does not count is written, too.
+  for (std::vector<double>* each : {&scales_x, &scales_y, &scales}) {
+    each->assign(2 * (most_pairs(side) + 1), 0.0);
   }
-  scales_x.assign(2 * most_pairs(side), 0.0);
-  scales_y.assign(2 * most_pairs(side), 0.0);
-  scales.assign(2 * most_pairs(side), 0.0);
-  places.assign(most_pairs(side), 0);
-  bordered.assign(count + 1, 0);  // one more: what does not count is written, too
-  slots.assign(count + 1, 0);
-  cells.reserve(count + 1);
-  listed.assign(kTractionColumns * whole_lanes(count), 0.0);
+  places.assign(most_pairs(side) + 1, 0);
 }
 
 PatchOutcome solve_patch(const PatchProblem& problem, const PatchColumns& columns,

@@ -13,8 +13,8 @@
 
 namespace torsion {
 
-/// One grid's cells as columns, (side x side) each, x fastest. Tractions are on the body; z points
-/// into it.
+/// One grid's cells as columns, (side x side) each, x fastest, and followed by zeros up to whole
+/// lanes (wide_lanes.hpp). Tractions are on the body; z points into it.
 struct PatchColumns {
   // in
   std::span<double> depth;               // m: overlap; very negative where there can be no contact
@@ -29,27 +29,21 @@ struct PatchColumns {
 
 /// What a solution needs while it is sought.
 struct PatchWork {
-  // ((side + 2) x (side + 2)): the cells with a border of zeros, and zeros up to whole lanes of
-  // patch_passes.hpp, for passes over all cells
-  std::vector<double> depth, depression, pressure;  // as in PatchColumns
-  std::vector<double> residual_x, residual_y;       // m
-  std::vector<double> asked_x, asked_y;             // Pa: what the residual asks for
-  std::vector<double> step, moves;                  // Pa: the last change; m: what it displaces
+  // (side x side), and zeros up to whole lanes
+  std::vector<double> residual_x, residual_y;  // m
+  std::vector<double> asked_x, asked_y;        // Pa: what the residual asks for
+  std::vector<double> step_x, step_y;          // Pa: the last change; pressures have x only
+  std::vector<double> moves_x, moves_y;        // m: what it displaces
+  std::vector<double> moves_both;              // m: what both components share
+  std::vector<double> limit, along_x, along_y, softened, clips;  // as in TractionColumns
+  std::vector<double> change_pressure, change_x, change_y;       // Pa, in this solution
   // Rigid motions of the cells that count, and what three such ask for, Pa/m and Pa
   std::array<std::vector<double>, 3> rigid_x, rigid_y, rigid_asks_x, rigid_asks_y;
-  // (side x side), and zeros up to whole lanes
-  std::vector<double> step_x, step_y;                       // Pa: the last change
-  std::vector<double> moves_x, moves_y;                     // m: what it displaces
-  std::vector<double> moves_both;                           // m: what both components share
-  std::vector<double> change_pressure, change_x, change_y;  // Pa, in this solution
+  // ((side + 2) x (side + 2)): cells with a border of zeros
+  std::vector<double> bordered;
   // Cells with a traction
   std::vector<double> scales_x, scales_y, scales;
-  std::vector<std::uint32_t> places;    // as in InfluenceSources
-  std::uint32_t pairs = 0;              // likewise
-  std::vector<std::uint32_t> cells;     // those that can carry a load
-  std::vector<std::uint32_t> slots;     // (cells) where their scales are
-  std::vector<std::uint32_t> bordered;  // (cells) their rows among those with a border
-  std::vector<double> listed;           // what TractionColumns are in
+  std::vector<std::uint32_t> places;  // as in InfluenceSources
   void reserve(std::uint32_t side);
 };
 

@@ -1,7 +1,5 @@
 #include "systems/contact_models/patch_sums.hpp"
 
-#include <cstring>
-
 namespace torsion {
 namespace {
 
@@ -33,40 +31,53 @@ void sum_tractions(const PatchProblem& problem, const InfluenceSources& sources,
                 work.moves_y.data());
 }
 
-/// So short that a call of memcpy would take longer.
-void copy_row(std::uint32_t side, const double* from, double* to) {
-  constexpr std::uint32_t kFew = 4;
-  std::uint32_t i = 0;
-  for (; i + kFew <= side; i += kFew) {
-    std::memcpy(to + i, from + i, kFew * sizeof(double));
-  }
-  for (; i < side; ++i) {
-    to[i] = from[i];
+/// Two rows of changes of one component, one above the other.
+struct ChangeRows {
+  const double* low = nullptr;
+  const double* high = nullptr;
+  [[nodiscard]] bool any(std::uint32_t i) const { return low[i] != 0.0 || high[i] != 0.0; }
+};
+
+void scale_pairs(const ChangeRows& rows, double first, double second, std::uint32_t begin,
+                 std::uint32_t end, double* __restrict scales) {
+  for (std::uint32_t i = begin; i < end; ++i) {
+    scales[std::size_t{2} * (i - begin)] = first * rows.low[i];
+    scales[std::size_t{2} * (i - begin) + 1] = second * rows.high[i];
   }
 }
 
-/// Gathers the cells where one of the changes is not zero; scales become displacements per table.
-/// @param change_x, change_y  Pa, (side x side)
+/// Gathers pairs of cells: of every two rows those from the first to the last with a change that is
+/// not zero. Scales become displacements per table.
+/// @param change_x, change_y  Pa, (side x side); change_y may be empty
 InfluenceSources gather_sources(const PatchProblem& problem, std::span<const double> change_x,
                                 std::span<const double> change_y, PatchWork& work) {
   const std::uint32_t side = problem.influences.side;
   const auto width = static_cast<std::uint32_t>(problem.influences.width());
   const std::uint32_t above = side > 1 ? side : 0;
+  const bool both = !change_y.empty();
   std::uint32_t count = 0;
   for (std::uint32_t row = 0; row < side; row += 2) {
-    const PairedRows rows = paired_rows(side, row);
-    const double first = rows.first * problem.compliance;
-    const double second = rows.second * problem.compliance;
-    std::uint32_t cell = rows.row * side;
-    for (std::uint32_t i = 0; i < side; ++i, ++cell) {
-      double* const x = &work.scales_x[std::size_t{2} * count];
-      double* const y = &work.scales_y[std::size_t{2} * count];
-      x[0] = first * change_x[cell];
-      x[1] = second * change_x[cell + above];
-      y[0] = first * change_y[cell];
-      y[1] = second * change_y[cell + above];
-      work.places[count] = rows.row * width + i;
-      count += x[0] != 0.0 || x[1] != 0.0 || y[0] != 0.0 || y[1] != 0.0 ? 1U : 0U;
+    const PairedRows paired = paired_rows(side, row);
+    const double first = paired.first * problem.compliance;
+    const double second = paired.second * problem.compliance;
+    const double* const x = change_x.data() + std::size_t{paired.row} * side;
+    const double* const y = both ? change_y.data() + std::size_t{paired.row} * side : x;
+    const ChangeRows rows_x{x, x + above};
+    const ChangeRows rows_y{y, y + above};
+    std::uint32_t begin = 0;
+    std::uint32_t end = side;
+    while (begin < end && !(rows_x.any(begin) || rows_y.any(begin))) {
+      ++begin;
+    }
+    while (begin < end && !(rows_x.any(end - 1) || rows_y.any(end - 1))) {
+      --end;
+    }
+    scale_pairs(rows_x, first, second, begin, end, &work.scales_x[std::size_t{2} * count]);
+    if (both) {
+      scale_pairs(rows_y, first, second, begin, end, &work.scales_y[std::size_t{2} * count]);
+    }
+    for (std::uint32_t i = begin; i < end; ++i) {
+      work.places[count++] = paired.row * width + i;
     }
   }
   return {work.places.data(), count};
@@ -74,21 +85,16 @@ InfluenceSources gather_sources(const PatchProblem& problem, std::span<const dou
 
 }  // namespace
 
-void to_border(std::uint32_t side, std::span<const double> cells, std::span<double> bordered) {
-  for (std::size_t j = 0; j < side; ++j) {
-    copy_row(side, &cells[j * side], &bordered[(j + 1) * (side + 2) + 1]);
-  }
-}
-
-void from_border(std::uint32_t side, std::span<const double> bordered, std::span<double> cells) {
-  for (std::size_t j = 0; j < side; ++j) {
-    copy_row(side, &bordered[(j + 1) * (side + 2) + 1], &cells[j * side]);
-  }
+void ask_for(const PatchProblem& problem, const LocalInverse& inverse, const double* wanted,
+             PatchWork& work, double* asked) {
+  const std::uint32_t side = problem.influences.side;
+  to_border(side, wanted, work.bordered.data());
+  apply_local_inverse(inverse, 1.0 / problem.compliance, side, work.bordered.data(), asked);
 }
 
 void add_sideways(const PatchProblem& problem, const PatchColumns& columns,
                   std::span<const double> change, PatchWork& work) {
-  const InfluenceSources sources = gather_sources(problem, change, change, work);
+  const InfluenceSources sources = gather_sources(problem, change, {}, work);
   // Minus: by reciprocity (influence.hpp).
   sum_of(problem, sources, InfluenceKind::kZX, work.scales_x, work.moves_x);
   sum_of(problem, sources, InfluenceKind::kZY, work.scales_x, work.moves_y);
@@ -108,7 +114,7 @@ void add_depression(const PatchProblem& problem, const PatchColumns& columns,
 
 void add_pressure(const PatchProblem& problem, const PatchColumns& columns,
                   std::span<const double> change, PatchWork& work) {
-  const InfluenceSources sources = gather_sources(problem, change, change, work);
+  const InfluenceSources sources = gather_sources(problem, change, {}, work);
   sum_of(problem, sources, InfluenceKind::kZZ, work.scales_x, work.moves_x);
   add(columns.depression, 1.0, work.moves_x);
   if (problem.coupled) {
@@ -128,50 +134,14 @@ void add_tractions(const PatchProblem& problem, const PatchColumns& columns,
 }
 
 void move_by_pressure(const PatchProblem& problem, PatchWork& work) {
-  const InfluenceTables& tables = problem.influences;
-  const std::uint32_t side = tables.side;
-  const auto width = static_cast<std::uint32_t>(tables.width());
-  const std::uint32_t above = side > 1 ? side + 2 : 0;
-  std::uint32_t count = 0;
-  for (std::uint32_t row = 0; row < side; row += 2) {
-    const PairedRows rows = paired_rows(side, row);
-    const double first = rows.first * problem.compliance;
-    const double second = rows.second * problem.compliance;
-    const double* step = work.step.data() + std::size_t{rows.row + 1} * (side + 2) + 1;
-    for (std::uint32_t i = 0; i < side; ++i, ++step) {
-      double* const scales = &work.scales_x[std::size_t{2} * count];
-      scales[0] = first * step[0];
-      scales[1] = second * step[above];
-      work.places[count] = rows.row * width + i;
-      count += scales[0] != 0.0 || scales[1] != 0.0 ? 1U : 0U;
-    }
-  }
-  GridBlock block = block_of(tables);
-  block.pitch = side + 2;
-  sum_influence(block, {work.places.data(), count}, tables.of(InfluenceKind::kZZ),
-                work.scales_x.data(), nullptr, work.moves.data() + side + 3);
-  if (problem.support.response != nullptr) {
-    from_border(side, work.step, work.step_x);
-    from_border(side, work.moves, work.moves_x);
-    add_support(problem.support, {{}, {}, work.step_x}, {{}, {}, work.moves_x});
-    to_border(side, work.moves_x, work.moves);
-  }
+  sum_of(problem, gather_sources(problem, work.step_x, {}, work), InfluenceKind::kZZ, work.scales_x,
+         work.moves_x);
+  add_support(problem.support, {{}, {}, work.step_x}, {{}, {}, work.moves_x});
 }
 
-void move_by_traction(const PatchProblem& problem, const double* step_x, const double* step_y,
-                      PatchWork& work) {
-  for (std::size_t k = 0; k < work.cells.size(); ++k) {
-    work.scales_x[work.slots[k]] = problem.compliance * step_x[k];
-    work.scales_y[work.slots[k]] = problem.compliance * step_y[k];
-  }
-  sum_tractions(problem, {work.places.data(), work.pairs}, work);
-  if (problem.support.response != nullptr) {
-    for (std::size_t k = 0; k < work.cells.size(); ++k) {
-      work.step_x[work.cells[k]] = step_x[k];
-      work.step_y[work.cells[k]] = step_y[k];
-    }
-    add_support(problem.support, {work.step_x, work.step_y, {}}, {work.moves_x, work.moves_y, {}});
-  }
+void move_by_traction(const PatchProblem& problem, PatchWork& work) {
+  sum_tractions(problem, gather_sources(problem, work.step_x, work.step_y, work), work);
+  add_support(problem.support, {work.step_x, work.step_y, {}}, {work.moves_x, work.moves_y, {}});
 }
 
 }  // namespace torsion

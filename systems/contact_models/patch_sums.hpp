@@ -22,9 +22,11 @@ inline GridBlock block_of(const InfluenceTables& tables) {
   return {tables.side, tables.side, tables.width(), tables.index(0, 0, 0, 0)};
 }
 
-/// Cells (side x side) into the middle of ((side + 2) x (side + 2)), and back.
-void to_border(std::uint32_t side, std::span<const double> cells, std::span<double> bordered);
-void from_border(std::uint32_t side, std::span<const double> bordered, std::span<double> cells);
+/// What tractions displacements ask for by the local inverse.
+/// @param wanted  m, (side x side)
+/// @param asked   Pa, (side x side) out
+void ask_for(const PatchProblem& problem, const LocalInverse& inverse, const double* wanted,
+             PatchWork& work, double* asked);
 
 /// Adds to the displacements what changes of the pressure do.
 void add_pressure(const PatchProblem& problem, const PatchColumns& columns,
@@ -45,13 +47,11 @@ void add_depression(const PatchProblem& problem, const PatchColumns& columns,
                     std::span<const double> change_x, std::span<const double> change_y,
                     PatchWork& work);
 
-/// work.moves = depression by work.step.
+/// work.moves_x = depression by work.step_x.
 void move_by_pressure(const PatchProblem& problem, PatchWork& work);
 
-/// work.moves_x, moves_y = displacement along the surface by steps of the tractions.
-/// @param step_x, step_y  Pa, (work.cells)
-void move_by_traction(const PatchProblem& problem, const double* step_x, const double* step_y,
-                      PatchWork& work);
+/// work.moves_x, moves_y = displacement along the surface by work.step_x, step_y.
+void move_by_traction(const PatchProblem& problem, PatchWork& work);
 
 /// Sweeps over the pressures until they change by less than what ends it.
 PatchOutcome relax_pressures(const PatchProblem& problem, const PatchColumns& columns,

@@ -10,7 +10,7 @@
 #include "systems/body_models/contact_load.hpp"
 #include "systems/body_models/footing_response.hpp"
 #include "systems/body_models/support_field.hpp"
-#include "systems/contact_models/patch_passes.hpp"
+#include "systems/contact_models/wide_lanes.hpp"
 #include "systems/distance_shapes.hpp"
 #include "systems/frames.hpp"
 #include "systems/widest.hpp"
@@ -19,8 +19,6 @@ namespace torsion {
 namespace {
 
 constexpr std::size_t kColumn = kSupportColumn;
-using Wide = double __attribute__((vector_size(sizeof(double) * kPatchLanes)));
-
 using Half = double __attribute__((vector_size(sizeof(double) * kPatchLanes / 2)));
 
 /// Moments of tractions with the terms, sums over the cells.

@@ -1,7 +1,6 @@
 // The tangential tractions of the contact model `patch`.
 
 #include <algorithm>
-#include <array>
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -9,11 +8,11 @@
 
 #include "systems/contact_models/local_inverse.hpp"
 #include "systems/contact_models/patch_sums.hpp"
+#include "systems/contact_models/traction_passes.hpp"
 
 namespace torsion {
 namespace {
 
-constexpr double kInside = 1.0 + 1e-9;  // of a limit's square
 // Of what is asked, where there is no telling how far to go: the local inverse asks for too much of
 // what is smooth, the more so the more cells lie across it.
 constexpr double kCalm = 0.6;
@@ -32,46 +31,30 @@ struct Sweep {
   TractionStep step;
 };
 
-TractionColumns columns_of(PatchWork& work) {
-  TractionColumns cells{};
-  cells.count = whole_lanes(work.cells.size());
-  std::array<double**, kTractionColumns> each{
-      &cells.traction_x, &cells.traction_y, &cells.target_x, &cells.target_y,   &cells.moved_x,
-      &cells.moved_y,    &cells.limit,      &cells.slips,    &cells.residual_x, &cells.residual_y,
-      &cells.asked_x,    &cells.asked_y,    &cells.along_x,  &cells.along_y,    &cells.softened,
-      &cells.step_x,     &cells.step_y,     &cells.clips,    &cells.moves_x,    &cells.moves_y};
-  for (std::size_t k = 0; k < each.size(); ++k) {
-    *each[k] = work.listed.data() + k * cells.count;
-  }
-  return cells;
-}
-
-/// Listed values to their cells among those with a border.
-void spread(const PatchWork& work, const double* listed, std::vector<double>& bordered) {
-  for (std::size_t k = 0; k < work.cells.size(); ++k) {
-    bordered[work.bordered[k]] = listed[k];
-  }
-}
-
-/// Values of cells (by number, or by their rows among those with a border) to the list.
-void gather(const PatchWork& work, const std::vector<std::uint32_t>& rows,
-            std::span<const double> values, double* listed) {
-  for (std::size_t k = 0; k < work.cells.size(); ++k) {
-    listed[k] = values[rows[k]];
-  }
-}
-
-/// What a displacement of the listed cells asks for, at all cells with a border.
-void ask_for(const PatchProblem& problem, const Inverses& inverses, const double* x,
-             const double* y, PatchWork& work, std::vector<double>& asked_x,
-             std::vector<double>& asked_y) {
-  const std::uint32_t side = problem.influences.side;
-  spread(work, x, work.residual_x);
-  spread(work, y, work.residual_y);
-  apply_local_inverse(inverses.x, 1.0 / problem.compliance, side, work.residual_x.data(),
-                      asked_x.data());
-  apply_local_inverse(inverses.y, 1.0 / problem.compliance, side, work.residual_y.data(),
-                      asked_y.data());
+TractionColumns columns_of(const PatchColumns& columns, PatchWork& work) {
+  return {whole_lanes(columns.pressure.size()),
+          columns.pressure.data(),
+          columns.friction.data(),
+          columns.traction_x.data(),
+          columns.traction_y.data(),
+          columns.target_x.data(),
+          columns.target_y.data(),
+          columns.moved_x.data(),
+          columns.moved_y.data(),
+          columns.slips.data(),
+          work.limit.data(),
+          work.residual_x.data(),
+          work.residual_y.data(),
+          work.asked_x.data(),
+          work.asked_y.data(),
+          work.along_x.data(),
+          work.along_y.data(),
+          work.softened.data(),
+          work.step_x.data(),
+          work.step_y.data(),
+          work.clips.data(),
+          work.moves_x.data(),
+          work.moves_y.data()};
 }
 
 /// As for the pressures (patch_pressures.cpp): to sliding along x and y, and turning.
@@ -79,42 +62,34 @@ void yield_to_rigid_motions(const PatchProblem& problem, const Inverses& inverse
                             const TractionColumns& cells, PatchWork& work) {
   glm::dmat3 stiffness(0.0);
   glm::dvec3 asked(0.0);
-  // Lists in columns that the pressures no longer need.
-  const auto motion_x = [&work](std::size_t k) {
-    return work.rigid_x[k].data();
-  };
-  const auto motion_y = [&work](std::size_t k) {
-    return work.rigid_y[k].data();
-  };
+  std::vector<double>& answers_x = work.moves_x;  // not needed before there is a step
+  std::vector<double>& answers_y = work.moves_y;
+  const std::size_t count = work.rigid_x[0].size();
   for (std::size_t k = 0; k < 3; ++k) {
-    for (std::size_t row = 0; row < work.cells.size(); ++row) {
-      const std::uint32_t cell = work.cells[row];
-      motion_x(k)[row] = k == 2 ? -problem.support.place_y[cell] : (k == 0 ? 1.0 : 0.0);
-      motion_y(k)[row] = k == 2 ? problem.support.place_x[cell] : (k == 1 ? 1.0 : 0.0);
+    double* const motion_x = work.rigid_x[k].data();
+    double* const motion_y = work.rigid_y[k].data();
+    for (std::size_t cell = 0; cell < problem.support.place_x.size(); ++cell) {
+      motion_x[cell] = k == 2 ? -problem.support.place_y[cell] : (k == 0 ? 1.0 : 0.0);
+      motion_y[cell] = k == 2 ? problem.support.place_x[cell] : (k == 1 ? 1.0 : 0.0);
     }
-    std::fill_n(motion_x(k) + work.cells.size(), cells.count - work.cells.size(), 0.0);
-    std::fill_n(motion_y(k) + work.cells.size(), cells.count - work.cells.size(), 0.0);
-    std::copy_n(motion_x(k), cells.count, cells.moves_x);
-    std::copy_n(motion_y(k), cells.count, cells.moves_y);
-    keep_answered(cells, cells.moves_x, cells.moves_y);
-    ask_for(problem, inverses, cells.moves_x, cells.moves_y, work, work.asked_x, work.asked_y);
+    const auto answer = [&](const double* x, const double* y) {
+      std::copy_n(x, count, answers_x.begin());
+      std::copy_n(y, count, answers_y.begin());
+      keep_answered(cells, answers_x.data(), answers_y.data());
+    };
+    answer(motion_x, motion_y);
     double* const asks_x = work.rigid_asks_x[k].data();
     double* const asks_y = work.rigid_asks_y[k].data();
-    gather(work, work.bordered, work.asked_x, asks_x);
-    gather(work, work.bordered, work.asked_y, asks_y);
-    std::fill_n(asks_x + work.cells.size(), cells.count - work.cells.size(), 0.0);
-    std::fill_n(asks_y + work.cells.size(), cells.count - work.cells.size(), 0.0);
+    ask_for(problem, inverses.x, answers_x.data(), work, asks_x);
+    ask_for(problem, inverses.y, answers_y.data(), work, asks_y);
     const auto column = static_cast<int>(k);
-    asked[column] =
-        dot(cells.count, asks_x, cells.residual_x) + dot(cells.count, asks_y, cells.residual_y);
-    std::copy_n(asks_x, cells.count, cells.moves_x);
-    std::copy_n(asks_y, cells.count, cells.moves_y);
-    keep_answered(cells, cells.moves_x, cells.moves_y);
+    asked[column] = dot(count, asks_x, asks_y, cells.residual_x, cells.residual_y);
+    answer(asks_x, asks_y);
     for (std::size_t other = 0; other <= k; ++other) {
       const auto row = static_cast<int>(other);
       stiffness[column][row] = stiffness[row][column] =
-          dot(cells.count, cells.moves_x, motion_x(other)) +
-          dot(cells.count, cells.moves_y, motion_y(other));
+          dot(count, answers_x.data(), answers_y.data(), work.rigid_x[other].data(),
+              work.rigid_y[other].data());
     }
   }
   const glm::dmat3& yields = problem.support.slides;
@@ -126,19 +101,17 @@ void yield_to_rigid_motions(const PatchProblem& problem, const Inverses& inverse
   }
 }
 
-/// What is left of every loaded cell's way, and what it asks for.
+/// What is left of every cell's way, and what it asks for.
 /// @return the sum of the residual's squares under the preconditioner
 double ask(const PatchProblem& problem, const Inverses& inverses, const TractionColumns& cells,
            PatchWork& work) {
   find_ways(cells, inverses.stiffness);
-  ask_for(problem, inverses, cells.residual_x, cells.residual_y, work, work.asked_x, work.asked_y);
-  gather(work, work.bordered, work.asked_x, cells.asked_x);
-  gather(work, work.bordered, work.asked_y, cells.asked_y);
+  ask_for(problem, inverses.x, cells.residual_x, work, cells.asked_x);
+  ask_for(problem, inverses.y, cells.residual_y, work, cells.asked_y);
   if (problem.support.soft) {
     yield_to_rigid_motions(problem, inverses, cells, work);
   }
-  return dot(cells.count, cells.residual_x, cells.asked_x) +
-         dot(cells.count, cells.residual_y, cells.asked_y);
+  return dot(cells.count, cells.residual_x, cells.residual_y, cells.asked_x, cells.asked_y);
 }
 
 /// What every cell asks for if its neighbours stay.
@@ -152,96 +125,8 @@ void ask_alone(const Inverses& inverses, const TractionColumns& cells) {
 /// What the step displaces.
 /// @return the energy's curvature along it, Pa m
 double move(const PatchProblem& problem, const TractionColumns& cells, PatchWork& work) {
-  move_by_traction(problem, cells.step_x, cells.step_y, work);
-  gather(work, work.cells, work.moves_x, cells.moves_x);
-  gather(work, work.cells, work.moves_y, cells.moves_y);
-  return dot(cells.count, cells.step_x, cells.moves_x) +
-         dot(cells.count, cells.step_y, cells.moves_y);
-}
-
-/// Lists the cells that carry a load or have to lose one, and the pairs that they are in.
-void list_cells(const PatchColumns& columns, const InfluenceTables& tables, PatchWork& work) {
-  const std::uint32_t side = tables.side;
-  const auto width = static_cast<std::uint32_t>(tables.width());
-  const std::uint32_t above = side > 1 ? side : 0;
-  find_loads(columns.pressure.size(), columns.friction.data(), columns.pressure.data(),
-             columns.traction_x.data(), columns.traction_y.data(), work.moves_x.data());
-  work.cells.resize(columns.pressure.size() + 1);
-  std::uint32_t count = 0;
-  std::uint32_t pairs = 0;
-  for (std::uint32_t row = 0; row < side; row += 2) {
-    const PairedRows rows = paired_rows(side, row);
-    std::uint32_t cell = rows.row * side;
-    std::uint32_t bordered = (rows.row + 1) * (side + 2) + 1;
-    for (std::uint32_t i = 0; i < side; ++i, ++cell, ++bordered) {
-      const std::uint32_t first = rows.first * work.moves_x[cell] > 0.0 ? 1 : 0;
-      const std::uint32_t second = rows.second * work.moves_x[cell + above] > 0.0 ? 1 : 0;
-      work.cells[count] = cell;
-      work.bordered[count] = bordered;
-      work.slots[count] = 2 * pairs;
-      count += first;
-      work.cells[count] = cell + above;
-      work.bordered[count] = bordered + side + 2;
-      work.slots[count] = 2 * pairs + 1;
-      count += second;
-      work.places[pairs] = rows.row * width + i;
-      pairs += first | second;
-    }
-  }
-  work.cells.resize(count);
-  work.pairs = pairs;
-  std::fill_n(work.scales_x.begin(), 2 * pairs, 0.0);
-  std::fill_n(work.scales_y.begin(), 2 * pairs, 0.0);
-}
-
-/// Fills the list's columns.
-/// @return true when a traction lies outside its disc
-bool load(const PatchColumns& columns, const TractionColumns& cells, PatchWork& work) {
-  for (std::size_t k = 0; k < kTractionColumns; ++k) {
-    std::fill_n(work.listed.data() + k * cells.count + work.cells.size(),
-                cells.count - work.cells.size(), 0.0);
-  }
-  std::fill_n(cells.step_x, cells.count, 0.0);
-  std::fill_n(cells.step_y, cells.count, 0.0);
-  std::ranges::fill(work.residual_x, 0.0);
-  std::ranges::fill(work.residual_y, 0.0);
-  std::ranges::fill(work.step_x, 0.0);
-  std::ranges::fill(work.step_y, 0.0);
-  bool outside = false;
-  for (std::size_t k = 0; k < work.cells.size(); ++k) {
-    const std::uint32_t cell = work.cells[k];
-    const double limit = columns.friction[cell] * columns.pressure[cell];
-    const double x = columns.traction_x[cell];
-    const double y = columns.traction_y[cell];
-    cells.limit[k] = limit;
-    cells.traction_x[k] = x;
-    cells.traction_y[k] = y;
-    cells.target_x[k] = columns.target_x[cell];
-    cells.target_y[k] = columns.target_y[cell];
-    cells.moved_x[k] = columns.moved_x[cell];
-    cells.moved_y[k] = columns.moved_y[cell];
-    outside = outside || x * x + y * y > kInside * limit * limit;
-  }
-  return outside;
-}
-
-void store(const TractionColumns& cells, const PatchWork& work, const PatchColumns& columns) {
-  std::ranges::fill(columns.slips, 1.0);
-  for (std::size_t k = 0; k < work.cells.size(); ++k) {
-    const std::uint32_t cell = work.cells[k];
-    columns.traction_x[cell] = cells.traction_x[k];
-    columns.traction_y[cell] = cells.traction_y[k];
-    columns.slips[cell] = cells.slips[k];
-  }
-}
-
-/// Goes `length` of the step.
-SweepChange go(const PatchColumns& columns, const TractionColumns& cells, double length,
-               const PatchWork& work) {
-  const std::size_t count = columns.moved_x.size();
-  add_scaled(count, length, work.moves_x.data(), columns.moved_x.data());
-  add_scaled(count, length, work.moves_y.data(), columns.moved_y.data());
-  return change_tractions(cells, length);
+  move_by_traction(problem, work);
+  return dot(cells.count, cells.step_x, cells.step_y, cells.moves_x, cells.moves_y);
 }
 
 }  // namespace
@@ -253,9 +138,10 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
   const Inverses inverses{local_inverse(tables, InfluenceKind::kXX),
                           local_inverse(tables, InfluenceKind::kYY),
                           1.0 / (softest * problem.compliance)};
-  list_cells(columns, tables, work);
-  const TractionColumns cells = columns_of(work);
-  bool outside = load(columns, cells, work);
+  const TractionColumns cells = columns_of(columns, work);
+  bool outside = find_limits(cells);
+  std::ranges::fill(work.step_x, 0.0);
+  std::ranges::fill(work.step_y, 0.0);
   PatchOutcome outcome;
   double before = 0.0;  // the residual's square, 0: no direction to keep
   double whole = problem.foreseen_traction;
@@ -285,7 +171,7 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
     const double length = sweep.step.slips > 0.0 ? std::clamp(best, 0.0, 1.0) : best;
     alone = length < kShort;
     outside = false;
-    const SweepChange change = go(columns, cells, length, work);
+    const SweepChange change = change_tractions(cells, length);
     before = sweep.step.clipped > 0.0 ? 0.0 : sweep.square;
     whole = std::max(whole, change.sum);
     outcome.residual = change.largest / problem.reference;
@@ -294,7 +180,6 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
       break;
     }
   }
-  store(cells, work, columns);
   return outcome;
 }
 

@@ -1,0 +1,47 @@
+#pragma once
+
+// Eight cells at a time, in vectors of whatever width the machine has: the same partial sums, so
+// the same bits, in all of them. Vectors are passed by reference, since how they are passed by
+// value depends on the instruction set.
+
+#include <cstddef>
+
+namespace torsion {
+
+inline constexpr std::size_t kPatchLanes = 8;
+
+constexpr std::size_t whole_lanes(std::size_t count) {
+  return (count + kPatchLanes - 1) / kPatchLanes * kPatchLanes;
+}
+
+using Wide = double __attribute__((vector_size(sizeof(double) * kPatchLanes)));
+
+#define TORSION_LANES static inline __attribute__((always_inline))
+
+/// The eight numbers from one on, to be read or written.
+using LooseWide = double
+    __attribute__((vector_size(sizeof(double) * kPatchLanes), aligned(sizeof(double)), may_alias));
+
+TORSION_LANES const LooseWide& lanes_at(const double* first) {
+  return *reinterpret_cast<const LooseWide*>(first);
+}
+
+TORSION_LANES LooseWide& lanes_at(double* first) {
+  return *reinterpret_cast<LooseWide*>(first);
+}
+
+TORSION_LANES double sum_of(const Wide& lanes) {
+  return ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) +
+         ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]));
+}
+
+/// The largest of all lanes and 0.
+TORSION_LANES double largest_of(const Wide& lanes) {
+  double most = 0.0;
+  for (std::size_t lane = 0; lane < kPatchLanes; ++lane) {
+    most = lanes[lane] > most ? lanes[lane] : most;
+  }
+  return most;
+}
+
+}  // namespace torsion

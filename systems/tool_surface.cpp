@@ -64,7 +64,7 @@ void return_from_above(const Grid& grid) {
 
 /// One step of Newton's method along the normal from every cell to the tool's underside, and the
 /// slopes of that.
-/// @param value  m: in: distance to the tool; out: by how much the height would change
+/// @param value  m: in: distance to the tool; out: by how much the height changes
 TORSION_WIDEST
 void step_to_surface(double size, std::size_t count, const double* __restrict gradient_x,
                      const double* __restrict gradient_y, const double* __restrict gradient_z,
@@ -73,10 +73,13 @@ void step_to_surface(double size, std::size_t count, const double* __restrict gr
   for (std::size_t cell = 0; cell < count; ++cell) {
     const double over_slope = 1.0 / larger(-gradient_z[cell], kSteepest);
     const double change = value[cell] * over_slope;
-    const double height = z[cell] + change;
+    const double from = z[cell];
+    const double height = from + change;
     // Above the rest surface there is no contact, however far away the tool is.
-    z[cell] = height < size ? height : size;
-    value[cell] = std::abs(change);
+    const double to = height < size ? height : size;
+    z[cell] = to;
+    // A cell that stays up there is at rest, though it is not on the tool.
+    value[cell] = to < size ? std::abs(change) : to - from;
     tool_x[cell] = gradient_x[cell] * over_slope;
     tool_y[cell] = gradient_y[cell] * over_slope;
   }

@@ -8,6 +8,42 @@
 #include "systems/contact_models/layer_influence.hpp"
 
 namespace torsion {
+namespace {
+
+/// What a CurvedKind's terms are multiplied by.
+struct AngularWaves {
+  double log = 0.0;  // of r / reach
+  double cos_2 = 0.0;
+  double sin_2 = 0.0;
+  double cos_4 = 0.0;
+  double sin_4 = 0.0;
+};
+
+/// Their means over a cell, taken at four points (Gauss).
+/// @param offset  m: the cell's middle from the force
+AngularWaves mean_waves(const glm::dvec2& offset, const glm::dvec2& cell, double reach) {
+  constexpr double kGauss = 0.28867513459481287;  // of the cell, from its centre
+  AngularWaves mean;
+  double product = 1.0;  // one logarithm says them all
+  for (const double along_x : {-kGauss, kGauss}) {
+    for (const double along_y : {-kGauss, kGauss}) {
+      const double x = offset.x + along_x * cell.x;
+      const double y = offset.y + along_y * cell.y;
+      const double square = x * x + y * y;
+      const double cos_2 = (x * x - y * y) / square;
+      const double sin_2 = 2.0 * x * y / square;
+      product *= square / (reach * reach);
+      mean.cos_2 += 0.25 * cos_2;
+      mean.sin_2 += 0.25 * sin_2;
+      mean.cos_4 += 0.25 * (cos_2 * cos_2 - sin_2 * sin_2);
+      mean.sin_4 += 0.5 * sin_2 * cos_2;
+    }
+  }
+  mean.log = 0.125 * std::log(product);
+  return mean;
+}
+
+}  // namespace
 
 CurvedResponse curved_response(const SurfaceCurvature& curvature, double poisson_ratio) {
   const double n = 1.0 - 2.0 * poisson_ratio;
@@ -62,27 +98,27 @@ void fill_curved_influences(const InfluenceTables& half_space, const CurvedRespo
   for (std::size_t kind = 0; kind < kSolvedKinds; ++kind) {
     std::copy_n(half_space.kinds[kind], table, &values[kind * table]);
   }
-  constexpr double kGauss = 0.28867513459481287;  // of the cell, from its centre
-  // Over the cell's length along x its area leaves its width; a quarter for each of four points.
-  const double area = 0.25 * cell.y / (8.0 * std::numbers::pi);
-  // The same on the other side of the force: half of the table says it all.
-  for (std::size_t row = side - 1; row + 1 < width; ++row) {
-    for (std::size_t column = 0; column + 1 < width; ++column) {
-      const glm::dvec2 offset =
-          cell * (glm::dvec2(static_cast<double>(column), static_cast<double>(row)) -
-                  static_cast<double>(side - 1));
-      const std::size_t at = row * width + column;
-      const std::size_t opposite = (width - 2 - row) * width + (width - 2 - column);
+  // Over the cell's length along x its area leaves its width.
+  const double area = cell.y / (8.0 * std::numbers::pi);
+  for (std::size_t j = 0; j < side; ++j) {
+    for (std::size_t i = 0; i < side; ++i) {
+      const AngularWaves waves = mean_waves(
+          cell * glm::dvec2(static_cast<double>(i), static_cast<double>(j)), cell, reach);
       for (std::size_t kind = 0; kind < kCurvedKinds; ++kind) {
-        double sum = 0.0;
-        for (const double x : {-kGauss, kGauss}) {
-          for (const double y : {-kGauss, kGauss}) {
-            sum += curved_displacement(response[kind], offset + cell * glm::dvec2(x, y), reach);
-          }
-        }
-        const double value = half_space.kinds[kind][at] + area * sum;
-        values[kind * table + at] = value;
-        values[kind * table + opposite] = value;
+        const CurvedKind& by = response[kind];
+        const double even =
+            by.steady - by.log * waves.log + by.cos_2 * waves.cos_2 + by.cos_4 * waves.cos_4;
+        const double odd = by.sin_2 * waves.sin_2 + by.sin_4 * waves.sin_4;
+        double* const to = &values[kind * table];
+        const double* const from = half_space.kinds[kind];
+        // The same at the place and on the other side of the force, to the last bit.
+        const auto put = [&](std::size_t row, std::size_t column, double value) {
+          const std::size_t at = row * width + column;
+          const std::size_t opposite = (width - 2 - row) * width + (width - 2 - column);
+          to[at] = to[opposite] = from[at] + area * value;
+        };
+        put(side - 1 + j, side - 1 + i, even + odd);
+        put(side - 1 + j, side - 1 - i, even - odd);
       }
     }
   }

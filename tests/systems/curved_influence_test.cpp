@@ -220,6 +220,14 @@ TEST(CurvedInfluenceTest, TablesAddWhatTheCurvatureDoes) {
           << kind;
       // Reciprocity: the same seen from the other cell.
       EXPECT_EQ(curved.kinds[kind][at], curved.kinds[kind][curved.index(i, j, 0, 0)]);
+      // On the other side in x alone.
+      const std::size_t across = curved.index(i, 0, 0, j);
+      const double there =
+          curved_displacement(response[kind], {-offset.x, offset.y}, 0.01) / (8.0 * kPi) * cell.y;
+      EXPECT_NEAR(curved.kinds[kind][across] - plane.kinds[kind][across], there,
+                  3e-2 * 3.0 * cell.y / kPi)
+          << kind;
+      EXPECT_EQ(curved.kinds[kind][across], curved.kinds[kind][curved.index(0, j, i, 0)]);
     }
   }
 }

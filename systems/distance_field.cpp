@@ -16,11 +16,11 @@ struct AxisPlace {
   double fraction;
 };
 
-AxisPlace place_on_axis(double coordinate, std::uint32_t cells) {
+[[gnu::always_inline]] inline AxisPlace place_on_axis(double coordinate, std::uint32_t cells) {
   const double last = static_cast<double>(cells);
   const double inside =
       coordinate > 0.0 ? (coordinate < last ? coordinate : last) : 0.0;  // NaN goes to 0
-  const auto floor = static_cast<std::uint32_t>(inside);
+  const auto floor = static_cast<std::uint32_t>(static_cast<std::int32_t>(inside));
   const std::uint32_t cell = floor < cells ? floor : cells - 1;
   return {cell, inside - static_cast<double>(cell)};
 }
@@ -33,8 +33,10 @@ struct BlendedNode {
 /// Blends the 8 nodes of one cell.
 /// @param first   the lowest node; its neighbours along x, y, z are 1, row, layer further
 /// @param spacing m
-BlendedNode blend(const DistanceNode* first, std::size_t row, std::size_t layer,
-                  const std::array<double, 3>& fraction, double spacing) {
+[[gnu::always_inline]] inline BlendedNode blend(const DistanceNode* first, std::size_t row,
+                                                std::size_t layer,
+                                                const std::array<double, 3>& fraction,
+                                                double spacing) {
   using Row = Eigen::Array4f;
   const auto node = [&](std::size_t offset) {
     return Eigen::Map<const Row>(&first[offset].gradient_and_distance.x);
@@ -79,7 +81,7 @@ BlendedNode blend(const DistanceNode* first, std::size_t row, std::size_t layer,
 }  // namespace
 
 Distance FieldDistance::operator()(double x, double y, double z) const {
-  const glm::dvec3 scaled = (glm::dvec3(x, y, z) - field_.origin) * (1.0 / field_.spacing);
+  const glm::dvec3 scaled = (glm::dvec3(x, y, z) - field_.origin) * inverse_spacing_;
   const AxisPlace px = place_on_axis(scaled.x, field_.cells.x);
   const AxisPlace py = place_on_axis(scaled.y, field_.cells.y);
   const AxisPlace pz = place_on_axis(scaled.z, field_.cells.z);

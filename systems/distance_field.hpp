@@ -14,6 +14,7 @@ class FieldDistance {
   /// @param row  of world.fields
   FieldDistance(const World& world, std::uint32_t row)
       : field_(world.fields.at<DistanceField>(row)),
+        inverse_spacing_(1.0 / field_.spacing),
         nodes_(world.field_nodes.column<DistanceNode>().data()),
         bricks_(world.field_bricks.rows<DistanceBrick>(field_.bricks).data()) {}
 
@@ -22,6 +23,7 @@ class FieldDistance {
 
  private:
   DistanceField field_;
+  double inverse_spacing_;
   const DistanceNode* nodes_;
   const DistanceBrick* bricks_;
 };

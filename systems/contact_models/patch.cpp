@@ -21,7 +21,7 @@ namespace {
 // next steps, of which each has its own sweeps. Where there are more such regions in a step they
 // share out what there is, or the step would be long.
 constexpr std::uint32_t kSweepsAnew = 8;
-constexpr std::uint32_t kSweepsOfRounds = 12;
+constexpr std::uint32_t kSweepsOfRounds = 8;
 constexpr std::uint32_t kSweepsOfAll = 16;
 constexpr std::uint32_t kRoundsAnew = 8;
 constexpr double kSkipAnew = 1e-5;      // the residual that will do then

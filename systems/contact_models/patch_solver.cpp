@@ -79,8 +79,10 @@ PatchOutcome solve_patch(const PatchProblem& problem, const PatchColumns& column
     return outcome;
   }
   const std::uint32_t rounds = is_coupled(problem) ? problem.rounds : 1;
+  PatchProblem of_round = problem;
   for (std::uint32_t round = 0; round < rounds; ++round) {
-    const PatchOutcome turn = solve_in_turn(problem, columns, work);
+    of_round.sweeps = std::min(problem.sweeps, problem.sweeps_of_rounds - outcome.sweeps);
+    const PatchOutcome turn = solve_in_turn(of_round, columns, work);
     outcome.residual = turn.residual;
     outcome.sweeps += turn.sweeps;
     if (turn.sweeps <= 1 || outcome.sweeps >= problem.sweeps_of_rounds) {

@@ -61,7 +61,7 @@ struct PatchProblem {
   double foreseen_traction = 0.0;  // the cells, both components
   std::uint32_t sweeps = 2;        // at most, of the pressures and then of the tractions
   std::uint32_t rounds = 1;        // at most, of the two in turn where they are coupled
-  std::uint32_t sweeps_of_rounds = 0xffffffff;  // no further round after so many
+  std::uint32_t sweeps_of_rounds = 0xffffffff;  // at most, of all rounds together
 };
 
 /// What became of it.

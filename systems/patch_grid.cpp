@@ -264,10 +264,14 @@ std::uint32_t patch_spare(std::uint32_t side) {
   return side % 2 == 0 && side >= kCoarsest ? 1 : 0;
 }
 
+glm::dvec2 patch_half_size(const glm::dvec2& least, std::int32_t aspect) {
+  const double ratio = std::ldexp(1.0, aspect);
+  const double half = std::max(least.x, least.y * ratio);
+  return {half, half / ratio};
+}
+
 glm::dvec2 patch_half_size(const glm::dvec2& least) {
-  const double aspect = std::ldexp(1.0, patch_aspect(least));
-  const double half = std::max(least.x, least.y * aspect);
-  return {half, half / aspect};
+  return patch_half_size(least, patch_aspect(least));
 }
 
 void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints& contact) {

@@ -17,6 +17,9 @@ bool has_patch(const World& world, const RegionIdentity& region);
 /// @param least  m
 glm::dvec2 patch_half_size(const glm::dvec2& least);
 
+/// Likewise, of cells with a given shape: 2^aspect times as long along x as along y.
+glm::dvec2 patch_half_size(const glm::dvec2& least, std::int32_t aspect);
+
 /// Where a contact's middle is laid in a grid, in cells from its corner: in the middle of a column
 /// and between two rows. Each axis
 /// alone is mirror-symmetric, but the two staircases of the contact's rim differ: where they are

@@ -7,9 +7,6 @@
 
 namespace torsion {
 
-/// Of a region's grid around its contact: about one cell of 16.
-inline constexpr double kGridMargin = 1.12;
-
 /// Lays a new region's grid: in the body's tangent plane at the deepest of the cluster's points,
 /// just around them. The axes come from the body frame, so a scene that is turned as a whole gives
 /// a grid that is turned with it.

@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 
 #include "systems/contact_models/elliptic_contact.hpp"
+#include "systems/grid_place.hpp"
 #include "systems/patch_grid.hpp"
-#include "systems/region_grid.hpp"
 
 namespace torsion {
 namespace {

@@ -22,12 +22,18 @@ namespace {
 constexpr std::size_t kAnchorNumbers = std::size_t{3} * kAnchorsPerBody;
 using AnchorColumn = std::array<double, kAnchorNumbers>;
 
-/// to += force * from, `count` numbers.
+/// to += the sum of a force's components times their rows, which are `pitch` apart; `count`
+/// numbers.
 TORSION_WIDEST
-void add_scaled(std::size_t count, double force, const ComplianceValue* __restrict from,
-                double* __restrict to) {
+void add_rows(std::size_t count, const glm::dvec3& force, const ComplianceValue* __restrict rows,
+              std::size_t pitch, double* __restrict to) {
+  const double x = force.x;
+  const double y = force.y;
+  const double z = force.z;
+  const ComplianceValue* const __restrict row_y = rows + pitch;
+  const ComplianceValue* const __restrict row_z = row_y + pitch;
   for (std::size_t i = 0; i < count; ++i) {
-    to[i] += force * from[i].value;
+    to[i] = to[i] + x * rows[i].value + y * row_y[i].value + z * row_z[i].value;
   }
 }
 
@@ -45,11 +51,9 @@ void move_anchors(const PortCompliance& body, const Footing& footing, const Port
   AnchorColumn moved{};
   AnchorColumn turned{};
   for (std::size_t p = 0; p < footing.count; ++p) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::size_t row = 3 * std::size_t{footing.ports[p]} + static_cast<std::size_t>(axis);
-      add_scaled(count, forces[p][axis], &body.values[row * side], moved.data());
-      add_scaled(count, forces[p][axis], &turns_by_force[row * count], turned.data());
-    }
+    const std::size_t row = 3 * std::size_t{footing.ports[p]};
+    add_rows(count, forces[p], &body.values[row * side], side, moved.data());
+    add_rows(count, forces[p], &turns_by_force[row * count], count, turned.data());
   }
   for (std::size_t anchor = 0; anchor < anchors.size(); ++anchor) {
     anchors[anchor].displacement += vector_at(moved, anchor);

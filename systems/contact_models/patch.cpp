@@ -18,11 +18,12 @@ namespace {
 
 // Of a region that begins or whose grid moved, at most: sweeps of either, of both in all rounds
 // together, and rounds of pressures and tractions in turn. What is left to do then is done in the
-// next steps, of which each has its own sweeps. Where there are more such regions in a step they
-// share out what there is, or the step would be long.
+// next steps, of which each has its own sweeps. Where there are more such regions in a step, or
+// many others, they share out what there is, or the step would be long.
 constexpr std::uint32_t kSweepsAnew = 8;
-constexpr std::uint32_t kSweepsOfRounds = 8;
+constexpr std::uint32_t kSweepsOfRounds = 16;
 constexpr std::uint32_t kSweepsOfAll = 16;
+constexpr std::uint32_t kSweepsOfStep = 24;  // with those of the other regions
 constexpr std::uint32_t kRoundsAnew = 8;
 constexpr double kSkipAnew = 1e-5;      // the residual that will do then
 constexpr double kMostForesight = 1.5;  // of the last step's change
@@ -137,8 +138,8 @@ void add_motion_of_body(const Patch& patch, double sign) {
 
 /// After the grid has moved, or at a region's beginning: displacements of the tractions that are
 /// there.
-/// @param regions_anew  how many such regions the step has
-void start_anew(Patch& patch, std::uint32_t regions_anew) {
+/// @param sweeps  at most
+void start_anew(Patch& patch, std::uint32_t sweeps) {
   const PatchColumns& columns = patch.columns;
   for (std::size_t cell = 0; cell < patch.rows.tractions.size(); ++cell) {
     if (columns.pressure[cell] <= 0.0 || columns.depth[cell] == kNoContact) {
@@ -162,9 +163,8 @@ void start_anew(Patch& patch, std::uint32_t regions_anew) {
         -glm::dvec2(columns.traction_x[cell], columns.traction_y[cell]);
   }
   const std::uint32_t least = patch.world.settings.at<Settings>(0).sweeps;
-  const std::uint32_t share = kSweepsOfAll / regions_anew;
-  patch.problem.sweeps = std::max(least, std::min(kSweepsAnew, share));
-  patch.problem.sweeps_of_rounds = std::max(least, std::min(kSweepsOfRounds, share));
+  patch.problem.sweeps = std::max(least, std::min(kSweepsAnew, sweeps));
+  patch.problem.sweeps_of_rounds = std::max(least, std::min(kSweepsOfRounds, sweeps));
   patch.problem.rounds = kRoundsAnew;
   patch.problem.skip = kSkipAnew;
   patch.problem.settled = 0.0;
@@ -253,7 +253,8 @@ bool is_anew(const PatchState& state) {
   return state.started == 0 || state.moved != 0;
 }
 
-void solve_region(StepContext& context, std::uint32_t region, std::uint32_t regions_anew) {
+/// @param sweeps_anew  at most, of one that is
+void solve_region(StepContext& context, std::uint32_t region, std::uint32_t sweeps_anew) {
   Patch patch = patch_of(context, region);
   const bool anew = is_anew(patch.state);
   const std::uint32_t body = patch.world.regions.at<RegionIdentity>(region).body;
@@ -262,7 +263,7 @@ void solve_region(StepContext& context, std::uint32_t region, std::uint32_t regi
   const double deepened = depth - patch.state.depth;
   foresee_cells(patch.rows, anew ? 0.0 : foresight(patch, deepened), patch.columns, patch.problem);
   if (anew) {
-    start_anew(patch, std::max(regions_anew, 1U));
+    start_anew(patch, sweeps_anew);
   } else {
     let_go_cells(patch.problem, patch.columns, patch.work, kNoContact);
   }
@@ -303,20 +304,29 @@ void solve_region(StepContext& context, std::uint32_t region, std::uint32_t regi
   summarize(patch, sums);
 }
 
+/// How many sweeps each of the regions that are anew gets in this step.
+std::uint32_t sweeps_of_each_anew(const World& world) {
+  std::uint32_t all = 0;
+  std::uint32_t anew = 0;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    if (has_patch(world, world.regions.at<RegionIdentity>(region))) {
+      ++all;
+      anew += is_anew(world.regions.at<PatchState>(region)) ? 1U : 0U;
+    }
+  }
+  const std::uint32_t of_others = (all - anew) * world.settings.at<Settings>(0).sweeps;
+  const std::uint32_t left = kSweepsOfStep - std::min(kSweepsOfStep, of_others);
+  return std::min(kSweepsOfAll, left) / std::max(anew, 1U);
+}
+
 }  // namespace
 
 void patch_forces(StepContext& context) {
   World& world = context.world;
-  std::uint32_t anew = 0;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    anew += has_patch(world, world.regions.at<RegionIdentity>(region)) &&
-                    is_anew(world.regions.at<PatchState>(region))
-                ? 1U
-                : 0U;
-  }
+  const std::uint32_t sweeps_anew = sweeps_of_each_anew(world);
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
     if (has_patch(world, world.regions.at<RegionIdentity>(region))) {
-      solve_region(context, region, anew);
+      solve_region(context, region, sweeps_anew);
     }
   }
 }

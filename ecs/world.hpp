@@ -68,8 +68,8 @@ using ToolTable =
     Table<Entity, ToolPose, ToolMotion, MassProperties, ToolWrench, OwnedRows, Bounds>;
 using RegionTable =
     Table<RegionIdentity, RegionFrame, RegionCarrier, RegionSupport, SupportField, TractionFrame,
-          RegionGeometry, RegionMotion, RegionNormal, RegionFriction, PatchState, LayerGrid,
-          SmoothContact, MdrState, RegionField, AnchorTurns, RegionWrench>;
+          RegionGeometry, RegionMotion, RegionNormal, RegionFriction, PatchState, PatchEnergy,
+          LayerGrid, SmoothContact, MdrState, RegionField, AnchorTurns, RegionWrench>;
 using CellTable = Table<CellGeometry, CellTraction>;
 using PatchCellTable = Table<PatchMovedX, PatchMovedY, PatchDepression, PatchHeldX, PatchHeldY,
                              PatchKnown, PatchChangeX, PatchChangeY, PatchChangePressure,

@@ -9,6 +9,7 @@
 #include "systems/grid_summary.hpp"
 #include "systems/patch_centering.hpp"
 #include "systems/patch_grid.hpp"
+#include "systems/region_motion.hpp"
 
 namespace torsion {
 namespace {
@@ -110,6 +111,19 @@ RegionPoints& contact_of(StepContext& context, const RegionIdentity& region) {
   return context.scratch.region_points[block_of(region)];
 }
 
+/// What sticks goes with the tool in this step, too. Cells that only followed a step later would
+/// lie at other depths in between, for which nobody has worked.
+void foresee_carrier(World& world, std::uint32_t region) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const double share = world.regions.at<RegionFriction>(region).stick_share;
+  const MotionOverBody motion = motion_over_body(world, region);
+  const glm::dvec3 shift = shift_at(motion, frame.origin);
+  const glm::dvec3 turn = motion.turn - motion.carried_turn;
+  RegionCarrier& carrier = world.regions.at<RegionCarrier>(region);
+  carrier.translation += share * (shift - frame.normal * glm::dot(shift, frame.normal));
+  carrier.rotation += frame.normal * (share * glm::dot(turn, frame.normal));
+}
+
 }  // namespace
 
 void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
@@ -157,6 +171,7 @@ void region_grids(StepContext& context) {
     const RegionPoints& contact = contact_of(context, grid.identity);
     if (has_patch(context.world, grid.identity) &&
         context.world.regions.at<PatchState>(region).started != 0) {
+      foresee_carrier(context.world, region);
       find_cells(grid, contact);
     } else {
       glm::dvec3 deepest(0.0);

@@ -61,6 +61,22 @@ void aim_axis(const MotionInBody& tool, const RegionFrame& frame, const RegionGe
 
 }  // namespace
 
+MotionOverBody motion_over_body(const World& world, std::uint32_t region) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const Pose& body = world.bodies.at<Pose>(identity.body);
+  const ToolMotion& tool = world.tools.at<ToolMotion>(identity.tool);
+  const RegionSupport& support = world.regions.at<RegionSupport>(region);
+  const double dt = world.clock.at<Clock>(0).dt;
+  const glm::dquat to_body = glm::conjugate(body.rotation);
+  const glm::dvec3 shift = to_body * tool.velocity * dt;
+  return {shift,
+          to_body * tool.angular_velocity * dt,
+          to_inner(body, tool.mass_center) - 0.5 * shift,
+          support.translation_step,
+          support.rotation_step,
+          support.about};
+}
+
 void region_motion(StepContext& context) {
   World& world = context.world;
   const double dt = world.clock.at<Clock>(0).dt;

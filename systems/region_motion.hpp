@@ -1,8 +1,31 @@
 #pragma once
 
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
 #include "systems/step.hpp"
 
 namespace torsion {
+
+/// How the tool moves over the material under a region in a step, as a rigid body, body axes.
+struct MotionOverBody {
+  glm::dvec3 shift{0.0};         // m, of the tool's mass centre
+  glm::dvec3 turn{0.0};          // rad, rotation vector
+  glm::dvec3 halfway{0.0};       // m: where the mass centre is in the middle of the step
+  glm::dvec3 carried_by{0.0};    // m, of the material at `carried_about`
+  glm::dvec3 carried_turn{0.0};  // rad
+  glm::dvec3 carried_about{0.0};
+};
+
+MotionOverBody motion_over_body(const World& world, std::uint32_t region);
+
+/// How the tool goes over the material that is at `point` and stays there, m, body axes. Turned
+/// about where the mass centre is halfway: turning and sliding in one step come in no order, and
+/// the work of the mean of two wrenches is that of the tractions' means.
+inline glm::dvec3 shift_at(const MotionOverBody& motion, const glm::dvec3& point) {
+  return motion.shift + glm::cross(motion.turn, point - motion.halfway) - motion.carried_by -
+         glm::cross(motion.carried_turn, point - motion.carried_about);
+}
 
 /// How the tool moves over the body at each region in this step, and where its rotation axis goes
 /// (section III of the paper): slide and spin in the tangent plane, the turn phi summed from the

@@ -125,6 +125,18 @@ struct PatchState {
   std::uint32_t padding = 0;
 };
 
+/// What a region with contact model `patch` holds of the work done on it, and the forces of the
+/// last step that its work is reckoned by. Written by: patch_forces.
+struct PatchEnergy {
+  double held = 0.0;       // J
+  double owed = 0.0;       // J: lacking work that is still to be charged
+  double charge = 0.0;     // of the elastic change of the last step, as a drag along it
+  double depth = 0.0;      // m: the largest
+  glm::dvec3 force{0.0};   // N, body, on the tool
+  glm::dvec3 couple{0.0};  // N m, body, about `point`
+  glm::dvec3 point{0.0};   // m, body
+};
+
 /// Where smooth exact shapes lie deepest in each other in a region with contact model `mdr`.
 /// Written by: mdr_contacts.
 struct SmoothContact {

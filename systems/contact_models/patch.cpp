@@ -6,11 +6,13 @@
 
 #include "systems/contact_models/friction_decay.hpp"
 #include "systems/contact_models/patch_cells.hpp"
+#include "systems/contact_models/patch_energy.hpp"
 #include "systems/contact_models/patch_passes.hpp"
 #include "systems/contact_models/region_influences.hpp"
 #include "systems/frames.hpp"
 #include "systems/grid_cells.hpp"
 #include "systems/patch_grid.hpp"
+#include "systems/region_motion.hpp"
 #include "systems/scratch.hpp"
 
 namespace torsion {
@@ -25,15 +27,14 @@ constexpr std::uint32_t kSweepsOfRounds = 16;
 constexpr std::uint32_t kSweepsOfAll = 16;
 constexpr std::uint32_t kSweepsOfStep = 24;  // with those of the other regions
 constexpr std::uint32_t kRoundsAnew = 8;
-constexpr double kSkipAnew = 1e-5;      // the residual that will do then
-constexpr double kMostForesight = 1.5;  // of the last step's change
+constexpr double kSkipAnew = 1e-5;  // the residual that will do then
+// Of the last step's change. Steps that end early must not foresee more: an error that a step's
+// sweeps leave to the share r comes back as r (1 + s) and -r s of the last two, with s what is
+// foreseen; the roots of x^2 = r (1 + s) x - r s are within 1 for every r < 1 only where s <= 1.
+constexpr double kMostForesight = 1.0;
 // A body that gives way takes more sweeps: its motions have compliances of their own, beside those
-// that the local inverse knows. Steps that end early must then not foresee more than the last
-// change: an error that a step's sweeps leave to the share r comes back as r (1 + s) and -r s of
-// the last two, with s what is foreseen; the roots of x^2 = r (1 + s) x - r s are within 1 for
-// every r < 1 only where s <= 1.
+// that the local inverse knows.
 constexpr std::uint32_t kSweepsOnSoftBody = 4;  // times the settings'
-constexpr double kMostOnSoftBody = 1.0;
 
 /// One region at work.
 struct Patch {
@@ -50,6 +51,15 @@ struct Patch {
   PatchState& state;
   PatchProblem problem;
 };
+
+/// As the tool goes over cells that stay where they are, while RegionMotion's pivot goes with it.
+RegionMotion motion_over_cells(const World& world, std::uint32_t region, const RegionFrame& frame) {
+  RegionMotion motion = world.regions.at<RegionMotion>(region);
+  const MotionOverBody over = motion_over_body(world, region);
+  motion.slide +=
+      glm::dvec2(body_to_grid_direction(frame, 0.5 * glm::cross(over.turn, over.shift)));
+  return motion;
+}
 
 Patch patch_of(StepContext& context, std::uint32_t region) {
   World& world = context.world;
@@ -82,15 +92,18 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
           region,
           settings.grid_side,
           frame,
-          world.regions.at<RegionMotion>(region),
+          motion_over_cells(world, region, frame),
           patch_rows(world, identity.cells),
           world.regions.at<PatchState>(region),
           problem};
 }
 
-/// How much of the last step's change to expect again: the motion of this step along that of the
-/// last one.
-double foresight(const Patch& patch, double deepened) {
+bool has_support(const Patch& patch) {
+  return patch.problem.support.response != nullptr;
+}
+
+/// On a body that gives way as a whole: the motion of this step along that of the last one.
+double motion_share(const Patch& patch, double deepened) {
   const double radius = patch.world.regions.at<RegionGeometry>(patch.region).radius;
   const PatchState& last = patch.state;
   const double spin = last.spin * radius;
@@ -98,12 +111,16 @@ double foresight(const Patch& patch, double deepened) {
       glm::dot(last.slide, last.slide) + spin * spin + last.deepened * last.deepened;
   const double along = glm::dot(last.slide, patch.motion.slide) +
                        spin * patch.motion.spin * radius + last.deepened * deepened;
-  const double most = patch.problem.support.response != nullptr ? kMostOnSoftBody : kMostForesight;
-  return square > 0.0 ? std::clamp(along / square, 0.0, most) : 0.0;
+  return square > 0.0 ? std::clamp(along / square, 0.0, kMostForesight) : 0.0;
 }
 
-bool has_support(const Patch& patch) {
-  return patch.problem.support.response != nullptr;
+/// How much of the last step's change to expect again.
+ForeseenShares foreseen_shares(const Patch& patch, double deepened) {
+  if (has_support(patch)) {
+    const double share = motion_share(patch, deepened);
+    return {share, share};
+  }
+  return best_shares(patch.rows, patch.columns, patch.problem.coupled, kMostForesight);
 }
 
 /// The body's own motion at every cell beyond what the tool's overlap has of it already.
@@ -248,6 +265,18 @@ void summarize(const Patch& patch, const PatchSums& sums) {
   carrier.rotation = patch.frame.normal * turn;
 }
 
+/// No region gives back more than it holds. On a body that gives way as a whole that is not known
+/// cell by cell, and a grid laid anew holds what it holds.
+void settle_energy(const Patch& patch, bool anew) {
+  if (has_support(patch)) {
+    patch.world.regions.at<PatchEnergy>(patch.region) = PatchEnergy{};
+    return;
+  }
+  const double area = cell_area(patch.frame, patch.side);
+  const double held = held_energy(patch.problem, patch.columns, area, patch.work);
+  charge_lacking_work(patch.world, patch.region, held, anew);
+}
+
 /// True where the last step's displacements are no start.
 bool is_anew(const PatchState& state) {
   return state.started == 0 || state.moved != 0;
@@ -261,13 +290,15 @@ void solve_region(StepContext& context, std::uint32_t region, std::uint32_t swee
   load_cells(patch.rows, patch.world.bodies.at<Friction>(body), patch.columns, patch.places);
   const double depth = largest(whole_lanes(patch.columns.depth.size()), patch.columns.depth.data());
   const double deepened = depth - patch.state.depth;
-  foresee_cells(patch.rows, anew ? 0.0 : foresight(patch, deepened), patch.columns, patch.problem);
   if (anew) {
+    foresee_cells(patch.rows, {}, patch.columns, patch.problem);
     start_anew(patch, sweeps_anew);
+    set_targets(patch.motion, patch.places, patch.columns);
   } else {
+    set_targets(patch.motion, patch.places, patch.columns);
+    foresee_cells(patch.rows, foreseen_shares(patch, deepened), patch.columns, patch.problem);
     let_go_cells(patch.problem, patch.columns, patch.work, kNoContact);
   }
-  set_targets(patch.motion, patch.places, patch.columns);
   if (has_support(patch)) {
     find_support(patch);
     take_off_support(patch.rows.surface.known, patch.support.x, patch.support.y, patch.columns);
@@ -302,6 +333,7 @@ void solve_region(StepContext& context, std::uint32_t region, std::uint32_t swee
                  0,
                  0};
   summarize(patch, sums);
+  settle_energy(patch, anew);
 }
 
 /// How many sweeps each of the regions that are anew gets in this step.

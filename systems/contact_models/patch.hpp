@@ -8,8 +8,8 @@ namespace torsion {
 // with pressure and Coulomb friction solved together (docs/models.md).
 
 /// Pressures, tractions, forces and couple of every region of a body with this model. Writes
-/// CellTraction, all PatchValue, PatchState, RegionCarrier, RegionNormal, RegionFriction
-/// and, from the pressures, RegionGeometry.
+/// CellTraction, all PatchValue, PatchState, PatchEnergy, RegionCarrier, RegionNormal,
+/// RegionFriction and, from the pressures, RegionGeometry.
 void patch_forces(StepContext& context);
 
 }  // namespace torsion

@@ -98,6 +98,45 @@ void foresee(std::size_t count, double share, const double* __restrict change,
   sums = total;
 }
 
+/// Of the complementary energy along a change.
+struct Slope {
+  double slope = 0.0;      // Pa m, downhill
+  double stiffness = 0.0;  // Pa m
+};
+
+TORSION_WIDEST
+void add_slope(std::size_t count, const double* __restrict target, const double* __restrict moved,
+               const double* __restrict change, const double* __restrict moves,
+               Wide& __restrict slopes, Wide& __restrict stiffnesses) {
+  Wide slope{};
+  Wide stiffness{};
+  std::size_t cell = 0;
+  for (; cell + kPatchLanes <= count; cell += kPatchLanes) {
+    const Wide to = lanes_at(target + cell);
+    const Wide by = lanes_at(change + cell);
+    slope += by * (to > kNoContact ? to - lanes_at(moved + cell) : Wide{});
+    stiffness += by * lanes_at(moves + cell);
+  }
+  for (std::size_t lane = 0; cell < count; ++cell, ++lane) {
+    slope[lane] += change[cell] * (target[cell] > kNoContact ? target[cell] - moved[cell] : 0.0);
+    stiffness[lane] += change[cell] * moves[cell];
+  }
+  slopes = slope;
+  stiffnesses = stiffness;
+}
+
+/// @param target, moved  m: what is asked for, and what there is
+/// @param change, moves  Pa, and m that it moves: of the last step
+void add_slope(std::span<const double> target, std::span<const double> moved,
+               std::span<const double> change, std::span<const double> moves, Slope& along) {
+  Wide slopes;
+  Wide stiffnesses;
+  add_slope(target.size(), target.data(), moved.data(), change.data(), moves.data(), slopes,
+            stiffnesses);
+  along.slope += sum_of(slopes);
+  along.stiffness += sum_of(stiffnesses);
+}
+
 /// @return the sum of the changes' sizes
 double foresee(double share, std::span<const double> change, std::span<double> to) {
   Wide sums;
@@ -211,19 +250,43 @@ void load_cells(const PatchRows& rows, const Friction& friction, const PatchColu
   find_starts(count, from.known.data(), from.held_y.data(), from.moved_y.data(), at.from_y.data());
 }
 
-void foresee_cells(const PatchRows& rows, double share, const PatchColumns& columns,
+ForeseenShares best_shares(const PatchRows& rows, const PatchColumns& columns, bool coupled,
+                           double most) {
+  const PatchSurface& from = rows.surface;
+  const PatchChange& change = rows.change;
+  Slope normal;
+  add_slope(columns.depth, from.depression, change.pressure, change.depression, normal);
+  Slope tangential;
+  add_slope(columns.target_x, from.moved_x, change.traction_x, change.moved_x, tangential);
+  add_slope(columns.target_y, from.moved_y, change.traction_y, change.moved_y, tangential);
+  if (coupled) {
+    normal.slope += tangential.slope;
+    normal.stiffness += tangential.stiffness;
+    tangential = normal;
+  }
+  const auto share = [most](const Slope& along) {
+    return along.stiffness > 0.0 ? std::clamp(along.slope / along.stiffness, 0.0, most) : 0.0;
+  };
+  return {share(normal), share(tangential)};
+}
+
+void foresee_cells(const PatchRows& rows, const ForeseenShares& shares, const PatchColumns& columns,
                    PatchProblem& problem) {
+  const auto [normal, tangential] = shares;
   const std::size_t count = rows.geometry.size();
   const PatchSurface& from = rows.surface;
   const PatchChange& change = rows.change;
   const PatchColumns to = columns;
-  carry_on(count, share, from.moved_x.data(), change.moved_x.data(), to.moved_x.data());
-  carry_on(count, share, from.moved_y.data(), change.moved_y.data(), to.moved_y.data());
-  carry_on(count, share, from.depression.data(), change.depression.data(), to.depression.data());
-  if (share > 0.0) {
-    problem.foreseen_pressure = share * foresee(share, change.pressure, to.pressure);
-    problem.foreseen_traction = share * (foresee(share, change.traction_x, to.traction_x) +
-                                         foresee(share, change.traction_y, to.traction_y));
+  carry_on(count, tangential, from.moved_x.data(), change.moved_x.data(), to.moved_x.data());
+  carry_on(count, tangential, from.moved_y.data(), change.moved_y.data(), to.moved_y.data());
+  carry_on(count, normal, from.depression.data(), change.depression.data(), to.depression.data());
+  if (normal > 0.0) {
+    problem.foreseen_pressure = normal * foresee(normal, change.pressure, to.pressure);
+  }
+  if (tangential > 0.0) {
+    problem.foreseen_traction =
+        tangential * (foresee(tangential, change.traction_x, to.traction_x) +
+                      foresee(tangential, change.traction_y, to.traction_y));
   }
 }
 

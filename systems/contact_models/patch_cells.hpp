@@ -52,9 +52,21 @@ struct HeldBefore {
 void load_cells(const PatchRows& rows, const Friction& friction, const PatchColumns& columns,
                 const PatchPlaces& places);
 
-/// Fills the displacements and carries all on by `share` of what the last step changed. Sets what
-/// of it is foreseen in `problem`.
-void foresee_cells(const PatchRows& rows, double share, const PatchColumns& columns,
+/// Of what the last step changed.
+struct ForeseenShares {
+  double normal = 0.0;      // of the pressures and depressions
+  double tangential = 0.0;  // of what is along the surface
+};
+
+/// How much of it to change again before anything else: as much as brings the complementary energy
+/// of this step's depths and targets to its least along it, 0 to `most`.
+/// @param coupled  pressures and tractions change together
+ForeseenShares best_shares(const PatchRows& rows, const PatchColumns& columns, bool coupled,
+                           double most);
+
+/// Fills the displacements and carries all on by these shares. Sets what of it is foreseen in
+/// `problem`.
+void foresee_cells(const PatchRows& rows, const ForeseenShares& shares, const PatchColumns& columns,
                    PatchProblem& problem);
 
 /// Puts the columns back into the rows.

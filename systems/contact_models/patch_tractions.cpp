@@ -170,9 +170,10 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
     const double best = outside ? 1.0 : sweep.step.slope / stiffness;
     const double length = sweep.step.slips > 0.0 ? std::clamp(best, 0.0, 1.0) : best;
     alone = length < kShort;
+    const bool exact = !outside && sweep.step.clipped == 0.0;
     outside = false;
     const SweepChange change = change_tractions(cells, length);
-    before = sweep.step.clipped > 0.0 ? 0.0 : sweep.square;
+    before = exact ? sweep.square : 0.0;
     whole = std::max(whole, change.sum);
     outcome.residual = change.largest / problem.reference;
     ++outcome.sweeps;
@@ -180,6 +181,7 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
       break;
     }
   }
+  keep_what_is_no_slip(cells);
   return outcome;
 }
 

@@ -146,6 +146,18 @@ void change_both(const TractionColumns& cells, double length, SweepChange& __res
   change = {largest_of(most), sum_of(sums)};
 }
 
+TORSION_WIDEST
+void keep_slips(std::size_t count, const double* __restrict traction_x,
+                const double* __restrict traction_y, const double* __restrict target_x,
+                const double* __restrict target_y, const double* __restrict moved_x,
+                const double* __restrict moved_y, double* __restrict slips) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const double along =
+        traction_x[k] * (target_x[k] - moved_x[k]) + traction_y[k] * (target_y[k] - moved_y[k]);
+    slips[k] = along < 0.0 ? 0.0 : slips[k];
+  }
+}
+
 }  // namespace
 
 bool find_limits(const TractionColumns& cells) {
@@ -178,6 +190,11 @@ SweepChange change_tractions(const TractionColumns& cells, double length) {
   add_scaled(cells.count, length, cells.moves_x, cells.moved_x);
   add_scaled(cells.count, length, cells.moves_y, cells.moved_y);
   return change;
+}
+
+void keep_what_is_no_slip(const TractionColumns& cells) {
+  keep_slips(cells.count, cells.traction_x, cells.traction_y, cells.target_x, cells.target_y,
+             cells.moved_x, cells.moved_y, cells.slips);
 }
 
 }  // namespace torsion

@@ -59,4 +59,8 @@ TractionStep mix_tractions(const TractionColumns& cells, const Mix& mix);
 /// Goes `length` of the step, which becomes the change.
 SweepChange change_tractions(const TractionColumns& cells, double length);
 
+/// Cells at their limit whose way left to go leads against their friction do not slip: to let them
+/// go there would give work. What is left is yet to be done.
+void keep_what_is_no_slip(const TractionColumns& cells);
+
 }  // namespace torsion

@@ -1,0 +1,39 @@
+#pragma once
+
+// What a region with contact model `patch` holds of the work that was done on it, so that it never
+// gives back more.
+
+#include "ecs/world.hpp"
+#include "systems/contact_models/patch_solver.hpp"
+
+namespace torsion {
+
+/// The local inverse so many times is at least the inverse of all influences of a grid: to 1 /
+/// 0.656 of 12 cells a side, 1 / 0.638 of 16; coupled, at nu = 0, 1 / 0.411 and 1 / 0.396
+/// (patch_energy_test.cpp).
+inline constexpr double kStiffest = 1.75;
+inline constexpr double kStiffestCoupled = 3.0;
+
+/// The energy that a region's cells hold, J, told from tractions t that need not be those of what
+/// was asked for: with displacements u by them and r = u - w what these are beyond that, w having
+/// been asked for, the energy of w is t u / 2 - t r + r A^-1 r / 2, A the influences
+/// (complementary energy, whose slope is r; Johnson, Contact Mechanics, 1985, 5.9). Instead of A^-1
+/// there is the local inverse, kStiffest times: what is still to be done is paid for in advance,
+/// and what it may come to is never less than what it was. Cells that slip hold what they have.
+/// @pre the displacements are those by the tractions alone, the targets likewise
+double held_energy(const PatchProblem& problem, const PatchColumns& columns, double cell_area,
+                   PatchWork& work);
+
+/// Takes back what the forces of this step, as they are in the region's components, would give the
+/// tool's holder beyond what the region held: the work of a step is at least what the held energy
+/// grows by. What is lacking is charged as a drag along the step's motion, shared out as by the
+/// stiffness of a region that sticks. Where that drag would be too large the rest is owed.
+/// So a solution that lags behind the tool, as one does that ends after few sweeps, gives no
+/// energy. Compare: passivity control, Hannaford and Ryu, IEEE Trans. Robotics and Automation 18
+/// (2002) 1, which knows the work but not what is held. Writes PatchEnergy, RegionNormal,
+/// RegionFriction.
+/// @param held    J, in this step
+/// @param begins  true where there is no step before with this grid
+void charge_lacking_work(World& world, std::uint32_t region, double held, bool begins);
+
+}  // namespace torsion

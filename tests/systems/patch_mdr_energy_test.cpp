@@ -39,28 +39,26 @@ struct Work {
 struct EnergyCase {
   const char* name;
   BallScene scene;
-  double still;      // bound at constant depth, of the work to and fro
-  double breathing;  // bound through other depths
+  double deep;  // bound through depths that change by up to 0.3, of the work to and fro
 };
 
 void PrintTo(const EnergyCase& energy, std::ostream* out) {
   *out << energy.name;
 }
 
-// mdr gains nothing (mdr_properties_test.cpp). Through other depths the mean of the forces before
-// and after is not the mean over the step: of a power law of 3 / 2 by (h / depth)^2 / 16 = 9e-6
-// with h a 25th of 0.3 depths; mdr_energy_test.cpp takes small steps. patch solves every step to
-// within a residual: what is left to do is done in the next step, along another way. That counts
-// where next to nothing slips: 0.2 % of the work in two sweeps, a thousandth of that in twenty,
-// when the changes that are left out (1e-5 of the pressure) bound it. Through other depths cells
-// come and go, and the grid is laid anew: the force of a depth is the same again only within the
+// Neither gains anything (mdr_properties_test.cpp, patch_energy_test.cpp). Through other depths the
+// mean of the forces before and after is not the mean over the step: of a power law of 3 / 2 by
+// (h / depth)^2 / 16, with h a 25th of the change: 4e-8 of 0.02 depths, 9e-6 of 0.3. Through depths
+// so different patch lays its grid anew: the force of a depth is the same again only within the
 // staircase of its rim.
+constexpr double kStill = 1e-9;
+constexpr double kSlightly = 4e-8;
 const EnergyCase kCases[] = {
-    {"mdr", {.model = ContactModel::kMdr}, 1e-9, 1e-5},
-    {"patch12", {.side = 12}, 5e-3, 5e-3},
-    {"patch16", {.side = 16}, 5e-3, 5e-3},
-    {"patch12of20Sweeps", {.side = 12, .sweeps = 20}, 2e-5, 1.5e-3},
-    {"compressible", {.poisson = 0.3, .side = 12, .sweeps = 20}, 1e-3, 1.5e-3},
+    {"mdr", {.model = ContactModel::kMdr}, 1e-5},
+    {"patch12", {.side = 12}, 1e-3},
+    {"patch16", {.side = 16}, 1e-3},
+    {"patch12of20Sweeps", {.side = 12, .sweeps = 20}, 1e-3},
+    {"compressible", {.poisson = 0.3, .side = 12}, 1e-3},
 };
 
 class EnergyTest : public testing::TestWithParam<EnergyCase> {};
@@ -102,7 +100,7 @@ double least_work(PressedBall& ball, double breathing, double size) {
 TEST_P(EnergyTest, ClosedPathsAtConstantDepthCostWork) {
   PressedBall ball(GetParam().scene);
   for (const double size : {0.01, 0.1, 1.0, 10.0}) {
-    EXPECT_GE(least_work(ball, 0.0, size), -GetParam().still) << size;
+    EXPECT_GE(least_work(ball, 0.0, size), -kStill) << size;
   }
 }
 
@@ -110,7 +108,7 @@ TEST_P(EnergyTest, ClosedPathsThroughOtherDepthsCostWork) {
   PressedBall ball(GetParam().scene);
   for (const double breathing : {0.02, 0.3}) {
     for (const double size : {0.01, 0.1, 1.0, 10.0}) {
-      EXPECT_GE(least_work(ball, breathing, size), -GetParam().breathing)
+      EXPECT_GE(least_work(ball, breathing, size), -(breathing < 0.1 ? kSlightly : GetParam().deep))
           << breathing << " " << size;
     }
   }

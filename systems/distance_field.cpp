@@ -20,6 +20,7 @@ struct AxisPlace {
   const double last = static_cast<double>(cells);
   const double inside =
       coordinate > 0.0 ? (coordinate < last ? coordinate : last) : 0.0;  // NaN goes to 0
+  // By way of the signed number, which takes one instruction.
   const auto floor = static_cast<std::uint32_t>(static_cast<std::int32_t>(inside));
   const std::uint32_t cell = floor < cells ? floor : cells - 1;
   return {cell, inside - static_cast<double>(cell)};

@@ -118,7 +118,7 @@ void foresee_carrier(World& world, std::uint32_t region) {
   const double share = world.regions.at<RegionFriction>(region).stick_share;
   const MotionOverBody motion = motion_over_body(world, region);
   const glm::dvec3 shift = shift_at(motion, frame.origin);
-  const glm::dvec3 turn = motion.turn - motion.carried_turn;
+  const glm::dvec3 turn = turn_of(motion);
   RegionCarrier& carrier = world.regions.at<RegionCarrier>(region);
   carrier.translation += share * (shift - frame.normal * glm::dot(shift, frame.normal));
   carrier.rotation += frame.normal * (share * glm::dot(turn, frame.normal));

@@ -25,35 +25,31 @@ double lever_to_fixed(const FixedRegion& fixed, const glm::dvec3& point, const g
   return std::max(std::abs(glm::dot(away, axis)), least);
 }
 
-/// The tool's motion seen from the body's axes.
-struct MotionInBody {
-  glm::dvec3 center;            // m: mass centre
-  glm::dvec3 velocity;          // m/s
-  glm::dvec3 angular_velocity;  // rad/s
-  glm::dvec3 axis;              // unit or zero
+/// The tool's rotation axis seen from the body's axes.
+struct AxisInBody {
+  glm::dvec3 center;  // m: mass centre, which it goes through
+  glm::dvec3 along;   // unit or zero
 };
 
-MotionInBody motion_in_body(const World& world, const RegionIdentity& region) {
+AxisInBody axis_in_body(const World& world, const RegionIdentity& region) {
   const Pose& body = world.bodies.at<Pose>(region.body);
   const ToolMotion& motion = world.tools.at<ToolMotion>(region.tool);
-  const glm::dquat to_body = glm::conjugate(body.rotation);
-  return {to_inner(body, motion.mass_center), to_body * motion.velocity,
-          to_body * motion.angular_velocity, to_body * motion.axis};
+  return {to_inner(body, motion.mass_center), glm::conjugate(body.rotation) * motion.axis};
 }
 
 /// Where the axis meets the plane through p_eq, and how much of it counts as going through the
 /// region.
-void aim_axis(const MotionInBody& tool, const RegionFrame& frame, const RegionGeometry& geometry,
+void aim_axis(const AxisInBody& axis, const RegionFrame& frame, const RegionGeometry& geometry,
               RegionMotion& motion) {
   const glm::dvec3 center = body_to_grid(frame, geometry.equivalent_point);
   motion.pivot = glm::dvec2(center);
   motion.axis_share = 0.0;
-  const double slope = glm::dot(tool.axis, frame.normal);
+  const double slope = glm::dot(axis.along, frame.normal);
   if (std::abs(slope) < kGrazing || geometry.radius <= 0.0) {
     return;
   }
-  const double along = glm::dot(geometry.equivalent_point - tool.center, frame.normal) / slope;
-  const glm::dvec2 meets(body_to_grid(frame, tool.center + tool.axis * along));
+  const double along = glm::dot(geometry.equivalent_point - axis.center, frame.normal) / slope;
+  const glm::dvec2 meets(body_to_grid(frame, axis.center + axis.along * along));
   const double miss = glm::length(meets - motion.pivot);
   motion.axis_share = smooth_step((geometry.radius - miss) / (kBlendBand * geometry.radius));
   motion.pivot += motion.axis_share * (meets - motion.pivot);
@@ -79,29 +75,24 @@ MotionOverBody motion_over_body(const World& world, std::uint32_t region) {
 
 void region_motion(StepContext& context) {
   World& world = context.world;
-  const double dt = world.clock.at<Clock>(0).dt;
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
     const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
     const RegionFrame& frame = world.regions.at<RegionFrame>(region);
     const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
     RegionMotion& motion = world.regions.at<RegionMotion>(region);
-    const MotionInBody tool = motion_in_body(world, identity);
-    motion.axis = tool.axis;
-    aim_axis(tool, frame, geometry, motion);
+    const AxisInBody axis = axis_in_body(world, identity);
+    motion.axis = axis.along;
+    aim_axis(axis, frame, geometry, motion);
     const glm::dvec3 height(0.0, 0.0, body_to_grid(frame, geometry.equivalent_point).z);
     const glm::dvec3 pivot = grid_to_body(frame, glm::dvec3(motion.pivot, 0.0) + height);
-    const glm::dvec3 velocity =
-        tool.velocity + glm::cross(tool.angular_velocity, pivot - tool.center);
-    const RegionSupport& support = world.regions.at<RegionSupport>(region);
-    const glm::dvec3 carried =
-        support.translation_step + glm::cross(support.rotation_step, pivot - support.about);
-    motion.slide = glm::dvec2(body_to_grid_direction(frame, velocity * dt - carried));
-    motion.spin = glm::dot(tool.angular_velocity * dt - support.rotation_step, frame.normal);
+    const MotionOverBody over = motion_over_body(world, region);
+    motion.slide = glm::dvec2(body_to_grid_direction(frame, shift_after(over, pivot)));
+    motion.spin = glm::dot(turn_of(over), frame.normal);
     motion.turn += motion.spin;
-    const bool has_axis = glm::dot(tool.axis, tool.axis) > 0.0;
+    const bool has_axis = glm::dot(axis.along, axis.along) > 0.0;
     motion.lever =
         lever_to_fixed(world.bodies.at<FixedRegion>(identity.body), geometry.equivalent_point,
-                       has_axis ? tool.axis : frame.normal, geometry.radius);
+                       has_axis ? axis.along : frame.normal, geometry.radius);
   }
 }
 

@@ -27,6 +27,19 @@ inline glm::dvec3 shift_at(const MotionOverBody& motion, const glm::dvec3& point
          glm::cross(motion.carried_turn, point - motion.carried_about);
 }
 
+/// How the tool turns over the material under the region, rad.
+inline glm::dvec3 turn_of(const MotionOverBody& motion) {
+  return motion.turn - motion.carried_turn;
+}
+
+/// How the tool's point goes that is at `point` before the step, and that which is there after it.
+inline glm::dvec3 shift_before(const MotionOverBody& motion, const glm::dvec3& point) {
+  return shift_at(motion, point) + 0.5 * glm::cross(motion.turn, motion.shift);
+}
+inline glm::dvec3 shift_after(const MotionOverBody& motion, const glm::dvec3& point) {
+  return shift_at(motion, point) - 0.5 * glm::cross(motion.turn, motion.shift);
+}
+
 /// How the tool moves over the body at each region in this step, and where its rotation axis goes
 /// (section III of the paper): slide and spin in the tangent plane, the turn phi summed from the
 /// spin since the region formed (integral of omega . n dt, not read off a quaternion), whether the

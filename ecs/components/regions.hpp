@@ -130,7 +130,6 @@ struct PatchState {
 struct PatchEnergy {
   double held = 0.0;       // J
   double owed = 0.0;       // J: lacking work that is still to be charged
-  double charge = 0.0;     // of the elastic change of the last step, as a drag along it
   double depth = 0.0;      // m: the largest
   glm::dvec3 force{0.0};   // N, body, on the tool
   glm::dvec3 couple{0.0};  // N m, body, about `point`

@@ -21,4 +21,14 @@ struct LocalInverse {
 /// matrices, Chan and Ng, SIAM Review 38 (1996) 427). In the tables' units.
 LocalInverse local_inverse(const InfluenceTables& tables, InfluenceKind kind);
 
+/// Those of all three directions.
+struct LocalInverses {
+  LocalInverse x, y, z;
+};
+
+inline LocalInverses local_inverses(const InfluenceTables& tables) {
+  return {local_inverse(tables, InfluenceKind::kXX), local_inverse(tables, InfluenceKind::kYY),
+          local_inverse(tables, InfluenceKind::kZZ)};
+}
+
 }  // namespace torsion

@@ -18,12 +18,11 @@
 namespace torsion {
 namespace {
 
-// Of a region that begins or whose grid moved, at most: sweeps of either, of both in all rounds
-// together, and rounds of pressures and tractions in turn. What is left to do then is done in the
-// next steps, of which each has its own sweeps. Where there are more such regions in a step, or
-// many others, they share out what there is, or the step would be long.
+// Of a region that begins or whose grid moved, at most: sweeps of either, of both in all rounds and
+// regions together, and rounds of pressures and tractions in turn. What is left to do then is done
+// in the next steps, of which each has its own sweeps. Where there are more such regions in a step,
+// or many others, they share out what there is, or the step would be long.
 constexpr std::uint32_t kSweepsAnew = 8;
-constexpr std::uint32_t kSweepsOfRounds = 16;
 constexpr std::uint32_t kSweepsOfAll = 16;
 constexpr std::uint32_t kSweepsOfStep = 24;  // with those of the other regions
 constexpr std::uint32_t kRoundsAnew = 8;
@@ -181,7 +180,7 @@ void start_anew(Patch& patch, std::uint32_t sweeps) {
   }
   const std::uint32_t least = patch.world.settings.at<Settings>(0).sweeps;
   patch.problem.sweeps = std::max(least, std::min(kSweepsAnew, sweeps));
-  patch.problem.sweeps_of_rounds = std::max(least, std::min(kSweepsOfRounds, sweeps));
+  patch.problem.sweeps_of_rounds = std::max(least, sweeps);
   patch.problem.rounds = kRoundsAnew;
   patch.problem.skip = kSkipAnew;
   patch.problem.settled = 0.0;

@@ -5,8 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "systems/contact_models/local_inverse.hpp"
-#include "systems/contact_models/patch_passes.hpp"
+#include "systems/contact_models/patch_sums.hpp"
 #include "systems/contact_models/stuck_stiffness.hpp"
 #include "systems/frames.hpp"
 #include "systems/region_motion.hpp"
@@ -54,19 +53,10 @@ void add_up(std::size_t count, const PatchColumns& columns, double* __restrict l
 }
 
 /// What is left to do times what it asks for, Pa m.
-double asked_for(const PatchProblem& problem, InfluenceKind kind, const std::vector<double>& left,
-                 PatchWork& work) {
-  const std::uint32_t side = problem.influences.side;
-  to_border(side, left.data(), work.bordered.data());
-  apply_local_inverse(local_inverse(problem.influences, kind), 1.0 / problem.compliance, side,
-                      work.bordered.data(), work.asked_x.data());
+double asked_for(const PatchProblem& problem, const LocalInverse& inverse,
+                 const std::vector<double>& left, PatchWork& work) {
+  ask_for(problem, inverse, left.data(), work, work.asked_x.data());
   return dot(left.size(), left.data(), work.asked_x.data());
-}
-
-/// Displacement of what a wrench about the tool's mass centre has to do with at `point`, body axes.
-/// @param half  -1: that wrench is the one before the step, 1: after it
-glm::dvec3 shift_under(const MotionOverBody& motion, double half, const glm::dvec3& point) {
-  return shift_at(motion, point) - 0.5 * half * glm::cross(motion.turn, motion.shift);
 }
 
 /// A step's motion as the region's stiffness sees it.
@@ -91,16 +81,15 @@ Drag drag_of(const StuckStiffness& stiffness, const RegionFrame& frame, double r
   return drag;
 }
 
-/// @return how much is charged, of the elastic change of the step
-double charge(World& world, std::uint32_t region, const glm::dvec3& shift, double spin,
-              double lacking) {
+void charge(World& world, std::uint32_t region, const glm::dvec3& shift, double spin,
+            double lacking) {
   RegionNormal& normal = world.regions.at<RegionNormal>(region);
   RegionFriction& friction = world.regions.at<RegionFriction>(region);
   const double radius = world.regions.at<RegionGeometry>(region).radius;
   const StuckStiffness stiffness = stuck_stiffness(world, region, radius);
   const Drag drag = drag_of(stiffness, world.regions.at<RegionFrame>(region), radius, shift, spin);
   if (drag.work <= 0.0) {
-    return 0.0;
+    return;
   }
   const double most = std::min(kMostCharge, kMostDrag * normal.force * drag.size / drag.work);
   // By the mean of the wrenches before and after, so that half of it counts.
@@ -108,7 +97,6 @@ double charge(World& world, std::uint32_t region, const glm::dvec3& shift, doubl
   friction.force -= share * stiffness.along_tangents * drag.slide;
   friction.couple -= share * stiffness.about_normal * spin;
   normal.force = std::max(normal.force + share * stiffness.along_normal * drag.deepened, 0.0);
-  return share;
 }
 
 PatchEnergy forces_of(const World& world, std::uint32_t region) {
@@ -128,10 +116,10 @@ PatchEnergy forces_of(const World& world, std::uint32_t region) {
 /// slope, F h^2 (d1 - d0) / (16 d^2), which is nothing in small steps.
 double work_between(const PatchEnergy& before, const PatchEnergy& after,
                     const MotionOverBody& motion, const glm::dvec3& normal) {
-  const glm::dvec3 shift = shift_under(motion, 1.0, after.point);
-  const double twice = glm::dot(before.force, shift_under(motion, -1.0, before.point)) +
+  const glm::dvec3 shift = shift_after(motion, after.point);
+  const double twice = glm::dot(before.force, shift_before(motion, before.point)) +
                        glm::dot(after.force, shift) +
-                       glm::dot(before.couple + after.couple, motion.turn - motion.carried_turn);
+                       glm::dot(before.couple + after.couple, turn_of(motion));
   const double depths = before.depth + after.depth;
   const double share = depths > 0.0 ? glm::dot(normal, shift) / depths : 0.0;
   const double bent = 0.125 * glm::dot(normal, before.force + after.force) * share * share *
@@ -146,9 +134,9 @@ double held_energy(const PatchProblem& problem, const PatchColumns& columns, dou
   EnergySums sums;
   add_up(whole_lanes(columns.pressure.size()), columns, work.moves_x.data(), work.moves_y.data(),
          work.residual_x.data(), sums);
-  const double asked = asked_for(problem, InfluenceKind::kXX, work.moves_x, work) +
-                       asked_for(problem, InfluenceKind::kYY, work.moves_y, work) +
-                       asked_for(problem, InfluenceKind::kZZ, work.residual_x, work);
+  const double asked = asked_for(problem, work.inverses.x, work.moves_x, work) +
+                       asked_for(problem, work.inverses.y, work.moves_y, work) +
+                       asked_for(problem, work.inverses.z, work.residual_x, work);
   const double stiffest = problem.coupled ? kStiffestCoupled : kStiffest;
   return cell_area * (0.5 * sum_of(sums.stored) - sum_of(sums.left) + 0.5 * stiffest * asked);
 }
@@ -158,21 +146,19 @@ void charge_lacking_work(World& world, std::uint32_t region, double held, bool b
   const PatchEnergy before = world.regions.at<PatchEnergy>(region);
   PatchEnergy now = forces_of(world, region);
   double owed = 0.0;
-  double share = 0.0;
   if (!begins) {
     const glm::dvec3 normal = world.regions.at<RegionFrame>(region).normal;
     const double grown = before.owed + held - before.held;
     owed = grown - work_between(before, now, motion, normal);
     if (owed > 0.0) {
-      share = charge(world, region, shift_under(motion, 1.0, now.point),
-                     glm::dot(motion.turn - motion.carried_turn, normal), owed);
+      charge(world, region, shift_after(motion, now.point), glm::dot(turn_of(motion), normal),
+             owed);
       now = forces_of(world, region);
       owed = grown - work_between(before, now, motion, normal);
     }
   }
   now.held = held;
   now.owed = std::max(owed, 0.0);
-  now.charge = share;
   world.regions.at<PatchEnergy>(region) = now;
 }
 

@@ -20,7 +20,8 @@ inline constexpr double kStiffestCoupled = 3.0;
 /// (complementary energy, whose slope is r; Johnson, Contact Mechanics, 1985, 5.9). Instead of A^-1
 /// there is the local inverse, kStiffest times: what is still to be done is paid for in advance,
 /// and what it may come to is never less than what it was. Cells that slip hold what they have.
-/// @pre the displacements are those by the tractions alone, the targets likewise
+/// @pre the displacements are those by the tractions alone, the targets likewise; `work` is that of
+/// the solution
 double held_energy(const PatchProblem& problem, const PatchColumns& columns, double cell_area,
                    PatchWork& work);
 

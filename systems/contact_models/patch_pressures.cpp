@@ -22,8 +22,7 @@ void find_rigid_motions(const PatchProblem& problem, PatchWork& work) {
 /// Takes back what of `asked` the body as a whole gives way by, so that a soft body is not asked
 /// for more than it needs: with B the local inverse, Z the rigid motions and C their compliance,
 /// the inverse of B^-1 + Z C Z' (Woodbury's formula). Golub and Van Loan, Matrix Computations, 2.1.
-void yield_to_rigid_motions(const PatchProblem& problem, const LocalInverse& inverse,
-                            PatchWork& work) {
+void yield_to_rigid_motions(const PatchProblem& problem, PatchWork& work) {
   const std::size_t count = work.asked_x.size();
   glm::dmat3 stiffness(0.0);  // Z' B Z
   glm::dvec3 asked(0.0);      // Z' B times the residual
@@ -32,7 +31,7 @@ void yield_to_rigid_motions(const PatchProblem& problem, const LocalInverse& inv
     std::vector<double>& motion = work.rigid_y[k];  // of the cells that count
     std::ranges::copy(work.rigid_x[k], motion.begin());
     keep_asked(count, work.residual_x.data(), motion.data());
-    ask_for(problem, inverse, motion.data(), work, asks.data());
+    ask_for(problem, work.inverses.z, motion.data(), work, asks.data());
     const auto column = static_cast<int>(k);
     asked[column] = keep_asked(count, work.residual_x.data(), asks.data());
     for (std::size_t other = 0; other <= k; ++other) {
@@ -50,14 +49,13 @@ void yield_to_rigid_motions(const PatchProblem& problem, const LocalInverse& inv
 
 /// @return the sum of the residual's squares under the preconditioner, after which `asked` holds
 /// what it asks
-double ask(const PatchProblem& problem, const LocalInverse& inverse, const PatchColumns& columns,
-           PatchWork& work) {
+double ask(const PatchProblem& problem, const PatchColumns& columns, PatchWork& work) {
   const std::size_t count = work.residual_x.size();
   find_overlaps(count, columns.depth.data(), columns.depression.data(), columns.pressure.data(),
                 work.residual_x.data());
-  ask_for(problem, inverse, work.residual_x.data(), work, work.asked_x.data());
+  ask_for(problem, work.inverses.z, work.residual_x.data(), work, work.asked_x.data());
   if (problem.support.soft) {
-    yield_to_rigid_motions(problem, inverse, work);
+    yield_to_rigid_motions(problem, work);
   }
   return keep_asked(count, work.residual_x.data(), work.asked_x.data());
 }
@@ -81,7 +79,6 @@ void let_go(const PatchProblem& problem, const PatchColumns& columns, PatchWork&
 
 PatchOutcome relax_pressures(const PatchProblem& problem, const PatchColumns& columns,
                              PatchWork& work) {
-  const LocalInverse inverse = local_inverse(problem.influences, InfluenceKind::kZZ);
   std::ranges::fill(work.step_x, 0.0);
   if (problem.support.soft) {
     find_rigid_motions(problem, work);
@@ -91,7 +88,7 @@ PatchOutcome relax_pressures(const PatchProblem& problem, const PatchColumns& co
   double whole = problem.foreseen_pressure;
   const std::size_t count = work.step_x.size();
   while (outcome.sweeps < problem.sweeps) {
-    const double square = ask(problem, inverse, columns, work);
+    const double square = ask(problem, columns, work);
     const double slope = mix_pressures(count, work.residual_x.data(), work.asked_x.data(),
                                        before > 0.0 ? square / before : 0.0, work.step_x.data());
     move_by_pressure(problem, work);

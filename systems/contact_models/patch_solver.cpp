@@ -73,6 +73,7 @@ void PatchWork::reserve(std::uint32_t side) {
 
 PatchOutcome solve_patch(const PatchProblem& problem, const PatchColumns& columns,
                          PatchWork& work) {
+  work.inverses = local_inverses(problem.influences);
   PatchOutcome outcome;
   if (problem.reference <= 0.0) {
     std::ranges::fill(columns.slips, 1.0);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "systems/contact_models/influence.hpp"
+#include "systems/contact_models/local_inverse.hpp"
 #include "systems/contact_models/patch_support.hpp"
 
 namespace torsion {
@@ -39,6 +40,7 @@ struct PatchWork {
   std::vector<double> change_pressure, change_x, change_y;       // Pa, in this solution
   // Rigid motions of the cells that count, and what three such ask for, Pa/m and Pa
   std::array<std::vector<double>, 3> rigid_x, rigid_y, rigid_asks_x, rigid_asks_y;
+  LocalInverses inverses;  // of the problem's tables, found by solve_patch
   // ((side + 2) x (side + 2)): cells with a border of zeros
   std::vector<double> bordered;
   // Cells with a traction

@@ -19,12 +19,6 @@ constexpr double kCalm = 0.6;
 constexpr double kCalmSide = 16.0;  // cells along a side, beyond which it is less
 constexpr double kShort = 0.05;     // of a step: so bent that it leads nowhere
 
-struct Inverses {
-  LocalInverse x;
-  LocalInverse y;
-  double stiffness = 0.0;  // Pa/m of a cell on its own
-};
-
 /// What one sweep finds.
 struct Sweep {
   double square = 0.0;  // of the residual under the preconditioner
@@ -58,8 +52,8 @@ TractionColumns columns_of(const PatchColumns& columns, PatchWork& work) {
 }
 
 /// As for the pressures (patch_pressures.cpp): to sliding along x and y, and turning.
-void yield_to_rigid_motions(const PatchProblem& problem, const Inverses& inverses,
-                            const TractionColumns& cells, PatchWork& work) {
+void yield_to_rigid_motions(const PatchProblem& problem, const TractionColumns& cells,
+                            PatchWork& work) {
   glm::dmat3 stiffness(0.0);
   glm::dvec3 asked(0.0);
   std::vector<double>& answers_x = work.moves_x;  // not needed before there is a step
@@ -80,8 +74,8 @@ void yield_to_rigid_motions(const PatchProblem& problem, const Inverses& inverse
     answer(motion_x, motion_y);
     double* const asks_x = work.rigid_asks_x[k].data();
     double* const asks_y = work.rigid_asks_y[k].data();
-    ask_for(problem, inverses.x, answers_x.data(), work, asks_x);
-    ask_for(problem, inverses.y, answers_y.data(), work, asks_y);
+    ask_for(problem, work.inverses.x, answers_x.data(), work, asks_x);
+    ask_for(problem, work.inverses.y, answers_y.data(), work, asks_y);
     const auto column = static_cast<int>(k);
     asked[column] = dot(count, asks_x, asks_y, cells.residual_x, cells.residual_y);
     answer(asks_x, asks_y);
@@ -103,22 +97,22 @@ void yield_to_rigid_motions(const PatchProblem& problem, const Inverses& inverse
 
 /// What is left of every cell's way, and what it asks for.
 /// @return the sum of the residual's squares under the preconditioner
-double ask(const PatchProblem& problem, const Inverses& inverses, const TractionColumns& cells,
+double ask(const PatchProblem& problem, double stiffness, const TractionColumns& cells,
            PatchWork& work) {
-  find_ways(cells, inverses.stiffness);
-  ask_for(problem, inverses.x, cells.residual_x, work, cells.asked_x);
-  ask_for(problem, inverses.y, cells.residual_y, work, cells.asked_y);
+  find_ways(cells, stiffness);
+  ask_for(problem, work.inverses.x, cells.residual_x, work, cells.asked_x);
+  ask_for(problem, work.inverses.y, cells.residual_y, work, cells.asked_y);
   if (problem.support.soft) {
-    yield_to_rigid_motions(problem, inverses, cells, work);
+    yield_to_rigid_motions(problem, cells, work);
   }
   return dot(cells.count, cells.residual_x, cells.residual_y, cells.asked_x, cells.asked_y);
 }
 
 /// What every cell asks for if its neighbours stay.
-void ask_alone(const Inverses& inverses, const TractionColumns& cells) {
+void ask_alone(double stiffness, const TractionColumns& cells) {
   for (std::size_t k = 0; k < cells.count; ++k) {
-    cells.asked_x[k] = inverses.stiffness * cells.residual_x[k];
-    cells.asked_y[k] = inverses.stiffness * cells.residual_y[k];
+    cells.asked_x[k] = stiffness * cells.residual_x[k];
+    cells.asked_y[k] = stiffness * cells.residual_y[k];
   }
 }
 
@@ -135,9 +129,7 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
                              PatchWork& work) {
   const InfluenceTables& tables = problem.influences;
   const double softest = std::max(tables.self(InfluenceKind::kXX), tables.self(InfluenceKind::kYY));
-  const Inverses inverses{local_inverse(tables, InfluenceKind::kXX),
-                          local_inverse(tables, InfluenceKind::kYY),
-                          1.0 / (softest * problem.compliance)};
+  const double alone_stiffness = 1.0 / (softest * problem.compliance);  // Pa/m of a cell on its own
   const TractionColumns cells = columns_of(columns, work);
   bool outside = find_limits(cells);
   std::ranges::fill(work.step_x, 0.0);
@@ -150,12 +142,12 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
   const double calm = kCalm * fewer * fewer;
   while (outcome.sweeps < problem.sweeps) {
     Sweep sweep;
-    sweep.square = ask(problem, inverses, cells, work);
+    sweep.square = ask(problem, alone_stiffness, cells, work);
     const double kept = before > 0.0 ? sweep.square / before : 0.0;
     sweep.step = mix_tractions(cells, {outside ? calm : 1.0, kept});
     if (!outside && (alone || sweep.step.slope <= 0.0)) {
       // Beside cells that slip the neighbours' share may lead uphill; each cell's own does not.
-      ask_alone(inverses, cells);
+      ask_alone(alone_stiffness, cells);
       const double clipped = sweep.step.clipped;
       sweep.step = mix_tractions(cells, {1.0, 0.0});
       sweep.step.clipped += clipped;

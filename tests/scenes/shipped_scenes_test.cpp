@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -71,18 +73,40 @@ TEST_P(ShippedSceneTest, LoadsPreparesAndSteps) {
   EXPECT_EQ(clock.faults_ever, 0U);
 }
 
+/// A shipped scene on a body without a body model.
+struct HalfSpaceScene {
+  std::optional<SceneDescription> scene;
+  std::optional<Simulation> simulation;
+};
+
+/// Nothing where it does not load or prepare, which is a failure.
+HalfSpaceScene on_half_space(const std::string& name, ContactModel contact) {
+  const LoadedScene loaded =
+      load_gltf(std::filesystem::path(source_folder()) / "scenes" / (name + ".gltf"));
+  HalfSpaceScene made;
+  if (!loaded.scene) {
+    ADD_FAILURE() << to_text(loaded.problems);
+    return made;
+  }
+  PrepareOptions options;
+  options.contact_model = contact;
+  options.body_model = BodyModel::kNone;
+  Result<Simulation> prepared = prepare(*loaded.scene, options);
+  if (!prepared.ok()) {
+    ADD_FAILURE() << prepared.error().text;
+    return made;
+  }
+  made.scene = loaded.scene;
+  made.simulation.emplace(std::move(prepared.value()));
+  return made;
+}
+
 TEST(ShippedScenesTest, AMalletThatJustTouchesHasOneContact) {
   // Two samples of its head that are no neighbours come into contact one after the other, 4.7 mm
   // apart: each stood for a contact of its own, with the whole force twice.
-  const auto path = std::filesystem::path(source_folder()) / "scenes/mallet_on_ellipsoid.gltf";
-  const LoadedScene loaded = load_gltf(path);
-  ASSERT_TRUE(loaded.scene.has_value()) << to_text(loaded.problems);
-  PrepareOptions options;
-  options.contact_model = ContactModel::kMdr;
-  options.body_model = BodyModel::kNone;
-  Result<Simulation> prepared = prepare(*loaded.scene, options);
-  ASSERT_TRUE(prepared.ok()) << prepared.error().text;
-  Simulation& simulation = prepared.value();
+  HalfSpaceScene made = on_half_space("mallet_on_ellipsoid", ContactModel::kMdr);
+  ASSERT_TRUE(made.simulation.has_value());
+  Simulation& simulation = *made.simulation;
   const World& world = simulation.world;
   double before = 0.0;
   for (int i = 0; i < 400; ++i) {
@@ -100,15 +124,9 @@ TEST(ShippedScenesTest, AMalletThatJustTouchesHasOneContact) {
 TEST(ShippedScenesTest, ANewGridHoldsALopsidedContactAroundItsMiddle) {
   // The compass's tips are faceted and lean: the overlap's middle, by depth, is not half-way
   // between its ends, and a grid as wide as the overlap would cut one off.
-  const auto path = std::filesystem::path(source_folder()) / "scenes/compass_on_ellipsoid.gltf";
-  const LoadedScene loaded = load_gltf(path);
-  ASSERT_TRUE(loaded.scene.has_value()) << to_text(loaded.problems);
-  PrepareOptions options;
-  options.contact_model = ContactModel::kPatch;
-  options.body_model = BodyModel::kNone;
-  Result<Simulation> prepared = prepare(*loaded.scene, options);
-  ASSERT_TRUE(prepared.ok()) << prepared.error().text;
-  Simulation& simulation = prepared.value();
+  HalfSpaceScene made = on_half_space("compass_on_ellipsoid", ContactModel::kPatch);
+  ASSERT_TRUE(made.simulation.has_value());
+  Simulation& simulation = *made.simulation;
   const World& world = simulation.world;
   const Clock& clock = world.clock.at<Clock>(0);
   std::uint32_t region = 0;
@@ -116,7 +134,7 @@ TEST(ShippedScenesTest, ANewGridHoldsALopsidedContactAroundItsMiddle) {
     return world.regions.at<RegionNormal>(row).force > 0.0;
   };
   for (region = 0; clock.time < 1.0; region = 0) {
-    const std::array<Pose, 1> poses = {scripted_pose(loaded.scene->tools[0].script, clock.time)};
+    const std::array<Pose, 1> poses = {scripted_pose(made.scene->tools[0].script, clock.time)};
     step(simulation, poses);
     while (region < world.regions.size() && !is_loaded(region)) {
       ++region;

@@ -1,64 +1,22 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <random>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "tests/systems/pressed_ball.hpp"
+#include "tests/systems/worked_ball.hpp"
 
 namespace torsion {
 namespace {
 
 using test::BallScene;
-using test::Hand;
 using test::kBallDepth;
 using test::kBallRadius;
-using test::make_ball_scene;
-using test::options_of;
+using test::Place;
 using test::PressedBall;
-
-/// Where the ball is, over the place where it was pressed.
-struct Place {
-  glm::dvec3 shift{0.0};  // m
-  double turn = 0.0;      // rad, about the world's y
-};
-
-constexpr std::size_t kWay = 3;  // steps away; as many lead back in another order
-
-/// Goes away in random steps and back in the same steps in another order. A step goes down or up,
-/// or aside and round: work by the mean of two forces counts what a rim that is gone had held over
-/// half of the way that it never went.
-std::array<Place, 2 * kWay> random_path(std::mt19937& random) {
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  // A part in 10^4 of the depth: the mean of two forces is off by (h / depth)^2 / 16 = 6e-10 of a
-  // power law of 3 / 2. Slides and turns from a part in 10^5 to a tenth of what slips all.
-  const double depth = 1e-4 * kBallDepth;
-  const double size = std::pow(10.0, -3.0 + 2.0 * uniform(random));
-  std::array<Place, kWay> steps;
-  for (Place& step : steps) {
-    const bool down = uniform(random) < 0.0;
-    step =
-        down
-            ? Place{{0.0, depth * uniform(random), 0.0}, 0.0}
-            : Place{{size * kBallDepth * uniform(random), 0.0, size * kBallDepth * uniform(random)},
-                    0.1 * size * uniform(random)};
-  }
-  std::array<Place, 2 * kWay> path;
-  Place at;
-  for (std::size_t k = 0; k < kWay; ++k) {
-    at = {at.shift + steps[k].shift, at.turn + steps[k].turn};
-    path[k] = at;
-  }
-  std::shuffle(steps.begin(), steps.end(), random);
-  for (std::size_t k = 0; k + 1 < kWay; ++k) {
-    at = {at.shift - steps[k].shift, at.turn - steps[k].turn};
-    path[kWay + k] = at;
-  }
-  path.back() = {};
-  return path;
-}
+using test::random_path;
+using test::WorkedBall;
 
 class MdrEnergyTest : public testing::TestWithParam<double> {};
 
@@ -67,35 +25,17 @@ TEST_P(MdrEnergyTest, FiftyThousandClosedPathsOfSmallStepsCostWork) {
   // The force of a depth is the gradient of a potential, for depth and normal come from the shapes;
   // every layer of springs takes what it stores or more (mdr_properties_test.cpp). From springs at
   // rest, for what was stored before may well be given back.
-  const BallScene scene{.model = ContactModel::kMdr, .poisson = GetParam()};
-  PrepareOptions options = options_of(scene);
-  options.rate = 10.0;  // Hz: what a new region exerts fades in within one step
-  Hand hand(make_ball_scene(scene), options);
-  const glm::dvec3 home(0.0, 0.1 + kBallRadius - kBallDepth, 0.0);
-  const Pose at_home{home, glm::dquat(1.0, 0.0, 0.0, 0.0)};
-  const Pose above{home + glm::dvec3(0.0, 2.0 * kBallDepth, 0.0), at_home.rotation};
+  WorkedBall ball({.model = ContactModel::kMdr, .poisson = GetParam()});
   std::mt19937 random(29);
   double least = 1.0;
   for (int path = 0; path < 50000; ++path) {
-    hand.step_to({above});
-    hand.step_to({at_home});
-    hand.step_to({at_home});
-    double sum = 0.0;
-    double throughput = 0.0;
-    Place before;
-    for (const Place& place : random_path(random)) {
-      const glm::dvec3 from = hand.poses[0].position;
-      const Wrench wrench = hand.wrench();
-      hand.step_to({{home + place.shift, glm::angleAxis(place.turn, glm::dvec3(0, 1, 0))}});
-      const Wrench& after = hand.wrench();
-      // What was gone, not what was asked for: a step has few digits of the place.
-      const glm::dvec3 gone = -0.5 * (wrench.force + after.force) * (hand.poses[0].position - from);
-      const double turned = -0.5 * (wrench.torque.y + after.torque.y) * (place.turn - before.turn);
-      sum += gone.x + gone.y + gone.z + turned;
-      throughput += std::abs(gone.x) + std::abs(gone.y) + std::abs(gone.z) + std::abs(turned);
-      before = place;
-    }
-    least = std::min(least, sum / throughput);
+    ball.lift_off();
+    ball.go(Place{});
+    ball.stay(1);
+    ball.forget();
+    // Slides and turns from a part in 10^5 to a tenth of what slips all.
+    ball.go(random_path(random, 1e-5, 1e-1));
+    least = std::min(least, ball.work / ball.throughput);
   }
   EXPECT_GE(least, -1e-9);
 }

@@ -1,7 +1,6 @@
 #include "systems/contact_models/patch_energy.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -12,120 +11,21 @@
 #include <gtest/gtest.h>
 
 #include "systems/contact_models/local_inverse.hpp"
-#include "tests/systems/pressed_ball.hpp"
+#include "tests/systems/worked_ball.hpp"
 
-// The holder's work on the contact model `patch`. It is reckoned here from outside, by the tool's
-// wrench and the poses, in the mean of the wrenches before and after each step.
+// The holder's work on the contact model `patch`.
 
 namespace torsion {
 namespace {
 
-using test::BallScene;
-using test::Hand;
 using test::kBallDepth;
-using test::kBallRadius;
-using test::make_ball_scene;
-using test::options_of;
+using test::Place;
+using test::random_path;
+using test::WorkedBall;
 
-/// Where the ball is, over the place where it was pressed.
-struct Place {
-  glm::dvec3 shift{0.0};  // m
-  double turn = 0.0;      // rad, about the world's y
-};
-
-Place operator+(const Place& a, const Place& b) {
-  return {a.shift + b.shift, a.turn + b.turn};
-}
-
-Place operator-(const Place& a, const Place& b) {
-  return {a.shift - b.shift, a.turn - b.turn};
-}
-
-constexpr std::size_t kWay = 3;  // steps away; as many lead back in another order
-using Path = std::array<Place, 2 * kWay>;
-
-/// Three steps away and the same three back in another order, each down or up, or aside and round.
-/// @param rises  largest step down or up, of the depth
-/// @param least  smallest largest step aside, of the depth; a hundred times as much is the largest
-Path random_path(std::mt19937& random, double rises, double least) {
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const double depth = rises * kBallDepth;
-  const double size = least * std::pow(10.0, 1.0 + uniform(random));
-  std::array<Place, kWay> steps;
-  for (Place& step : steps) {
-    const double x = size * kBallDepth * uniform(random);
-    const double z = size * kBallDepth * uniform(random);
-    const double turn = 0.1 * size * uniform(random);
-    step = uniform(random) < 0.0 ? Place{{0.0, depth * uniform(random), 0.0}, 0.0}
-                                 : Place{{x, 0.0, z}, turn};
-  }
-  Path path;
-  Place at;
-  for (std::size_t k = 0; k < kWay; ++k) {
-    at = at + steps[k];
-    path[k] = at;
-  }
-  std::shuffle(steps.begin(), steps.end(), random);
-  for (std::size_t k = 0; k + 1 < kWay; ++k) {
-    at = at - steps[k];
-    path[kWay + k] = at;
-  }
-  path.back() = {};
-  return path;
-}
-
-/// A ball over the cube whose holder's work is added up.
-class WorkedBall {
- public:
-  explicit WorkedBall(const BallScene& scene) : hand_(make_ball_scene(scene), options(scene)) {
-    go({glm::dvec3(0.0, 2.0 * kBallDepth, 0.0), 0.0});
-    forget();
-  }
-
-  void go(const Place& place) {
-    const glm::dvec3 from = hand_.poses[0].position;
-    const Wrench wrench = hand_.wrench();
-    hand_.step_to({{kHome + place.shift, glm::angleAxis(place.turn, glm::dvec3(0.0, 1.0, 0.0))}});
-    const Wrench& after = hand_.wrench();
-    // What was gone, not what was asked for: a step has few digits of the place.
-    const glm::dvec3 gone = -0.5 * (wrench.force + after.force) * (hand_.poses[0].position - from);
-    const double turned = -0.5 * (wrench.torque.y + after.torque.y) * (place.turn - turn_);
-    turn_ = place.turn;
-    work += gone.x + gone.y + gone.z + turned;
-    throughput += std::abs(gone.x) + std::abs(gone.y) + std::abs(gone.z) + std::abs(turned);
-  }
-  void stay(int steps) {
-    for (int step = 0; step < steps; ++step) {
-      go({hand_.poses[0].position - kHome, turn_});
-    }
-  }
-  void forget() {
-    work = 0.0;
-    throughput = 0.0;
-  }
-  /// What the region holds, less what is still to be charged, J.
-  [[nodiscard]] double held() const {
-    const PatchEnergy& energy = hand_.world().regions.at<PatchEnergy>(0);
-    return energy.held - energy.owed;
-  }
-  [[nodiscard]] const Hand& hand() const { return hand_; }
-
-  double work = 0.0;        // J
-  double throughput = 0.0;  // J: what went to and fro
-
- private:
-  static PrepareOptions options(const BallScene& scene) {
-    PrepareOptions options = options_of(scene);
-    options.rate = 10.0;  // Hz: what a new region exerts fades in within one step
-    return options;
-  }
-
-  static constexpr glm::dvec3 kHome{0.0, 0.1 + kBallRadius - kBallDepth, 0.0};
-  Hand hand_;
-  double turn_ = 0.0;
-};
-
-constexpr double kSmallRise = 1e-4;  // as in mdr_energy_test.cpp
+// From where the energy of a path has digits beside that of pressing to a tenth of the depth.
+constexpr double kLeast = 1e-3;
+constexpr double kMost = 1e-1;
 
 struct EnergyCase {
   double poisson;
@@ -141,56 +41,72 @@ class PatchEnergyTest : public testing::TestWithParam<EnergyCase> {};
 TEST_P(PatchEnergyTest, EveryPathCostsWhatTheRegionHoldsMoreAfterIt) {
   // A hundred thousand steps and more, one path after the other with all that the last one left.
   // Where nu < 0.5 pressing alone loads the springs along the surface, and a closed path may well
-  // give that back; never more.
+  // give that back; never more. What a path still owes, later ones pay: with no charge nearly all
+  // of them would owe.
   WorkedBall ball({.poisson = GetParam().poisson, .side = GetParam().side});
-  ball.go({});
+  ball.go(Place{});
   ball.stay(20);
   std::mt19937 random(41);
+  constexpr int kPaths = 20000;
   double least = 1.0;
-  for (int path = 0; path < 20000; ++path) {
+  int owing = 0;
+  for (int path = 0; path < kPaths; ++path) {
     const double before = ball.held();
     ball.forget();
-    for (const Place& place : random_path(random, kSmallRise, 1e-3)) {
-      ball.go(place);
-    }
+    ball.go(random_path(random, kLeast, kMost));
     least = std::min(least, (ball.work - (ball.held() - before)) / ball.throughput);
+    owing += ball.owed() > 0.0 ? 1 : 0;
   }
   EXPECT_GE(least, -1e-9);
+  EXPECT_LT(owing, kPaths / 2);
 }
 
 TEST_P(PatchEnergyTest, WhatIsHeldIsTheWorkOfPressing) {
-  // In a thousand steps: a staircase of cells holds what their forces took to it, up to what slips
-  // under way and to the coming and going of cells, a part in a thousand.
+  // What the last grid holds and what all grids on the way took are each off by as much as a grid's
+  // force, half a percent (NormalForceIsHertzsOnceSettled).
   WorkedBall ball({.poisson = GetParam().poisson, .side = GetParam().side});
   constexpr int kSteps = 1000;
   for (int step = 1; step <= kSteps; ++step) {
-    ball.go({{0.0, kBallDepth * (1.0 - static_cast<double>(step) / kSteps), 0.0}, 0.0});
+    ball.go(Place{{0.0, kBallDepth * (1.0 - static_cast<double>(step) / kSteps), 0.0}, 0.0});
   }
   ball.stay(20);
   EXPECT_NEAR(ball.held(), ball.work, 0.01 * ball.work);
-  // Hertz: F d times 2/5.
-  EXPECT_NEAR(ball.work, 0.4 * ball.hand().wrench().force.y * kBallDepth, 0.02 * ball.work);
+  // F d times 2/5: with friction, too, the force goes as the depth to the power 3/2 (Spence, J.
+  // Elasticity 5 (1975) 297).
+  EXPECT_NEAR(ball.work, 0.4 * ball.hand().wrench().force.y * kBallDepth, 0.01 * ball.work);
+}
+
+/// From the air down to somewhat more than its depth, and up again.
+/// @param paths  on the ground in between
+void press(WorkedBall& ball, std::mt19937& random, int paths) {
+  constexpr int kSteps = 500;
+  for (int step = -kSteps; step <= kSteps; ++step) {
+    for (int path = 0; step == 0 && path < paths; ++path) {
+      ball.go(random_path(random, kLeast, kMost));
+    }
+    const double high = std::abs(static_cast<double>(step)) / kSteps;
+    ball.go(Place{{0.0, 1.1 * kBallDepth * high, 0.0}, 0.0});
+  }
 }
 
 TEST_P(PatchEnergyTest, FromTheAirToTheAirCostsWork) {
-  // Touches, presses, goes about in steps of any size, lifts off, ten times over.
+  // The same paths with no charge give up to a percent of their throughput.
   WorkedBall ball({.poisson = GetParam().poisson, .side = GetParam().side});
   std::mt19937 random(43);
-  constexpr int kSteps = 500;
-  for (int press = 0; press < 10; ++press) {
-    for (int step = -kSteps; step <= kSteps; ++step) {
-      if (step == 0) {
-        for (int path = 0; path < 100; ++path) {
-          for (const Place& place : random_path(random, 0.02, 3e-2)) {
-            ball.go(place);
-          }
-        }
-      }
-      const double high = std::abs(static_cast<double>(step)) / kSteps;
-      ball.go({{0.0, 1.1 * kBallDepth * high, 0.0}, 0.0});
-    }
-    EXPECT_GT(ball.work, 0.0) << press;
+  for (int time = 0; time < 10; ++time) {
+    press(ball, random, 200);
+    EXPECT_GT(ball.work, 0.0) << time;
+    ball.forget();
   }
+}
+
+TEST_P(PatchEnergyTest, PressingAndLiftingOffComesOutEven) {
+  // Up to a grid's force, half a percent, for down and up the grids are not laid anew at the same
+  // depths, and that is not charged.
+  WorkedBall ball({.poisson = GetParam().poisson, .side = GetParam().side});
+  std::mt19937 random(43);
+  press(ball, random, 0);
+  EXPECT_NEAR(ball.work, 0.0, 0.005 * ball.throughput);
 }
 
 INSTANTIATE_TEST_SUITE_P(Grids, PatchEnergyTest,
@@ -205,13 +121,11 @@ TEST(PatchEnergyOfClosedPathsTest, AHundredThousandOfSmallStepsFromRestCostWork)
   std::mt19937 random(29);
   double least = 1.0;
   for (int path = 0; path < 100000; ++path) {
-    ball.go({glm::dvec3(0.0, 2.0 * kBallDepth, 0.0), 0.0});
-    ball.go({});
+    ball.lift_off();
+    ball.go(Place{});
     ball.stay(12);
     ball.forget();
-    for (const Place& place : random_path(random, kSmallRise, 1e-3)) {
-      ball.go(place);
-    }
+    ball.go(random_path(random, kLeast, kMost));
     least = std::min(least, ball.work / ball.throughput);
   }
   EXPECT_GE(least, -1e-9);

@@ -264,18 +264,6 @@ void summarize(const Patch& patch, const PatchSums& sums) {
   carrier.rotation = patch.frame.normal * turn;
 }
 
-/// No region gives back more than it holds. On a body that gives way as a whole that is not known
-/// cell by cell, and a grid laid anew holds what it holds.
-void settle_energy(const Patch& patch, bool anew) {
-  if (has_support(patch)) {
-    patch.world.regions.at<PatchEnergy>(patch.region) = PatchEnergy{};
-    return;
-  }
-  const double area = cell_area(patch.frame, patch.side);
-  const double held = held_energy(patch.problem, patch.columns, area, patch.work);
-  charge_lacking_work(patch.world, patch.region, held, anew);
-}
-
 /// True where the last step's displacements are no start.
 bool is_anew(const PatchState& state) {
   return state.started == 0 || state.moved != 0;
@@ -332,7 +320,12 @@ void solve_region(StepContext& context, std::uint32_t region, std::uint32_t swee
                  0,
                  0};
   summarize(patch, sums);
-  settle_energy(patch, anew);
+  if (has_support(patch)) {
+    // On a body that gives way as a whole what a region holds is not known cell by cell.
+    patch.world.regions.at<PatchEnergy>(region) = PatchEnergy{};
+  } else {
+    settle_energy(patch.world, region, patch.problem, patch.columns, patch.work, anew);
+  }
 }
 
 /// How many sweeps each of the regions that are anew gets in this step.

@@ -305,8 +305,9 @@ void store_cells(const PatchColumns& columns, std::span<const double> support_x,
     to.pressure[cell] = pressure - traction.pressure;
     traction.traction = {-x, -y};
     traction.pressure = pressure;
-    traction.coverage = pressure > 0.0 ? 1.0 : 0.0;
-    traction.sticks = from.slips[cell] == 0.0 ? 1U : 0U;
+    // No branches, which a contact's ragged rim would often take the other way.
+    traction.coverage = static_cast<double>(pressure > 0.0);
+    traction.sticks = static_cast<std::uint32_t>(from.slips[cell] == 0.0);
   }
   const PatchSurface& surface = rows.surface;
   take_over(count, from.moved_x.data(), surface.moved_x.data(), to.moved_x.data());

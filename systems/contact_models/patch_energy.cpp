@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "systems/contact_models/patch_sums.hpp"
+#include "systems/contact_models/patch_passes.hpp"
 #include "systems/contact_models/stuck_stiffness.hpp"
 #include "systems/frames.hpp"
 #include "systems/region_motion.hpp"
@@ -40,7 +40,9 @@ void add_up(std::size_t count, const PatchColumns& columns, double* __restrict l
     const Wide moved_y = lanes_at(&columns.moved_y[cell]);
     const Wide sticks = one - lanes_at(&columns.slips[cell]);
     const Wide gap = down - lanes_at(&columns.depth[cell]);
-    const Wide z = pressure > 0.0 ? gap : (gap < 0.0 ? gap : none);
+    const Wide overlap = gap < 0.0 ? gap : none;
+    const Wide apart = pressure > 0.0 ? gap - overlap : none;
+    const Wide z = overlap + apart;
     const Wide x = sticks * (moved_x - lanes_at(&columns.target_x[cell]));
     const Wide y = sticks * (moved_y - lanes_at(&columns.target_y[cell]));
     total.stored += pressure * down + traction_x * moved_x + traction_y * moved_y;
@@ -55,8 +57,22 @@ void add_up(std::size_t count, const PatchColumns& columns, double* __restrict l
 /// What is left to do times what it asks for, Pa m.
 double asked_for(const PatchProblem& problem, const LocalInverse& inverse,
                  const std::vector<double>& left, PatchWork& work) {
-  ask_for(problem, inverse, left.data(), work, work.asked_x.data());
-  return dot(left.size(), left.data(), work.asked_x.data());
+  const std::uint32_t side = problem.influences.side;
+  to_border(side, left.data(), work.bordered.data());
+  return wanted_by_asked(inverse, 1.0 / problem.compliance, side, work.bordered.data());
+}
+
+/// The energy that the cells hold, J.
+double held_energy(const PatchProblem& problem, const PatchColumns& columns, double cell_area,
+                   PatchWork& work) {
+  EnergySums sums;
+  add_up(whole_lanes(columns.pressure.size()), columns, work.moves_x.data(), work.moves_y.data(),
+         work.residual_x.data(), sums);
+  const double asked = asked_for(problem, work.inverses.x, work.moves_x, work) +
+                       asked_for(problem, work.inverses.y, work.moves_y, work) +
+                       asked_for(problem, work.inverses.z, work.residual_x, work);
+  const double stiffest = problem.coupled ? kStiffestCoupled : kStiffest;
+  return cell_area * (0.5 * sum_of(sums.stored) - sum_of(sums.left) + 0.5 * stiffest * asked);
 }
 
 /// A step's motion as the region's stiffness sees it.
@@ -129,33 +145,21 @@ double work_between(const PatchEnergy& before, const PatchEnergy& after,
 
 }  // namespace
 
-double held_energy(const PatchProblem& problem, const PatchColumns& columns, double cell_area,
-                   PatchWork& work) {
-  EnergySums sums;
-  add_up(whole_lanes(columns.pressure.size()), columns, work.moves_x.data(), work.moves_y.data(),
-         work.residual_x.data(), sums);
-  const double asked = asked_for(problem, work.inverses.x, work.moves_x, work) +
-                       asked_for(problem, work.inverses.y, work.moves_y, work) +
-                       asked_for(problem, work.inverses.z, work.residual_x, work);
-  const double stiffest = problem.coupled ? kStiffestCoupled : kStiffest;
-  return cell_area * (0.5 * sum_of(sums.stored) - sum_of(sums.left) + 0.5 * stiffest * asked);
-}
-
-void charge_lacking_work(World& world, std::uint32_t region, double held, bool begins) {
+void settle_energy(World& world, std::uint32_t region, const PatchProblem& problem,
+                   const PatchColumns& columns, PatchWork& work, bool begins) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const double held =
+      held_energy(problem, columns, cell_area(frame, problem.influences.side), work);
   const MotionOverBody motion = motion_over_body(world, region);
   const PatchEnergy before = world.regions.at<PatchEnergy>(region);
+  const double grown = before.owed + held - before.held;
   PatchEnergy now = forces_of(world, region);
-  double owed = 0.0;
-  if (!begins) {
-    const glm::dvec3 normal = world.regions.at<RegionFrame>(region).normal;
-    const double grown = before.owed + held - before.held;
-    owed = grown - work_between(before, now, motion, normal);
-    if (owed > 0.0) {
-      charge(world, region, shift_after(motion, now.point), glm::dot(turn_of(motion), normal),
-             owed);
-      now = forces_of(world, region);
-      owed = grown - work_between(before, now, motion, normal);
-    }
+  double owed = begins ? 0.0 : grown - work_between(before, now, motion, frame.normal);
+  if (owed > 0.0) {
+    charge(world, region, shift_after(motion, now.point), glm::dot(turn_of(motion), frame.normal),
+           owed);
+    now = forces_of(world, region);
+    owed = grown - work_between(before, now, motion, frame.normal);
   }
   now.held = held;
   now.owed = std::max(owed, 0.0);

@@ -14,17 +14,6 @@ namespace torsion {
 inline constexpr double kStiffest = 1.75;
 inline constexpr double kStiffestCoupled = 3.0;
 
-/// The energy that a region's cells hold, J, told from tractions t that need not be those of what
-/// was asked for: with displacements u by them and r = u - w what these are beyond that, w having
-/// been asked for, the energy of w is t u / 2 - t r + r A^-1 r / 2, A the influences
-/// (complementary energy, whose slope is r; Johnson, Contact Mechanics, 1985, 5.9). Instead of A^-1
-/// there is the local inverse, kStiffest times: what is still to be done is paid for in advance,
-/// and what it may come to is never less than what it was. Cells that slip hold what they have.
-/// @pre the displacements are those by the tractions alone, the targets likewise; `work` is that of
-/// the solution
-double held_energy(const PatchProblem& problem, const PatchColumns& columns, double cell_area,
-                   PatchWork& work);
-
 /// Takes back what the forces of this step, as they are in the region's components, would give the
 /// tool's holder beyond what the region held: the work of a step is at least what the held energy
 /// grows by. What is lacking is charged as a drag along the step's motion, shared out as by the
@@ -33,8 +22,17 @@ double held_energy(const PatchProblem& problem, const PatchColumns& columns, dou
 /// energy. Compare: passivity control, Hannaford and Ryu, IEEE Trans. Robotics and Automation 18
 /// (2002) 1, which knows the work but not what is held. Writes PatchEnergy, RegionNormal,
 /// RegionFriction.
-/// @param held    J, in this step
+///
+/// What a region's cells hold is told from tractions t that need not be those of what was asked
+/// for: with displacements u by them and r = u - w what these are beyond that, w having been asked
+/// for, the energy of w is t u / 2 - t r + r A^-1 r / 2, A the influences (complementary energy,
+/// whose slope is r; Johnson, Contact Mechanics, 1985, 5.9). Instead of A^-1 there is the local
+/// inverse, kStiffest times: what is still to be done is paid for in advance, and what it may come
+/// to is never less than what it was. Cells that slip hold what they have.
 /// @param begins  true where there is no step before with this grid
-void charge_lacking_work(World& world, std::uint32_t region, double held, bool begins);
+/// @pre the displacements in the columns are those by the tractions alone, the targets likewise;
+/// `work` is that of the solution
+void settle_energy(World& world, std::uint32_t region, const PatchProblem& problem,
+                   const PatchColumns& columns, PatchWork& work, bool begins);
 
 }  // namespace torsion

@@ -8,18 +8,38 @@
 namespace torsion {
 namespace {
 
-/// The inverse at eight cells.
-/// @param wanted  at the first of them
-TORSION_LANES void ask_neighbours(const LocalInverse& inverse, const double* wanted,
-                                  std::size_t width, double* asked) {
-  const double* const low = wanted - width;
-  const double* const high = wanted + width;
+/// A row's share of what is asked for, at eight cells.
+struct AskedOfRow {
+  Wide here;    // in the row itself
+  Wide beside;  // in the rows below and above
+};
+
+/// @param wanted  at the first of the cells
+TORSION_LANES AskedOfRow ask_row(const LocalInverse& inverse, const double* wanted) {
+  const Wide middle = lanes_at(wanted);
   // Sums in pairs, so that a mirror image has the same bits.
-  lanes_at(asked) = inverse.here * lanes_at(wanted) +
-                    inverse.along_x * (lanes_at(wanted - 1) + lanes_at(wanted + 1)) +
-                    inverse.along_y * (lanes_at(low) + lanes_at(high)) +
-                    inverse.corner * ((lanes_at(low - 1) + lanes_at(high + 1)) +
-                                      (lanes_at(low + 1) + lanes_at(high - 1)));
+  const Wide sides = lanes_at(wanted - 1) + lanes_at(wanted + 1);
+  return {inverse.here * middle + inverse.along_x * sides,
+          inverse.along_y * middle + inverse.corner * sides};
+}
+
+/// The inverse at eight columns of all rows.
+TORSION_LANES void ask_columns(const LocalInverse& inverse, std::uint32_t side,
+                               const double* wanted, double* asked) {
+  const std::size_t width = std::size_t{side} + 2;
+  AskedOfRow low = ask_row(inverse, wanted - width);
+  AskedOfRow middle = ask_row(inverse, wanted);
+  for (std::size_t row = 0; row < side; ++row) {
+    const AskedOfRow high = ask_row(inverse, wanted + (row + 1) * width);
+    lanes_at(asked + row * side) = middle.here + (low.beside + high.beside);
+    low = middle;
+    middle = high;
+  }
+}
+
+LocalInverse scaled(const LocalInverse& inverse, double scale) {
+  return {inverse.here * scale, inverse.along_x * scale, inverse.along_y * scale,
+          inverse.corner * scale};
 }
 
 }  // namespace
@@ -85,25 +105,43 @@ TORSION_WIDEST
 void apply_local_inverse(const LocalInverse& inverse, double scale, std::uint32_t side,
                          const double* __restrict wanted, double* __restrict asked) {
   const std::size_t width = std::size_t{side} + 2;
-  const LocalInverse scaled{inverse.here * scale, inverse.along_x * scale, inverse.along_y * scale,
-                            inverse.corner * scale};
-  for (std::size_t row = 0; row < side; ++row) {
+  const LocalInverse by = scaled(inverse, scale);
+  for (std::size_t row = 0; side < kPatchLanes && row < side; ++row) {
     const double* const from = wanted + (row + 1) * width + 1;
     double* const to = asked + row * side;
-    if (side < kPatchLanes) {
-      for (std::size_t i = 0; i < side; ++i) {
-        to[i] = scaled.here * from[i] + scaled.along_x * (from[i - 1] + from[i + 1]) +
-                scaled.along_y * (from[i - width] + from[i + width]) +
-                scaled.corner * ((from[i - width - 1] + from[i + width + 1]) +
-                                 (from[i - width + 1] + from[i + width - 1]));
-      }
-      continue;
-    }
-    for (std::size_t i = 0; i < side; i += kPatchLanes) {
-      const std::size_t at = i + kPatchLanes <= side ? i : side - kPatchLanes;
-      ask_neighbours(scaled, from + at, width, to + at);
+    for (std::size_t i = 0; i < side; ++i) {
+      to[i] = by.here * from[i] + by.along_x * (from[i - 1] + from[i + 1]) +
+              by.along_y * (from[i - width] + from[i + width]) +
+              by.corner * ((from[i - width - 1] + from[i + width + 1]) +
+                           (from[i - width + 1] + from[i + width - 1]));
     }
   }
+  for (std::size_t i = 0; side >= kPatchLanes && i < side; i += kPatchLanes) {
+    // The last eight end with the row: some are asked twice, for the same.
+    const std::size_t at = i + kPatchLanes <= side ? i : side - kPatchLanes;
+    ask_columns(by, side, wanted + width + 1 + at, asked + at);
+  }
+}
+
+TORSION_WIDEST
+double wanted_by_asked(const LocalInverse& inverse, double scale, std::uint32_t side,
+                       const double* __restrict wanted) {
+  const std::size_t width = std::size_t{side} + 2;
+  const std::size_t count = whole_lanes(side * width);
+  // Every pair of neighbours once, and half of each cell itself. The border is zero, so that the
+  // end of a row and the beginning of the next are no neighbours.
+  const double here = 0.5 * inverse.here;
+  const double along_x = inverse.along_x;
+  const double along_y = inverse.along_y;
+  const double corner = inverse.corner;
+  Wide sums{};
+  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+    const double* const at = wanted + width + k;
+    sums += lanes_at(at) *
+            (here * lanes_at(at) + along_x * lanes_at(at + 1) + along_y * lanes_at(at + width) +
+             corner * (lanes_at(at + width - 1) + lanes_at(at + width + 1)));
+  }
+  return 2.0 * scale * sum_of(sums);
 }
 
 TORSION_WIDEST
@@ -175,21 +213,27 @@ void find_pulls(std::size_t count, const double* __restrict pressure, double* __
 }
 
 TORSION_WIDEST
-void lose_cells(std::size_t count, double least_depth, const double* __restrict depth,
+bool lose_cells(std::size_t count, double least_depth, const double* __restrict depth,
                 double* __restrict pressure, double* __restrict traction_x,
                 double* __restrict traction_y, double* __restrict change_pressure,
                 double* __restrict change_x, double* __restrict change_y) {
-  for (std::size_t k = 0; k < count; ++k) {
-    const double kept = pressure[k] > 0.0 ? 1.0 : 0.0;
-    const double keeps = depth[k] > least_depth ? kept : 0.0;
-    const double gone = keeps - 1.0;
-    change_pressure[k] = gone * pressure[k];
-    change_x[k] = gone * traction_x[k];
-    change_y[k] = gone * traction_y[k];
-    pressure[k] *= keeps;
-    traction_x[k] *= keeps;
-    traction_y[k] *= keeps;
+  const Wide none{};
+  Wide lost{};
+  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+    const Wide has = lanes_at(pressure + k);
+    const Wide has_x = lanes_at(traction_x + k);
+    const Wide has_y = lanes_at(traction_y + k);
+    const Wide deep = lanes_at(depth + k) > least_depth ? has : none;
+    const Wide keeps = deep > 0.0 ? none + 1.0 : none;
+    lanes_at(pressure + k) = has * keeps;
+    lanes_at(traction_x + k) = has_x * keeps;
+    lanes_at(traction_y + k) = has_y * keeps;
+    lanes_at(change_pressure + k) = has * (keeps - 1.0);
+    lanes_at(change_x + k) = has_x * (keeps - 1.0);
+    lanes_at(change_y + k) = has_y * (keeps - 1.0);
+    lost += (1.0 - keeps) * (has * has + has_x * has_x + has_y * has_y);
   }
+  return sum_of(lost) > 0.0;
 }
 
 }  // namespace torsion

@@ -40,6 +40,11 @@ void to_border(std::uint32_t side, const double* cells, double* bordered);
 void apply_local_inverse(const LocalInverse& inverse, double scale, std::uint32_t side,
                          const double* wanted, double* asked);
 
+/// Sum of what is wanted times what the inverse, times scale, asks for it.
+/// @param wanted  as above, followed by kPatchLanes zeros
+double wanted_by_asked(const LocalInverse& inverse, double scale, std::uint32_t side,
+                       const double* wanted);
+
 // pressures ---------------------------------------------------------------------------------------
 
 /// The gap that is left to close, m: where there is pressure, and where the surfaces overlap.
@@ -64,9 +69,10 @@ SweepChange change_pressures(std::size_t count, double length, const double* mov
 void find_pulls(std::size_t count, const double* pressure, double* step);
 
 /// Takes pressure and tractions away where the pressure is not positive or the depth not over the
-/// least. Of any length.
+/// least.
 /// @param change_pressure, change_x, change_y  Pa, out
-void lose_cells(std::size_t count, double least_depth, const double* depth, double* pressure,
+/// @return whether there was any
+bool lose_cells(std::size_t count, double least_depth, const double* depth, double* pressure,
                 double* traction_x, double* traction_y, double* change_pressure, double* change_x,
                 double* change_y);
 

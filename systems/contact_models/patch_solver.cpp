@@ -63,7 +63,7 @@ void PatchWork::reserve(std::uint32_t side) {
   for (auto* each : {&rigid_x, &rigid_y, &rigid_asks_x, &rigid_asks_y}) {
     each->fill(std::vector<double>(count, 0.0));
   }
-  bordered.assign(std::size_t{side + 2} * (side + 2), 0.0);
+  bordered.assign(std::size_t{side + 2} * (side + 2) + kPatchLanes, 0.0);
   // One more: what does not count is written, too.
   for (std::vector<double>* each : {&scales_x, &scales_y, &scales}) {
     each->assign(2 * (most_pairs(side) + 1), 0.0);
@@ -103,13 +103,11 @@ void displace_patch(const PatchProblem& problem, const PatchColumns& columns, Pa
 
 void let_go_cells(const PatchProblem& problem, const PatchColumns& columns, PatchWork& work,
                   double least_depth) {
-  lose_cells(columns.pressure.size(), least_depth, columns.depth.data(), columns.pressure.data(),
-             columns.traction_x.data(), columns.traction_y.data(), work.change_pressure.data(),
-             work.change_x.data(), work.change_y.data());
-  const auto any = [](const std::vector<double>& change) {
-    return dot(change.size(), change.data(), change.data()) > 0.0;
-  };
-  if (any(work.change_pressure) || any(work.change_x) || any(work.change_y)) {
+  const bool lost =
+      lose_cells(whole_lanes(columns.pressure.size()), least_depth, columns.depth.data(),
+                 columns.pressure.data(), columns.traction_x.data(), columns.traction_y.data(),
+                 work.change_pressure.data(), work.change_x.data(), work.change_y.data());
+  if (lost) {
     add_pressure(problem, columns, work.change_pressure, work);
     add_tractions(problem, columns, work.change_x, work.change_y, work);
   }

@@ -41,7 +41,7 @@ struct PatchWork {
   // Rigid motions of the cells that count, and what three such ask for, Pa/m and Pa
   std::array<std::vector<double>, 3> rigid_x, rigid_y, rigid_asks_x, rigid_asks_y;
   LocalInverses inverses;  // of the problem's tables, found by solve_patch
-  // ((side + 2) x (side + 2)): cells with a border of zeros
+  // ((side + 2) x (side + 2)): cells with a border of zeros, and kPatchLanes zeros
   std::vector<double> bordered;
   // Cells with a traction
   std::vector<double> scales_x, scales_y, scales;
@@ -57,7 +57,7 @@ struct PatchProblem {
   bool coupled = false;     // pressure moves the surface sideways: nu < 0.5
   double reference = 0.0;   // Pa: typical pressure; a largest change below `skip` times it ends
   double skip = 1e-9;       // relative
-  double settled = 1e-2;    // of the whole change of a step: a smaller one ends it, too; sums over
+  double settled = 3e-2;    // of the whole change of a step: a smaller one ends it, too; sums over
                             // the cells
   double foreseen_pressure = 0.0;  // Pa: change since the last step that is there already, sum over
   double foreseen_traction = 0.0;  // the cells, both components

@@ -1,5 +1,7 @@
 #include "systems/contact_models/patch_sums.hpp"
 
+#include <bit>
+
 namespace torsion {
 namespace {
 
@@ -35,7 +37,11 @@ void sum_tractions(const PatchProblem& problem, const InfluenceSources& sources,
 struct ChangeRows {
   const double* low = nullptr;
   const double* high = nullptr;
-  [[nodiscard]] bool any(std::uint32_t i) const { return low[i] != 0.0 || high[i] != 0.0; }
+  /// Not zero where one of the two is not: faster than two comparisons of numbers.
+  [[nodiscard]] std::uint64_t any(std::uint32_t i) const {
+    constexpr std::uint32_t kSign = 1;
+    return (std::bit_cast<std::uint64_t>(low[i]) | std::bit_cast<std::uint64_t>(high[i])) << kSign;
+  }
 };
 
 void scale_pairs(const ChangeRows& rows, double first, double second, std::uint32_t begin,
@@ -66,10 +72,10 @@ InfluenceSources gather_sources(const PatchProblem& problem, std::span<const dou
     const ChangeRows rows_y{y, y + above};
     std::uint32_t begin = 0;
     std::uint32_t end = side;
-    while (begin < end && !(rows_x.any(begin) || rows_y.any(begin))) {
+    while (begin < end && (rows_x.any(begin) | rows_y.any(begin)) == 0) {
       ++begin;
     }
-    while (begin < end && !(rows_x.any(end - 1) || rows_y.any(end - 1))) {
+    while (begin < end && (rows_x.any(end - 1) | rows_y.any(end - 1)) == 0) {
       --end;
     }
     scale_pairs(rows_x, first, second, begin, end, &work.scales_x[std::size_t{2} * count]);

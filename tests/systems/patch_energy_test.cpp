@@ -162,8 +162,8 @@ Eigen::MatrixXd local_inverses_of(const InfluenceTables& tables) {
   const int cells = side * side;
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(3 * cells, 3 * cells);
   int block = 0;
-  for (const InfluenceKind kind : {InfluenceKind::kXX, InfluenceKind::kYY, InfluenceKind::kZZ}) {
-    const LocalInverse inverse = local_inverse(tables, kind);
+  const LocalInverses inverses = local_inverses(tables);
+  for (const LocalInverse& inverse : {inverses.x, inverses.y, inverses.z}) {
     const double rows[2][2] = {{inverse.here, inverse.along_y}, {inverse.along_x, inverse.corner}};
     for (int from = 0; from < cells; ++from) {
       for (int to = 0; to < cells; ++to) {

@@ -111,7 +111,7 @@ std::string overview_table(std::span<const MeasuredCase> cases) {
     }
   }
   std::string html =
-      "<div class=\"wide\"><table><caption>The larger of the errors of force and torque "
+      "<div class=\"wide overview\"><table><caption>The larger of the errors of force and torque "
       "(%)</caption>\n<tr><th>models</th>";
   for (const MeasuredCase& measured : cases) {
     // Long names may break after an underscore.

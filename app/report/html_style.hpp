@@ -21,6 +21,8 @@ th:first-child, td:first-child { text-align: left; white-space: nowrap; }
 td.best { font-weight: bold; }
 tr.group td, tr.group th { border-top: 1px solid #888; }
 .wide { overflow-x: auto; }
+.overview table { font-size: 0.78rem; }
+.overview th, .overview td { padding: 0.15rem 0.3rem; }
 .figures { display: grid; grid-template-columns: repeat(2, 1fr); gap: 1rem 1.5rem; }
 figure { margin: 0; break-inside: avoid; }
 figure svg, figure img { width: 100%; height: auto; display: block; }

@@ -1,6 +1,5 @@
 #include "systems/contact_models/local_inverse.hpp"
 
-#include <cmath>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -8,15 +7,12 @@
 #include <gtest/gtest.h>
 
 #include "systems/contact_models/patch_passes.hpp"
+#include "tests/systems/asked_by_inverse.hpp"
 
 namespace torsion {
 namespace {
 
-/// What a displacement of a cell asks for at one that is (x, y) cells away.
-double asked_at(const LocalInverse& inverse, int x, int y) {
-  const double rows[2][2] = {{inverse.here, inverse.along_y}, {inverse.along_x, inverse.corner}};
-  return std::abs(x) <= 1 && std::abs(y) <= 1 ? rows[std::abs(x)][std::abs(y)] : 0.0;
-}
+using test::asked_at;
 
 TEST(LocalInverseTest, UndoesTheInfluencesWithinThreeByThreeCells) {
   constexpr std::uint32_t kSide = 12;

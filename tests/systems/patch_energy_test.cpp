@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "systems/contact_models/local_inverse.hpp"
+#include "tests/systems/asked_by_inverse.hpp"
 #include "tests/systems/worked_ball.hpp"
 
 // The holder's work on the contact model `patch`.
@@ -164,14 +165,10 @@ Eigen::MatrixXd local_inverses_of(const InfluenceTables& tables) {
   int block = 0;
   const LocalInverses inverses = local_inverses(tables);
   for (const LocalInverse& inverse : {inverses.x, inverses.y, inverses.z}) {
-    const double rows[2][2] = {{inverse.here, inverse.along_y}, {inverse.along_x, inverse.corner}};
     for (int from = 0; from < cells; ++from) {
       for (int to = 0; to < cells; ++to) {
-        const int x = std::abs(from % side - to % side);
-        const int y = std::abs(from / side - to / side);
-        if (x <= 1 && y <= 1) {
-          all(block * cells + to, block * cells + from) = rows[x][y];
-        }
+        all(block * cells + to, block * cells + from) =
+            test::asked_at(inverse, from % side - to % side, from / side - to / side);
       }
     }
     ++block;
@@ -186,13 +183,8 @@ TEST(PatchStiffestTest, IsStifferThanAllInfluences) {
   for (const double poisson : {0.5, 0.3, 0.0}) {
     std::vector<double> values(influence_count(kSide));
     fill_influences(poisson, kSide, values);
-    constexpr std::size_t kTable = (2 * kSide - 1) * (2 * kSide);
-    for (std::uint32_t aspect = 0; aspect < kAspects; ++aspect) {
-      InfluenceTables tables;
-      tables.side = kSide;
-      for (std::size_t kind = 0; kind < kInfluenceKinds; ++kind) {
-        tables.kinds[kind] = &values[(aspect * kInfluenceKinds + kind) * kTable];
-      }
+    for (std::int32_t aspect = -kMostAspect; aspect <= kMostAspect; ++aspect) {
+      const InfluenceTables tables = influence_tables(values, kSide, aspect);
       const Eigen::MatrixXd inverse = influences_of(tables).inverse();
       const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> shares(
           local_inverses_of(tables), inverse, Eigen::EigenvaluesOnly);

@@ -40,6 +40,7 @@ void add_up(std::size_t count, const PatchColumns& columns, double* __restrict l
     const Wide moved_y = lanes_at(&columns.moved_y[cell]);
     const Wide sticks = one - lanes_at(&columns.slips[cell]);
     const Wide gap = down - lanes_at(&columns.depth[cell]);
+    // No choice within a choice, which the compiler makes cell by cell.
     const Wide overlap = gap < 0.0 ? gap : none;
     const Wide apart = pressure > 0.0 ? gap - overlap : none;
     const Wide z = overlap + apart;

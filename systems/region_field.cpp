@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <span>
 
 #include <glm/geometric.hpp>
@@ -81,11 +82,8 @@ TurnedDiscs turned_discs(const Snapshot& snapshot, std::uint32_t region) {
   discs.center = grid_to_body(frame, {field.center, 0.0});
   discs.normal = frame.normal;
   discs.radius = field.radius;
-  for (std::size_t j = 0; j < kFieldDiscs; ++j) {
-    const double s = field.radius * static_cast<double>(j + 1) / kFieldDiscs;
-    discs.turn[j] = field.turn[j];
-    discs.far_turn += 4.0 / (3.0 * kPi) * s * s * s * field.turn[j];
-  }
+  std::copy(std::begin(field.turn), std::end(field.turn), discs.turn.begin());
+  discs.sum_far_terms();
   return discs;
 }
 
@@ -130,13 +128,29 @@ PressedSurface pressed_surface(const World& world, const Snapshot& snapshot, std
 
 }  // namespace
 
+void TurnedDiscs::sum_far_terms() {
+  turn_3 = turn_5 = 0.0;
+  for (std::size_t j = 0; j < kFieldDiscs; ++j) {
+    const double s = radius * static_cast<double>(j + 1) / kFieldDiscs;
+    const double cube = s * s * s;
+    turn_3 += 4.0 / (3.0 * kPi) * cube * turn[j];
+    turn_5 += 2.0 / (5.0 * kPi) * cube * s * s * turn[j];
+  }
+}
+
+double TurnedDiscs::far_angle(double height, double square) const {
+  const double inverse = 1.0 / square;
+  return (turn_3 + turn_5 * inverse * (1.0 - 5.0 * height * height * inverse)) * inverse /
+         std::sqrt(square);
+}
+
 double TurnedDiscs::angle(const glm::dvec3& point) const {
   const glm::dvec3 away = point - center;
   const double height = glm::dot(away, normal);
   const double square = glm::dot(away, away);
   const double lateral = std::max(square - height * height, 0.0);
   const double near = 1.0 - smooth_step(std::sqrt(square) / radius - 3.0);
-  const double far = near < 1.0 ? far_turn / (square * std::sqrt(square)) : 0.0;
+  const double far = near < 1.0 ? far_angle(height, square) : 0.0;
   if (near == 0.0) {
     return far;
   }

@@ -28,15 +28,23 @@ struct TurnedDiscs {
   glm::dvec3 center{0.0};  // m, body
   glm::dvec3 normal{0.0};  // body, unit, outward
   double radius = 0.0;     // m: of the largest; 0: there are none
-  double far_turn = 0.0;   // rad m^3: far away the angle is this over R^3
+  // Far away, at height z and distance R, the angle is turn_3 / R^3 + turn_5 (1 - 5 z^2 / R^2) /
+  // R^5.
+  double turn_3 = 0.0;  // rad m^3
+  double turn_5 = 0.0;  // rad m^5
   std::array<double, kFieldDiscs>
       turn{};  // rad: of the disc of radius (j + 1) / kFieldDiscs * radius
 
+  /// Fills what is known of far away from the discs.
+  void sum_far_terms();
   /// Angle by which the material at a point turns about the normal through the centre, rad.
   /// Source: Reissner & Sagoci, J. Appl. Phys. 15, 1944, in oblate spheroidal coordinates.
   [[nodiscard]] double angle(const glm::dvec3& point) const;
   /// The same for the first `used` points of a block.
   void angles(const BlockVectors& points, std::size_t used, BlockColumn& angles) const;
+  /// The first two terms of the angle far away, by the height over the surface and the distance's
+  /// square; 6e-4 off from 4 radii on.
+  [[nodiscard]] double far_angle(double height, double square) const;
 };
 
 /// The twist of a body by one region, (10) to (13) of the paper as docs/models.md reads them.

@@ -70,14 +70,19 @@ void add_displacements_by(const SpreadForce& by, const BlockVectors& points, std
 
 void TurnedDiscs::angles(const BlockVectors& points, std::size_t used, BlockColumn& angles) const {
   const glm::vec3 c(center);
-  const auto far = static_cast<float>(far_turn);
+  const glm::vec3 up(normal);
+  const auto far_3 = static_cast<float>(turn_3);
+  const auto far_5 = static_cast<float>(turn_5);
   BlockColumn square;
   for (std::size_t i = 0; i < kPointBlock; ++i) {
     const float dx = points.x[i] - c.x;
     const float dy = points.y[i] - c.y;
     const float dz = points.z[i] - c.z;
     square[i] = dx * dx + dy * dy + dz * dz;
-    angles[i] = far / (square[i] * std::sqrt(square[i]));
+    const float height = dx * up.x + dy * up.y + dz * up.z;
+    const float inverse = 1.0F / square[i];
+    angles[i] = (far_3 + far_5 * inverse * (1.0F - 5.0F * height * height * inverse)) * inverse /
+                std::sqrt(square[i]);
   }
   const auto near = static_cast<float>(kNear * kNear * radius * radius);
   for (std::size_t i = 0; i < used; ++i) {

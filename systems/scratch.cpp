@@ -67,6 +67,7 @@ void Scratch::reserve(const World& world) {
     if (!world.footings.empty()) {
       patch_support.assign(kSupportTerms * stride, 0.0);
     }
+    ring_profiles = make_ring_profiles();
     patch_work.reserve(side);
     held_before.x.assign(cells, 0.0);
     held_before.y.assign(cells, 0.0);

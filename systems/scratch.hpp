@@ -15,6 +15,7 @@
 #include "systems/contact_models/mdr_layers.hpp"
 #include "systems/contact_models/patch_cells.hpp"
 #include "systems/contact_models/patch_solver.hpp"
+#include "systems/contact_models/ring_turns.hpp"
 #include "systems/distance.hpp"
 #include "systems/group_points.hpp"
 
@@ -132,6 +133,8 @@ struct Scratch {
 
   // mdr_forces
   MdrTables mdr_tables;  // constant; empty without contact model mdr
+  // region_fields
+  RingProfiles ring_profiles;  // constant; empty without contact model patch
   // patch_forces
   PatchColumns patch_columns;                  // (cells of one region)
   PatchPlaces patch_places;                    // likewise

@@ -37,11 +37,13 @@ CaseErrors errors_of(const ReferenceCase& reference_case, const CaseRun& run) {
   const ReferenceField& field = reference_case.field;
   if (!field.radii.empty()) {
     double sum = 0.0;
+    double whole = 0.0;
     for (std::size_t i = 0; i < field.radii.size(); ++i) {
       const double difference = run.twists[i] - field.twists[i];
-      sum += difference * difference;
+      sum += difference * difference * field.radii[i];  // as much surface as lies there
+      whole += field.twists[i] * field.twists[i] * field.radii[i];
     }
-    errors.twist = std::sqrt(sum / static_cast<double>(field.radii.size())) / field.tool_twist;
+    errors.twist = std::sqrt(sum / whole);
   }
   return errors;
 }

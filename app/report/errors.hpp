@@ -10,8 +10,9 @@ namespace torsion {
 struct CaseErrors {
   std::optional<double> force;   // max |F - F_ref| over max |F_ref|, over the path
   std::optional<double> torque;  // likewise
-  std::optional<double> twist;   // root mean square over the radii of the twist's difference, over
-                                 // the tool's twist
+  // Norm of the difference of the surface's twist over that of the reference's twist; both over the
+  // surface as far as the field reaches.
+  std::optional<double> twist;
 };
 
 CaseErrors errors_of(const ReferenceCase& reference_case, const CaseRun& run);

@@ -12,7 +12,7 @@ namespace torsion {
 namespace {
 
 constexpr std::array<std::uint32_t, 5> kGridSides = {8, 12, 16, 20, 24};
-constexpr std::array<std::uint32_t, 2> kQuickGridSides = {8, 12};
+constexpr std::array<std::uint32_t, 3> kQuickGridSides = {8, 12, 16};
 
 }  // namespace
 

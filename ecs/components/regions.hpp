@@ -155,7 +155,7 @@ struct MdrState {
   double kinetic_share = 0.0;  // 0: mu_s, 1: mu_d
 };
 
-inline constexpr std::uint32_t kFieldDiscs = 10;
+inline constexpr std::uint32_t kFieldDiscs = 20;
 inline constexpr std::uint32_t kFieldBlocks = 5;
 
 /// Normal force that a part of a region presses into the body.

@@ -1,12 +1,13 @@
 #include "systems/contact_models/region_fields.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
 #include <glm/geometric.hpp>
 
+#include "systems/contact_models/friction_decay.hpp"
+#include "systems/contact_models/ring_turns.hpp"
 #include "systems/frames.hpp"
 #include "systems/scratch.hpp"
 
@@ -16,6 +17,13 @@ namespace {
 // A square load of width b sinks in its middle as deep as a point load spread over b / (4 ln(1 +
 // sqrt(2))) (Johnson, 1985, eq. 3.25).
 constexpr double kSpreadOverBlock = 0.2837;
+
+/// By trying on a ball's partial slip, 8 to 24 cells a side: less lets single cells show, more
+/// bends the field.
+double calm_of(std::uint32_t side) {
+  const double share = 0.12 / static_cast<double>(side);
+  return share * share;
+}
 
 /// One region at work.
 struct Source {
@@ -53,26 +61,47 @@ glm::dvec2 press_blocks(const Source& source, double force_in_all, RegionField& 
   return total > 0.0 ? center / total : glm::dvec2(0.0);
 }
 
-/// Couples of the rings on the material, each cell's shared between the two nearest ring middles.
-std::array<double, kFieldDiscs> ring_couples(const Source& source, const RegionField& field) {
-  std::array<double, kFieldDiscs> couples{};
+/// The region's couple on the material, about the field's centre, N m.
+double couple_of(const Source& source, const RegionField& field) {
+  double couple = 0.0;
   std::uint32_t cell = 0;
   for (std::uint32_t j = 0; j < source.side; ++j) {
     for (std::uint32_t i = 0; i < source.side; ++i, ++cell) {
       const CellTraction& traction = source.tractions[cell];
       const glm::dvec2 arm = cell_center(source.frame, source.side, i, j) - field.center;
-      const glm::dvec2 force =
-          traction.traction * (-traction.coverage * source.cell_area);  // on the material
-      const double couple = arm.x * force.y - arm.y * force.x;
-      const double place =
-          std::clamp(glm::length(arm) / field.radius * kFieldDiscs - 0.5, 0.0, kFieldDiscs - 1.0);
-      const auto ring = std::min(static_cast<std::size_t>(place), std::size_t{kFieldDiscs - 2});
-      const double outer = place - static_cast<double>(ring);
-      couples[ring] += (1.0 - outer) * couple;
-      couples[ring + 1] += outer * couple;
+      couple -= traction.coverage * source.cell_area *
+                (arm.x * traction.traction.y - arm.y * traction.traction.x);
     }
   }
-  return couples;
+  return couple;
+}
+
+/// How far the cells have gone around the field's centre, all of the grid's, in contact or not.
+RingTurns turns_of_cells(World& world, std::uint32_t region, const Source& source,
+                         const RegionField& field) {
+  const Range cells = world.regions.at<RegionIdentity>(region).cells;
+  const std::span<const PatchMovedX> moved_x = world.patch_cells.rows<PatchMovedX>(cells);
+  const std::span<const PatchMovedY> moved_y = world.patch_cells.rows<PatchMovedY>(cells);
+  glm::dvec2 drift(0.0);  // of all that is pressed
+  double pressure = 0.0;
+  for (std::uint32_t cell = 0; cell < cells.count; ++cell) {
+    const double pressed = source.tractions[cell].pressure;
+    drift += pressed * glm::dvec2(moved_x[cell].value, moved_y[cell].value);
+    pressure += pressed;
+  }
+  drift *= inverse_of(pressure);
+  RingTurns rings;
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < source.side; ++j) {
+    for (std::uint32_t i = 0; i < source.side; ++i, ++cell) {
+      const glm::dvec2 arm =
+          (cell_center(source.frame, source.side, i, j) - field.center) / field.radius;
+      const glm::dvec2 moved = glm::dvec2(moved_x[cell].value, moved_y[cell].value) - drift;
+      const double r = glm::length(arm);
+      rings.add(r, (arm.x * moved.y - arm.y * moved.x) * inverse_of(r * field.radius));
+    }
+  }
+  return rings;
 }
 
 /// Puts a disc of any radius on the two nearest of the field's, with its angle and its couple.
@@ -126,30 +155,12 @@ void fill_field(StepContext& context, std::uint32_t region, ContactModel model) 
     return;
   }
   const double shear_modulus = world.bodies.at<Elasticity>(identity.body).shear_modulus();
-  discs_of_ring_couples(ring_couples(source, field), field.radius, shear_modulus, field.turn);
+  const double stiffness = 16.0 / 3.0 * shear_modulus * field.radius * field.radius * field.radius;
+  discs_of_ring_turns(context.scratch.ring_profiles, turns_of_cells(world, region, source, field),
+                      couple_of(source, field) / stiffness, calm_of(side), field.turn);
 }
 
 }  // namespace
-
-void discs_of_ring_couples(std::span<const double> couples, double radius, double shear_modulus,
-                           std::span<double> turn) {
-  // Couple that a disc of radius s has outside r, over 8 G phi.
-  const auto beyond = [](double s, double r) {
-    const double square = std::max(s * s - r * r, 0.0);
-    const double root = std::sqrt(square);
-    return s * s * root - square * root / 3.0;
-  };
-  const double width = radius / kFieldDiscs;
-  for (std::size_t j = kFieldDiscs; j-- > 0;) {
-    const double inner = static_cast<double>(j) * width;
-    double couple = couples[j];
-    for (std::size_t k = j + 1; k < kFieldDiscs; ++k) {
-      const double s = static_cast<double>(k + 1) * width;
-      couple -= 8.0 * shear_modulus * turn[k] * (beyond(s, inner) - beyond(s, inner + width));
-    }
-    turn[j] = couple / (8.0 * shear_modulus * beyond(inner + width, inner));
-  }
-}
 
 void region_fields(StepContext& context) {
   const World& world = context.world;

@@ -164,4 +164,20 @@ Result<Done> OutputFile::commit() {
   return Done{};
 }
 
+Result<Done> OutputFile::commit_all(std::span<OutputFile> files) {
+  for (OutputFile& file : files) {
+    file.flush();
+    if (file.failed_) {
+      return Error{file.problem()};
+    }
+  }
+  for (OutputFile& file : files) {
+    const Result<Done> done = file.commit();
+    if (!done) {
+      return done.error();
+    }
+  }
+  return Done{};
+}
+
 }  // namespace torsion

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -35,6 +36,9 @@ class OutputFile {
   /// Flushes and renames. Fails when anything since create() failed.
   /// @pre it has a name
   Result<Done> commit();
+  /// Commits all of them or none: renames only once every file is there whole. Beyond that it can
+  /// fail only where a place is taken away or filled with a folder at that very moment.
+  static Result<Done> commit_all(std::span<OutputFile> files);
 
  private:
   OutputFile(std::filesystem::path path, std::filesystem::path temporary, std::FILE* file);

@@ -11,6 +11,7 @@
 #include "app/report/csv_report.hpp"
 #include "app/report/element_cases.hpp"
 #include "app/report/exact_cases.hpp"
+#include "app/report/gnuplot.hpp"
 #include "app/report/html_report.hpp"
 #ifdef TORSION_WITH_RENDER
 #include "app/report/scene_picture.hpp"
@@ -70,43 +71,71 @@ std::vector<std::string> draw_pictures(std::span<const MeasuredCase> cases, bool
   return pictures;
 }
 
-Result<Done> write_file(const std::filesystem::path& path, const std::string& text) {
-  Result<OutputFile> file = OutputFile::create(path);
-  if (!file) {
-    return file.error();
+struct ReportPaths {
+  std::filesystem::path csv;
+  std::filesystem::path page;
+};
+
+/// What can fail without a measurement: whether there is gnuplot, and whether both files can be
+/// written. Leaves nothing but the folder.
+Result<Done> try_outputs(const ReportPaths& paths) {
+  const Result<Done> plots = try_gnuplot();
+  if (!plots) {
+    return plots.error();
   }
-  file.value().write(text);
-  return file.value().commit();
+  for (const std::filesystem::path& path : {paths.csv, paths.page}) {
+    const Result<OutputFile> file = OutputFile::create(path);
+    if (!file) {
+      return file.error();
+    }
+  }
+  return Done{};
+}
+
+/// Both files or none.
+Result<Done> write_outputs(const ReportPaths& paths, const std::string& csv,
+                           const std::string& page) {
+  std::vector<OutputFile> files;
+  for (const std::filesystem::path& path : {paths.csv, paths.page}) {
+    Result<OutputFile> file = OutputFile::create(path);
+    if (!file) {
+      return file.error();
+    }
+    files.push_back(std::move(file).value());
+  }
+  files[0].write(csv);
+  files[1].write(page);
+  return OutputFile::commit_all(files);
 }
 
 int report(const ReportOptions& options) {
+  if (options.out.empty()) {
+    fmt::print(stderr, "--out \"\": expected a folder; . is the one that you are in\n");
+    return kUsage;
+  }
   const std::filesystem::path folder(options.out);
-  const std::filesystem::path csv = folder / "report.csv";
-  const Result<Done> made = make_parent_folder(csv);
-  if (!made) {
-    return fail(made.error().text);
+  const ReportPaths paths{folder / "report.csv", folder / "report.html"};
+  // Measuring takes minutes: what would fail after it is tried before.
+  const Result<Done> tried = try_outputs(paths);
+  if (!tried) {
+    return fail(tried.error().text);
   }
   const Result<std::vector<MeasuredCase>> cases = run_all(options);
   if (!cases) {
     return fail(cases.error().text);
   }
   const Machine machine = this_machine();
-  Result<Done> written = write_file(csv, csv_text(cases.value()));
-  if (!written) {
-    return fail(written.error().text);
-  }
   const std::vector<std::string> pictures = draw_pictures(cases.value(), options.quiet);
   const Result<std::string> html = html_text(cases.value(), pictures, machine);
   if (!html) {
     return fail(html.error().text);
   }
-  const std::filesystem::path page = folder / "report.html";
-  written = write_file(page, html.value());
+  const Result<Done> written = write_outputs(paths, csv_text(cases.value()), html.value());
   if (!written) {
     return fail(written.error().text);
   }
   if (!options.quiet) {
-    fmt::print("{}\n{}\n", csv.string(), page.string());
+    fmt::print("{}\n{}\n", paths.csv.string(), paths.page.string());
   }
   return kDone;
 }

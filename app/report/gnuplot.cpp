@@ -259,4 +259,12 @@ Result<std::vector<std::string>> draw_plots(std::span<const Plot> plots) {
   return drawn;
 }
 
+Result<Done> try_gnuplot() {
+  Plot plot;
+  plot.series.emplace_back();
+  plot.series[0].points = {{0.0, 0.0}, {1.0, 1.0}};
+  const Result<std::vector<std::string>> drawn = draw_plots({&plot, 1});
+  return drawn ? Result<Done>(Done{}) : Result<Done>(drawn.error());
+}
+
 }  // namespace torsion

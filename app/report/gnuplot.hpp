@@ -12,4 +12,7 @@ namespace torsion {
 /// the others, and nothing is loaded. Fails where gnuplot is missing or ends with an error.
 Result<std::vector<std::string>> draw_plots(std::span<const Plot> plots);
 
+/// Whether plots can be drawn here, tried with a small one. Fails as draw_plots would.
+Result<Done> try_gnuplot();
+
 }  // namespace torsion

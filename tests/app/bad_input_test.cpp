@@ -27,6 +27,7 @@ TEST(ProgramUsageTest, WrongUsageIsExitCodeTwo) {
       {"simulate", scene("ball_on_cube"), "--speed", "3"},
       {"export", scene("ball_on_cube"), "--at", "1"},
       {"export", scene("ball_on_cube"), "--at", "1", "--out", "x.obj"},
+      {"report", "--quick", "--out", ""},
 #ifdef TORSION_WITH_RENDER
       {"render", scene("ball_on_cube"), "--out", "x.png"},
       {"render", scene("ball_on_cube"), "--at", "1", "--out", "x.png", "--size", "12"},

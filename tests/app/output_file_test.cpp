@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/app/program.hpp"
+#include "tests/app/small_disk.hpp"
 
 namespace torsion {
 namespace {
@@ -80,6 +81,33 @@ TEST(OutputFileTest, TwoForTheSamePlaceDoNotMix) {
   EXPECT_EQ(read_text(path), "first");
   ASSERT_TRUE(second.value().commit());
   EXPECT_EQ(read_text(path), "second");
+}
+
+TEST(OutputFileTest, OfSeveralAllAppearOrNone) {
+  const Folder folder;
+  for (const bool fits : {false, true}) {
+    std::vector<OutputFile> files;
+    for (const char* name : {"first", "second"}) {
+      Result<OutputFile> file = OutputFile::create(folder / name);
+      ASSERT_TRUE(file) << file.error().text;
+      files.push_back(std::move(file).value());
+    }
+    files[0].write("short");
+    // Less than a buffer: only its end shows that there is no room.
+    files[1].write(std::string(3000, 'x'));
+    const Result<Done> done = [&] {
+      const test::SmallDisk small(fits ? 4000 : 2000);  // bytes
+      return OutputFile::commit_all(files);
+    }();
+    EXPECT_EQ(done.ok(), fits);
+    EXPECT_EQ(std::filesystem::exists(folder / "first"), fits);
+    EXPECT_EQ(std::filesystem::exists(folder / "second"), fits);
+    if (!fits) {
+      EXPECT_NE(done.error().text.find("second: cannot be written"), std::string::npos)
+          << done.error().text;
+    }
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2);
 }
 
 }  // namespace

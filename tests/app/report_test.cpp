@@ -1,6 +1,7 @@
 // What torsion report writes, and how large the errors that it measures may be.
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <regex>
@@ -206,6 +207,45 @@ TEST(ReportTest, FolderThatCannotBeMadeIsSaid) {
   const Ran ran = run_torsion({"report", "--quick", "--out", folder / "file/report"});
   EXPECT_EQ(ran.exit_code, 1);
   EXPECT_NE(ran.err.find("file"), std::string::npos) << ran.err;
+}
+
+/// How long something took, s.
+template <class Work>
+double seconds_of(const Work& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// The whole report takes minutes: it is over within this only if nothing was measured.
+constexpr double kWithoutMeasuring = 15.0;  // s
+
+TEST(ReportTest, FileThatCannotBeWrittenIsSaidBeforeMeasuring) {
+  for (const char* name : {"report.csv", "report.html"}) {
+    const Folder folder;
+    std::filesystem::create_directory(folder / name);
+    Ran ran;
+    EXPECT_LT(seconds_of([&] {
+                ran = run_torsion({"report", "--out", folder / ""});
+              }),
+              kWithoutMeasuring);
+    EXPECT_EQ(ran.exit_code, 1) << name;
+    EXPECT_NE(ran.err.find(std::string(name) + ": cannot be written: it is a folder"),
+              std::string::npos)
+        << ran.err;
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << name;
+  }
+}
+
+TEST(ReportTest, MissingGnuplotIsSaidBeforeMeasuring) {
+  const Folder folder;
+  std::vector<std::string> words = test::torsion({"report", "--out", folder / "made"});
+  words.insert(words.begin(), {"/usr/bin/env", "PATH=" + (folder / "nothing")});
+  Ran ran;
+  EXPECT_LT(seconds_of([&] { ran = test::Process(words).wait(); }), kWithoutMeasuring);
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_NE(ran.err.find("install the package gnuplot-nox"), std::string::npos) << ran.err;
+  EXPECT_TRUE(folder.empty());
 }
 
 }  // namespace

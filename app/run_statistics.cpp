@@ -6,27 +6,29 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "systems/patch_grid.hpp"
+
 namespace torsion {
 namespace {
 
-constexpr double kFirstBin = 0.125;  // us
 constexpr double kBinsPerDoubling = 2.0;
-
-double lower_edge(std::size_t bin) {
-  return bin == 0 ? 0.0 : kFirstBin * std::exp2(static_cast<double>(bin) / kBinsPerDoubling);
-}
 
 }  // namespace
 
-void TimeHistogram::add(double microseconds) {
-  const double position =
-      kBinsPerDoubling * std::log2(std::max(microseconds, kFirstBin) / kFirstBin);
-  bins_[std::min(static_cast<std::size_t>(position), kBins - 1)] += 1;
-  count_ += 1;
-  largest_ = std::max(largest_, microseconds);
+double Histogram::lower_edge(std::size_t bin) const {
+  return bin == 0 ? 0.0 : first_ * std::exp2(static_cast<double>(bin) / kBinsPerDoubling);
 }
 
-double TimeHistogram::quantile(double share) const {
+void Histogram::add(double value) {
+  constexpr auto kLast = static_cast<double>(kBins - 1);
+  // In this order what is no number is in the first bin.
+  const double position = kBinsPerDoubling * std::log2(std::max(first_, value) / first_);
+  bins_[static_cast<std::size_t>(std::min(position, kLast))] += 1;
+  count_ += 1;
+  largest_ = std::max(largest_, value);
+}
+
+double Histogram::quantile(double share) const {
   const double wanted = share * static_cast<double>(count_);
   double before = 0.0;
   for (std::size_t bin = 0; bin < kBins; ++bin) {
@@ -40,7 +42,7 @@ double TimeHistogram::quantile(double share) const {
   return largest_;
 }
 
-std::vector<TimeHistogram::Bin> TimeHistogram::bins() const {
+std::vector<Histogram::Bin> Histogram::bins() const {
   std::vector<Bin> all;
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     if (bins_[bin] != 0) {
@@ -50,7 +52,7 @@ std::vector<TimeHistogram::Bin> TimeHistogram::bins() const {
   return all;
 }
 
-std::string TimeHistogram::text() const {
+std::string Histogram::text() const {
   std::string text;
   for (const Bin& bin : bins()) {
     text +=
@@ -58,6 +60,16 @@ std::string TimeHistogram::text() const {
                     100.0 * static_cast<double>(bin.count) / static_cast<double>(count_));
   }
   return text;
+}
+
+void PatchStatistics::add(const PatchState& state) {
+  residuals.add(state.residual);
+  sweeps += state.sweeps;
+  most_sweeps = std::max(most_sweeps, state.sweeps);
+}
+
+double PatchStatistics::mean_sweeps() const {
+  return static_cast<double>(sweeps) / static_cast<double>(region_steps());
 }
 
 void RunStatistics::add_step(const World& world, double step_us) {
@@ -68,6 +80,11 @@ void RunStatistics::add_step(const World& world, double step_us) {
   for (const ToolWrench& wrench : world.tools.column<ToolWrench>()) {
     peak_force = std::max(peak_force, glm::length(wrench.total.force));
     peak_torque = std::max(peak_torque, glm::length(wrench.total.torque));
+  }
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    if (has_patch(world, world.regions.at<RegionIdentity>(region))) {
+      patch.add(world.regions.at<PatchState>(region));
+    }
   }
 }
 

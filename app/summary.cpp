@@ -16,12 +16,28 @@ double simulated_time(const Session& session, const RunStatistics& statistics) {
 }
 
 /// Rows [from us, to us, count].
-nlohmann::ordered_json histogram_json(const TimeHistogram& histogram) {
+nlohmann::ordered_json histogram_json(const Histogram& histogram) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const TimeHistogram::Bin& bin : histogram.bins()) {
+  for (const Histogram::Bin& bin : histogram.bins()) {
     rows.push_back({bin.from, bin.to, bin.count});
   }
   return rows;
+}
+
+std::string patch_text(const PatchStatistics& patch) {
+  return fmt::format(
+      "patch    sweeps mean {:.2f}, most {}; residual median {:.2g}, 99 % {:.2g}, largest {:.2g}\n",
+      patch.mean_sweeps(), patch.most_sweeps, patch.residuals.quantile(0.5),
+      patch.residuals.quantile(0.99), patch.residuals.largest());
+}
+
+nlohmann::ordered_json patch_json(const PatchStatistics& patch) {
+  return {{"region_steps", patch.region_steps()},
+          {"sweeps", {{"mean", patch.mean_sweeps()}, {"most", patch.most_sweeps}}},
+          {"residual",
+           {{"median", patch.residuals.quantile(0.5)},
+            {"p99", patch.residuals.quantile(0.99)},
+            {"largest", patch.residuals.largest()}}}};
 }
 
 }  // namespace
@@ -63,6 +79,9 @@ std::string summary_text(const Session& session, const RunStatistics& statistics
       statistics.step_times.quantile(0.99), statistics.step_times.largest(),
       statistics.contact_steps, statistics.most_regions, statistics.peak_force,
       statistics.peak_torque);
+  if (statistics.patch.region_steps() > 0) {
+    text += patch_text(statistics.patch);
+  }
   for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
     const ModelChoice& choice = session.simulation.choices[body];
     text += fmt::format("body     {}: contact model {} ({}); body model {} ({})\n",
@@ -107,6 +126,9 @@ std::string summary_json(const Session& session, const RunStatistics& statistics
                                  {"peak_torque_Nm", statistics.peak_torque},
                                  {"world_hash", fmt::format("{:016x}", hash(world))},
                                  {"faults", nlohmann::json::array()}};
+  if (statistics.patch.region_steps() > 0) {
+    json["patch"] = patch_json(statistics.patch);
+  }
   for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
     const ModelChoice& choice = session.simulation.choices[body];
     json["bodies"].push_back({{"node", session.scene.bodies[body].node},

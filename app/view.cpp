@@ -24,7 +24,7 @@ double pictures_a_second(const ViewerOutcome& outcome) {
 
 nlohmann::ordered_json to_json(const ViewerOutcome& outcome) {
   const RunStatistics& statistics = outcome.statistics;
-  const auto times = [](const TimeHistogram& histogram) {
+  const auto times = [](const Histogram& histogram) {
     return nlohmann::ordered_json{{"median", histogram.quantile(0.5)},
                                   {"p99", histogram.quantile(0.99)},
                                   {"largest", histogram.largest()}};

@@ -32,9 +32,9 @@ struct DeviceView {
   VirtualCoupling coupling;
   ToolHold hold = ToolHold::kMassless;
   GuardState guard = GuardState::kWaiting;
-  TimeHistogram answer_us;   // from a sample's arrival to the wrench that goes out with it
-  TimeHistogram result_us;   // how old the physics' result in that wrench was
-  std::uint64_t losses = 0;  // times that the device was live and then not
+  Histogram answer_us{kShortestTime};  // from a sample's arrival to its wrench's going out
+  Histogram result_us{kShortestTime};  // how old the physics' result in that wrench was
+  std::uint64_t losses = 0;            // times that the device was live and then not
 };
 
 /// The devices of one tool: the USB threads, and what they say to the physics thread.

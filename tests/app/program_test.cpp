@@ -84,6 +84,48 @@ TEST(SimulateTest, JsonSummaryGivesTheRun) {
   EXPECT_TRUE(summary["faults"].empty());
 }
 
+TEST(SimulateTest, SummaryGivesResidualsAndSweepsOfPatch) {
+  const Folder folder;
+  const auto run = [&](const char* sweeps) {
+    const Ran ran = run_torsion({"simulate", scene("ball_on_cube"), "--seconds", "1.2",
+                                 "--contact-model", "patch", "--body-model", "none", "--sweeps",
+                                 sweeps, "--json", "--trace", folder / "t.csv"});
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    return json::parse(ran.out).at("patch");
+  };
+  const json few = run("1");
+  std::uint64_t region_steps = 0;
+  for (const std::string& line : lines_of(read_text(folder / "t.csv"))) {
+    region_steps += line.starts_with("time_s") ? 0U : std::stoul(fields_of(line)[8]);
+  }
+  EXPECT_GT(region_steps, 0U);
+  EXPECT_EQ(few["region_steps"], region_steps);
+  const json many = run("20");
+  EXPECT_LE(few["sweeps"]["mean"], many["sweeps"]["mean"]);
+  EXPECT_LE(many["sweeps"]["most"], 20);
+  // More sweeps leave less.
+  EXPECT_LT(many["residual"]["p99"], few["residual"]["p99"]);
+  for (const json& patch : {few, many}) {
+    EXPECT_LE(patch["sweeps"]["mean"], patch["sweeps"]["most"]);
+    EXPECT_LE(patch["residual"]["median"], patch["residual"]["p99"]);
+    EXPECT_LE(patch["residual"]["p99"], patch["residual"]["largest"]);
+  }
+}
+
+TEST(SimulateTest, SummaryHasAPatchLineOnlyWherePatchRan) {
+  for (const std::string model : {"paper", "patch"}) {
+    const std::vector<std::string> words = {"simulate", scene("ball_on_cube"), "--seconds",
+                                            "0.6",      "--contact-model",     model};
+    const Ran ran = run_torsion(words);
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_EQ(ran.out.find("patch    sweeps mean") != std::string::npos, model == "patch")
+        << ran.out;
+    std::vector<std::string> with_json = words;
+    with_json.emplace_back("--json");
+    EXPECT_EQ(json::parse(run_torsion(with_json).out).contains("patch"), model == "patch");
+  }
+}
+
 TEST(SimulateTest, PrintsHowFastItIs) {
   const Ran ran = run_torsion({"simulate", scene("ball_on_cube"), "--json"});
   ASSERT_EQ(ran.exit_code, 0) << ran.err;

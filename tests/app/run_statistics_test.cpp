@@ -1,14 +1,15 @@
 #include "app/run_statistics.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
 namespace torsion {
 namespace {
 
-TEST(TimeHistogramTest, QuantilesAreRightWithinABin) {
-  TimeHistogram histogram;
+TEST(HistogramTest, QuantilesAreRightWithinABin) {
+  Histogram histogram(kShortestTime);
   for (int i = 1; i <= 1000; ++i) {
     histogram.add(static_cast<double>(i));  // us
   }
@@ -20,13 +21,64 @@ TEST(TimeHistogramTest, QuantilesAreRightWithinABin) {
   EXPECT_EQ(histogram.count(), 1000U);
 }
 
-TEST(TimeHistogramTest, TakesAnyTime) {
-  TimeHistogram histogram;
+TEST(HistogramTest, TakesAnyTime) {
+  Histogram histogram(kShortestTime);
   histogram.add(0.0);
   histogram.add(1e12);
   EXPECT_EQ(histogram.count(), 2U);
   EXPECT_LE(histogram.quantile(0.25), 0.2);
   EXPECT_FALSE(histogram.text().empty());
+}
+
+TEST(HistogramTest, TakesWhatIsNoNumberAndWhatIsEndless) {
+  Histogram histogram(kLeastResidual);
+  histogram.add(std::numeric_limits<double>::quiet_NaN());
+  histogram.add(std::numeric_limits<double>::infinity());
+  EXPECT_EQ(histogram.count(), 2U);
+  EXPECT_EQ(histogram.bins().size(), 2U);
+}
+
+/// Two bodies, of which only the first has contact model patch, with two regions on it and one on
+/// the other.
+World world_with_patches() {
+  World world;
+  Capacities capacities;
+  capacities.bodies = 2;
+  capacities.regions = 3;
+  capacities.patch_bodies = 1;
+  world.reserve(capacities, Settings{});
+  world.bodies.append(2);
+  world.bodies.at<BodyModels>(0).contact = ContactModel::kPatch;
+  world.bodies.at<BodyModels>(1).contact = ContactModel::kMdr;
+  world.regions.append(3);
+  world.regions.at<RegionIdentity>(1).body = 1;
+  return world;
+}
+
+TEST(RunStatisticsTest, ResidualsAndSweepsAreThoseOfRegionsWithPatch) {
+  World world = world_with_patches();
+  world.regions.at<PatchState>(1) = {.residual = 9.0, .sweeps = 90};  // means nothing there
+  RunStatistics statistics;
+  // Residuals 0.001 to 0.1 evenly, sweeps 1 in the one region, 2 in the other and once 12.
+  for (int i = 1; i <= 100; ++i) {
+    world.regions.at<PatchState>(0) = {.residual = 1e-3 * i, .sweeps = 1};
+    world.regions.at<PatchState>(2) = {.residual = 1e-3 * i, .sweeps = i == 50 ? 12U : 2U};
+    statistics.add_step(world, 1.0);
+  }
+  EXPECT_EQ(statistics.patch.region_steps(), 200U);
+  EXPECT_EQ(statistics.patch.most_sweeps, 12U);
+  EXPECT_DOUBLE_EQ(statistics.patch.mean_sweeps(), (100.0 + 99.0 * 2.0 + 12.0) / 200.0);
+  EXPECT_DOUBLE_EQ(statistics.patch.residuals.largest(), 0.1);
+  // Even within a bin, as they are but for their coarseness of a hundredth.
+  EXPECT_NEAR(statistics.patch.residuals.quantile(0.5), 0.05, 0.05 * 0.05);
+}
+
+TEST(RunStatisticsTest, OtherModelsHaveNoResiduals) {
+  World world = world_with_patches();
+  world.bodies.at<BodyModels>(0).contact = ContactModel::kPaper;
+  RunStatistics statistics;
+  statistics.add_step(world, 1.0);
+  EXPECT_EQ(statistics.patch.region_steps(), 0U);
 }
 
 }  // namespace

@@ -88,6 +88,9 @@ twist at a radius is the displacement around the axis, mean of four directions, 
 radius.</dd>
 <dt>step</dt><dd>Wall time of one step with contact: median and 99th percentile over the
 path.</dd>
+<dt>grid cells</dt><dd>All cells of one region&rsquo;s grid. In a round contact about half of them are
+in contact, which <code>--cells</code> counts; the others are the corners of the square and room to
+grow.</dd>
 <dt>memory</dt><dd>All tables of the physics world, as reserved.</dd>
 </dl>
 )html";
@@ -143,7 +146,8 @@ std::string overview_table(std::span<const MeasuredCase> cases) {
 
 std::string runs_table(const MeasuredCase& measured) {
   std::string html =
-      "<div class=\"wide\"><table>\n<tr><th>contact model</th><th>body model</th><th>cells</th>"
+      "<div class=\"wide\"><table>\n<tr><th>contact model</th><th>body model</th><th>grid "
+      "cells</th>"
       "<th>anchors</th><th>step, median (\u00b5s)</th><th>99 % (\u00b5s)</th><th>force error "
       "(%)</th>"
       "<th>torque error (%)</th><th>twist error (%)</th><th>memory (KiB)</th></tr>\n";
@@ -230,7 +234,7 @@ std::vector<Plot> overview_plots(std::span<const MeasuredCase> cases) {
     Plot plot = speed_plot(chosen);
     plot.caption = fmt::format(
         "Speed against error over all {} cases {}: geometric means of the median step and of the "
-        "larger error of force and torque. Numbers at patch: cells of a region.",
+        "larger error of force and torque. Numbers at patch: grid cells of a region.",
         chosen.size(), finite ? "with finite bodies" : "on a half-space");
     plots.push_back(std::move(plot));
   }

@@ -181,7 +181,7 @@ Plot speed_plot(const MeasuredCase& measured) {
   Plot plot = speed_plot(one);
   plot.caption =
       "Speed against error: the median step in contact, and the larger of the errors of force and "
-      "torque. Numbers at patch: cells of a region.";
+      "torque. Numbers at patch: grid cells of a region.";
   return plot;
 }
 

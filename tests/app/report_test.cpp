@@ -199,6 +199,12 @@ TEST(ReportTest, QuickPageNeedsNothingElse) {
   // the loop that sliding has not.
   EXPECT_GE(plots, 11U);
   EXPECT_NE(page.find("@media print"), std::string::npos);
+  // Nobody is to take the cells of a grid for those in contact.
+  EXPECT_NE(page.find("<th>grid cells</th>"), std::string::npos);
+  EXPECT_EQ(page.find("<th>cells</th>"), std::string::npos);
+  EXPECT_NE(page.find("<dt>grid cells</dt>"), std::string::npos);
+  EXPECT_NE(page.find("Numbers at patch: grid cells of a region."), std::string::npos);
+  EXPECT_EQ(page.find("Numbers at patch: cells"), std::string::npos);
 }
 
 TEST(ReportTest, FolderThatCannotBeMadeIsSaid) {

@@ -115,14 +115,15 @@ const SceneKey* find_key(std::string_view name) {
 
 void add_unknown(const std::string& name, const tinygltf::Value& value, const std::string& where,
                  const ProblemList& problems) {
+  // What all keys begin with makes none of them nearer.
   std::vector<std::string_view> known;
   known.reserve(kSceneKeys.size());
   for (const SceneKey& key : kSceneKeys) {
-    known.push_back(key.name);
+    known.push_back(key.name.substr(kPrefix.size()));
   }
-  const auto meant = did_you_mean(name, known);
+  const auto meant = did_you_mean(std::string_view(name).substr(kPrefix.size()), known);
   problems.add(where, name, shown(value), "there is no such key",
-               meant ? "did you mean " + *meant + "?"
+               meant ? "did you mean " + std::string(kPrefix) + *meant + "?"
                      : "take it out; docs/scenes.md lists the keys that there are");
 }
 
@@ -155,7 +156,7 @@ std::string called(std::string_view kind, std::string_view array, std::size_t ro
 std::optional<std::string> did_you_mean(std::string_view word,
                                         const std::vector<std::string_view>& known) {
   std::optional<std::string> best;
-  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
+  std::size_t least = (word.size() + 2) / 3 + 1;  // a third of its letters may be wrong
   for (const std::string_view candidate : known) {
     const std::size_t distance = edit_distance(word, candidate);
     if (distance < least) {

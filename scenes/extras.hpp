@@ -45,7 +45,8 @@ class NodeKeys {
 /// The role that a node says it has; problems are left to NodeKeys::add.
 Role role_of(const tinygltf::Value& extras);
 
-/// The known word nearest to `word`, when it is near enough to be what was meant.
+/// The known word nearest to `word`, when it is near enough to be what was meant: not more than a
+/// third of the letters, rounded up, are wrong.
 std::optional<std::string> did_you_mean(std::string_view word,
                                         const std::vector<std::string_view>& known);
 

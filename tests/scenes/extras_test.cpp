@@ -103,6 +103,22 @@ TEST(ExtrasTest, NearWordsAreOfferedAndFarOnesAreNot) {
   EXPECT_EQ(did_you_mean("torsion_mas", known), "torsion_mass");
   EXPECT_EQ(did_you_mean("torsion_shap", known), "torsion_shape");
   EXPECT_FALSE(did_you_mean("xyz", known).has_value());
+  EXPECT_EQ(did_you_mean("maas", {"mass"}), "mass");
+  EXPECT_EQ(did_you_mean("amss", {"mass"}), "mass");  // two letters that changed places
+  EXPECT_FALSE(did_you_mean("mud", {"mass"}).has_value());
+  EXPECT_FALSE(did_you_mean("", {"a"}).has_value());
+}
+
+TEST(ExtrasTest, TheBeginningOfAllKeysMakesNoneNearer) {
+  for (const auto& [name, advice] :
+       {std::pair("torsion_cells", "docs/scenes.md"), std::pair("torsion_", "docs/scenes.md"),
+        std::pair("torsion_rol", "did you mean torsion_role?"),
+        std::pair("torsion_densty", "did you mean torsion_density?")}) {
+    Keys read;
+    read.keys.add(one(name, tinygltf::Value(1)), "node \"n\"", read.problems);
+    ASSERT_EQ(read.found.size(), 1U);
+    EXPECT_NE(read.found[0].mend.find(advice), std::string::npos) << read.found[0].mend;
+  }
 }
 
 TEST(ExtrasTest, NamelessElementsAreCalledByTheirRow) {

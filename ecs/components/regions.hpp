@@ -96,13 +96,13 @@ struct RegionMotion {
   double lever = 0.0;  // m: l of the paper, distance to the fixed point along the axis, at least a
 };
 
-/// Written by: normal_forces.
+/// Written by: the contact model (paper_normal_forces, mdr_forces or patch_forces).
 struct RegionNormal {
   double force = 0.0;      // N: F_n without rotation, along the outward normal on the tool
   double stiffness = 0.0;  // N/m: dF/dx
 };
 
-/// Written by: friction_forces.
+/// Written by: the contact model (paper_friction_forces, mdr_forces or patch_forces).
 struct RegionFriction {
   glm::dvec2 force{0.0};       // N, grid, on the tool
   double couple = 0.0;         // N m, about the normal through p_eq, on the tool

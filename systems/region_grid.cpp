@@ -117,11 +117,16 @@ void foresee_carrier(World& world, std::uint32_t region) {
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
   const double share = world.regions.at<RegionFriction>(region).stick_share;
   const MotionOverBody motion = motion_over_body(world, region);
-  const glm::dvec3 shift = shift_at(motion, frame.origin);
-  const glm::dvec3 turn = turn_of(motion);
+  // As a rigid body about the contact's middle, so that it does not matter where the grid has its
+  // origin.
+  const glm::dvec3 middle = world.regions.at<RegionGeometry>(region).equivalent_point;
+  const glm::dvec3 shift = shift_at(motion, middle);
+  const double turn = share * glm::dot(turn_of(motion), frame.normal);
   RegionCarrier& carrier = world.regions.at<RegionCarrier>(region);
-  carrier.translation += share * (shift - frame.normal * glm::dot(shift, frame.normal));
-  carrier.rotation += frame.normal * (share * glm::dot(turn, frame.normal));
+  const glm::dvec3 arm = frame.origin + carrier.translation - middle;
+  carrier.translation += share * (shift - frame.normal * glm::dot(shift, frame.normal)) +
+                         (glm::angleAxis(turn, frame.normal) * arm - arm);
+  carrier.rotation += frame.normal * turn;
 }
 
 }  // namespace

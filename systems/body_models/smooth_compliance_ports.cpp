@@ -42,7 +42,8 @@ std::optional<Port> on_surface(const ElasticSolid& solid, glm::dvec3 point, doub
 SurfacePoints sample_surface(const ElasticSolid& solid) {
   const glm::dvec3 extent = solid.bounds.highest - solid.bounds.lowest;
   const double size = std::max({extent.x, extent.y, extent.z}) / kCandidateCells;
-  const glm::uvec3 cells(glm::max(glm::ceil(extent / size), glm::dvec3(6.0)));
+  // Odd: a symmetric body has candidates in its middle planes.
+  const glm::uvec3 cells = glm::uvec3(glm::max(glm::ceil(extent / size), glm::dvec3(6.0))) | 1U;
   const glm::dvec3 spacing = extent / glm::dvec3(cells);
   const double reach = 0.5 * glm::length(spacing);
   SurfacePoints points;
@@ -116,6 +117,78 @@ std::size_t far_end(const Bounds& bounds, const std::vector<Port>& candidates,
       candidates.begin());
 }
 
+/// The planes through the middle of the bounds, across x, y and z, in which the body and its clamp
+/// are their own mirror images.
+struct Mirrors {
+  glm::dvec3 middle{0.0};
+  glm::bvec3 across{false};
+};
+
+Port mirrored(const Port& port, const glm::dvec3& middle, int axis) {
+  Port image = port;
+  image.position[axis] = 2.0 * middle[axis] - port.position[axis];
+  image.normal[axis] = -port.normal[axis];
+  return image;
+}
+
+Mirrors find_mirrors(const ElasticSolid& solid, const SurfacePoints& points) {
+  constexpr double kSame = 1e-7;  // of the bounds' diagonal
+  const double near = kSame * glm::length(solid.bounds.highest - solid.bounds.lowest);
+  Mirrors mirrors{0.5 * (solid.bounds.lowest + solid.bounds.highest), glm::bvec3(true)};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto stays = [&](const Port& port, bool clamped) {
+      const glm::dvec3 image = mirrored(port, mirrors.middle, axis).position;
+      return std::abs(solid.signed_distance(image).value) < near && solid.clamped(image) == clamped;
+    };
+    mirrors.across[axis] =
+        std::ranges::all_of(points.free, [&](const Port& port) { return stays(port, false); }) &&
+        std::ranges::all_of(points.clamped, [&](const glm::dvec3& point) {
+          return stays({point, {}}, true);
+        });
+  }
+  return mirrors;
+}
+
+/// The port and its mirror images, each once.
+std::vector<Port> images_of(const Port& port, const Mirrors& mirrors) {
+  std::vector<Port> images{port};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (mirrors.across[axis] && port.position[axis] != mirrors.middle[axis]) {
+      const std::size_t count = images.size();
+      for (std::size_t k = 0; k < count; ++k) {
+        images.push_back(mirrored(images[k], mirrors.middle, axis));
+      }
+    }
+  }
+  return images;
+}
+
+/// How far a port is from the nearest of its own images, m.
+double to_own_images(const Port& port, const Mirrors& mirrors) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double away = 2.0 * std::abs(port.position[axis] - mirrors.middle[axis]);
+    if (mirrors.across[axis] && away > 0.0) {
+      nearest = std::min(nearest, away);
+    }
+  }
+  return nearest;
+}
+
+/// A candidate next to a middle plane, but for rounding in it, is put there.
+void center(const Mirrors& mirrors, double spacing, std::vector<Port>& candidates) {
+  constexpr double kRounding = 1e-6;
+  for (Port& port : candidates) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (mirrors.across[axis] &&
+          std::abs(port.position[axis] - mirrors.middle[axis]) < kRounding * spacing) {
+        port.position[axis] = mirrors.middle[axis];
+        port.normal[axis] = 0.0;
+      }
+    }
+  }
+}
+
 /// A ball where ports are densest.
 struct Focus {
   glm::dvec3 center{0.0};  // m, body
@@ -152,20 +225,31 @@ std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count) {
   if (candidates.empty() || count == 0) {
     return ports;
   }
+  const Mirrors mirrors = find_mirrors(solid, points);
+  center(mirrors, spacing, candidates);
   std::size_t next = far_end(solid.bounds, candidates, points.clamped);
   const glm::dvec3 extent = solid.bounds.highest - solid.bounds.lowest;
   const Focus end{candidates[next].position, 0.5 * std::min({extent.x, extent.y, extent.z})};
   const std::vector<double> sizes = wanted_sizes(candidates, end, 2.0 * end.radius);
-  std::vector<double> nearest(candidates.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> nearest(candidates.size());
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    nearest[i] = to_own_images(candidates[i], mirrors) / sizes[i];
+  }
   const auto keep_away = [&](const glm::dvec3& from) {
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       nearest[i] = std::min(nearest[i], glm::distance(candidates[i].position, from) / sizes[i]);
     }
   };
   std::for_each(points.clamped.begin(), points.clamped.end(), keep_away);
-  while (ports.size() < count && (ports.empty() || nearest[next] > 0.05 * spacing)) {
-    ports.push_back(candidates[next]);
-    keep_away(ports.back().position);
+  while (nearest[next] > 0.05 * spacing || ports.empty()) {
+    const std::vector<Port> images = images_of(candidates[next], mirrors);
+    if (ports.size() + images.size() > count && !ports.empty()) {
+      break;
+    }
+    for (const Port& image : images) {
+      ports.push_back(image);
+      keep_away(image.position);
+    }
     next = static_cast<std::size_t>(std::max_element(nearest.begin(), nearest.end()) -
                                     nearest.begin());
   }

@@ -102,7 +102,7 @@ TEST_P(PatchComplianceTest, ComesToRestAfterAnyMotion) {
       ASSERT_LT(hand.wrench().force.y, 3.0 * pressed);
     }
     hand.move(-way, kUp, 0.0, 50);
-    hand.move(glm::dvec3(0.0), kUp, 0.0, 40);
+    hand.move(glm::dvec3(0.0), kUp, 0.0, 60);
     const Wrench settled = hand.wrench();
     hand.move(glm::dvec3(0.0), kUp, 0.0, 1);
     EXPECT_LT(change(settled, hand.wrench(), ground), 1e-8);

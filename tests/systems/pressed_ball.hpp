@@ -15,8 +15,8 @@ inline constexpr double kBallShearModulus = 1e6;     // Pa
 inline constexpr double kBallDepth = 4.12740906e-4;  // m: 10 N at nu = 0.5, a = 4.54 mm
 inline constexpr double kBallFriction = 0.75;
 
-/// What varies between the tests of a ball on the paper's cube. The body is a half-space: no body
-/// model.
+/// What varies between the tests of a ball on the paper's cube. Without a body model the body is a
+/// half-space.
 struct BallScene {
   ContactModel model = ContactModel::kPatch;
   double poisson = 0.5;
@@ -25,6 +25,7 @@ struct BallScene {
   std::uint32_t sweeps = 2;
   double static_friction = kBallFriction;
   double dynamic_friction = kBallFriction;
+  BodyModel body = BodyModel::kNone;
 };
 
 inline SceneDescription make_ball_scene(const BallScene& ball) {
@@ -32,7 +33,7 @@ inline SceneDescription make_ball_scene(const BallScene& ball) {
   BodyDescription& body = scene.bodies[0];
   body.models = {};
   body.models.contact = ball.model;
-  body.models.body = BodyModel::kNone;
+  body.models.body = ball.body;
   body.elasticity.poisson_ratio = ball.poisson;
   body.elasticity.youngs_modulus = 2.0 * kBallShearModulus * (1.0 + ball.poisson);
   body.friction = {ball.static_friction, ball.dynamic_friction};

@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t kPortsPerBody = 128;
 constexpr std::size_t kFewestPorts = 4;
 constexpr double kClampOfPoint = 0.25;    // of the shortest side
-constexpr double kClampTolerance = 1e-6;  // of the longest side
+constexpr double kClampTolerance = 1e-6;  // of the longest side; of a mesh, what its edges are off
 
 bool in_volume(const FixedVolume& volume, const glm::dvec3& point) {
   const glm::dvec3 unit = volume.to_unit * (point - volume.center);
@@ -28,14 +28,28 @@ bool in_volume(const FixedVolume& volume, const glm::dvec3& point) {
              : std::max({std::abs(unit.x), std::abs(unit.y), std::abs(unit.z)}) <= 1.0;
 }
 
+/// How far beyond a face of the body what is on it may seem to lie, m. The distance to a mesh
+/// rounds edges by up to half a fine cell of its field: a face's rim would not be held.
+double face_tolerance(const World& world, std::uint32_t row) {
+  const Bounds& bounds = world.bodies.at<Bounds>(row);
+  const glm::dvec3 size = bounds.highest - bounds.lowest;
+  double tolerance = kClampTolerance * std::max({size.x, size.y, size.z});
+  for (const ShapePart& part : world.parts.rows<ShapePart>(world.bodies.at<OwnedRows>(row).parts)) {
+    if (part.kind == ShapeKind::kMesh) {
+      const DistanceField& field = world.fields.at<DistanceField>(part.field);
+      tolerance = std::max(tolerance, 0.5 * field.spacing / field.subdivision);
+    }
+  }
+  return tolerance;
+}
+
 bool is_clamped(const World& world, std::uint32_t row, const glm::dvec3& point) {
   const FixedRegion& fixed = world.bodies.at<FixedRegion>(row);
   const Bounds& bounds = world.bodies.at<Bounds>(row);
   const glm::dvec3 size = bounds.highest - bounds.lowest;
   switch (fixed.kind) {
     case FixedKind::kFace:
-      return glm::dot(point - fixed.point, fixed.normal) <=
-             kClampTolerance * std::max({size.x, size.y, size.z});
+      return glm::dot(point - fixed.point, fixed.normal) <= face_tolerance(world, row);
     case FixedKind::kPoint:
       return glm::distance(point, fixed.point) <=
              kClampOfPoint * std::min({size.x, size.y, size.z});

@@ -27,6 +27,7 @@ struct MeshCase {
   const char* name;
   ShapeKind kind;
   glm::dvec3 half;  // m
+  FixedKind fixed;
   ContactModel contact;
   double poisson;
 };
@@ -39,17 +40,26 @@ constexpr glm::dvec3 kBox(0.02, 0.03, 0.02);
 constexpr glm::dvec3 kEllipsoid(0.03, 0.02, 0.025);
 
 const MeshCase kCases[] = {
-    {"BoxPatch", ShapeKind::kBox, kBox, ContactModel::kPatch, 0.5},
-    {"BoxMdr", ShapeKind::kBox, kBox, ContactModel::kMdr, 0.3},
-    {"EllipsoidPatch", ShapeKind::kEllipsoid, kEllipsoid, ContactModel::kPatch, 0.5},
-    {"EllipsoidPatchCompressible", ShapeKind::kEllipsoid, kEllipsoid, ContactModel::kPatch, 0.3},
-    {"EllipsoidMdr", ShapeKind::kEllipsoid, kEllipsoid, ContactModel::kMdr, 0.5},
+    {"BoxPatch", ShapeKind::kBox, kBox, FixedKind::kPoint, ContactModel::kPatch, 0.5},
+    {"BoxMdr", ShapeKind::kBox, kBox, FixedKind::kPoint, ContactModel::kMdr, 0.3},
+    {"BoxOnAFacePatch", ShapeKind::kBox, kBox, FixedKind::kFace, ContactModel::kPatch, 0.5},
+    {"BoxOnAFaceMdr", ShapeKind::kBox, kBox, FixedKind::kFace, ContactModel::kMdr, 0.3},
+    {"EllipsoidPatch", ShapeKind::kEllipsoid, kEllipsoid, FixedKind::kPoint, ContactModel::kPatch,
+     0.5},
+    {"EllipsoidPatchCompressible", ShapeKind::kEllipsoid, kEllipsoid, FixedKind::kPoint,
+     ContactModel::kPatch, 0.3},
+    {"EllipsoidMdr", ShapeKind::kEllipsoid, kEllipsoid, FixedKind::kPoint, ContactModel::kMdr, 0.5},
 };
 
 SceneDescription scene_of(const MeshCase& each, bool as_mesh) {
   SceneDescription scene;
   BodyDescription body = test::make_body({test::make_part(
       each.kind, each.half, {glm::dvec3(0.0, each.half.y, 0.0), kUpright}, as_mesh, 40)});
+  body.fixed.kind = each.fixed;
+  if (each.fixed == FixedKind::kFace) {
+    body.fixed.point = glm::dvec3(0.0);
+    body.fixed.normal = kUp;
+  }
   body.elasticity.poisson_ratio = each.poisson;
   body.elasticity.youngs_modulus = 3e5;
   body.friction = {kFriction, kFriction};

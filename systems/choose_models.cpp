@@ -20,9 +20,11 @@ namespace {
 
 // Largest errors of the torque over its largest value as `torsion report` measures them
 // (docs/models.md, "Which model"; tests/app/report_test.cpp holds the report to them).
-constexpr double kMdrRoundError = 0.003;      // a round contact that slides or turns
-constexpr double kMdrLongError = 0.025;       // a long one
-constexpr double kMdrCombinedError = 0.05;    // one that does both at once
+constexpr double kMdrRoundError = 0.003;  // a round contact that slides or turns
+constexpr double kMdrLongError = 0.025;   // a long one
+// One that does both at once: found not by the report but against patch, where the directions of
+// slip and turn change in turn (patch_mdr_ball_test.cpp).
+constexpr double kMdrCombinedError = 0.07;
 constexpr double kMdrCoupling = 0.095;        // times 1 - 2 nu: pressure moves the surface sideways
 constexpr double kMdrWideError = 0.095;       // times contact radius over body depth: shape unknown
 constexpr double kFiniteBodyError = 1.1;      // of the force, times contact radius over body depth

@@ -82,10 +82,10 @@ constexpr const char* kDefinitions = R"html(<h2>How the errors are defined</h2>
 |F<sub>ref</sub>|. Which force that is, each case says.</dd>
 <dt>torque</dt><dd>The largest |T &minus; T<sub>ref</sub>| over the path, over the largest
 |T<sub>ref</sub>|.</dd>
-<dt>twist</dt><dd>The root mean square of the difference of the surface&rsquo;s twist over 80 radii,
-evenly from the axis to 8 contact radii or the body&rsquo;s edge, over the twist of the tool. The
-twist at a radius is the displacement around the axis, mean of four directions, over the
-radius.</dd>
+<dt>twist</dt><dd>The norm of the difference between the surface&rsquo;s twist and the
+reference&rsquo;s, over the norm of the reference&rsquo;s, both over the surface from the axis to 8
+contact radii or the body&rsquo;s edge. The twist at a radius is the angle by which the surface there
+has gone around the axis, mean of four directions.</dd>
 <dt>step</dt><dd>Wall time of one step with contact: median and 99th percentile over the
 path.</dd>
 <dt>grid cells</dt><dd>All cells of one region&rsquo;s grid. In a round contact about half of them are

@@ -28,7 +28,7 @@ struct ReferenceField {
   std::size_t point = 0;        // row of the path
   double tool_twist = 0.0;      // rad
   std::vector<double> radii;    // m, ascending
-  std::vector<double> twists;   // rad: displacement around the axis over the radius
+  std::vector<double> twists;   // rad: how far it has gone around the axis
   double contact_radius = 0.0;  // m
 };
 

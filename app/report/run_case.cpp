@@ -41,9 +41,9 @@ void move_to_point(Simulation& simulation, const std::vector<PathPoint>& path, s
   }
 }
 
-/// How far the body's top goes around the axis under the tool at each radius of the field, over
-/// the radius: the mean of four directions, so that a shift of all does not count. The points are
-/// the only vertices of a body that is drawn.
+/// By which angle the body's top goes around the axis under the tool at each radius of the field:
+/// the mean of four directions, less the shift of all four. The points are the only vertices of a
+/// body that is drawn.
 std::vector<double> surface_twists(const ReferenceCase& reference_case,
                                    const Simulation& simulation) {
   constexpr std::array<glm::dvec2, 4> kDirections = {
@@ -70,14 +70,19 @@ std::vector<double> surface_twists(const ReferenceCase& reference_case,
   deform_vertices(frame, 0, moved);
   std::vector<double> twists;
   for (std::size_t i = 0; i < field.radii.size(); ++i) {
-    double around = 0.0;  // m, sum over the directions
+    const std::size_t first = kDirections.size() * i;
+    glm::dvec3 middle(0.0);
     for (std::size_t k = 0; k < kDirections.size(); ++k) {
-      const std::size_t row = kDirections.size() * i + k;
-      const glm::dvec3 shift = glm::dvec3(moved[row]) - glm::dvec3(drawn.positions[row]);
-      // A turn about +y takes +x to -z and +z to +x.
-      around += shift.x * kDirections[k].y - shift.z * kDirections[k].x;
+      middle += glm::dvec3(moved[first + k]) / static_cast<double>(kDirections.size());
     }
-    twists.push_back(around / (static_cast<double>(kDirections.size()) * field.radii[i]));
+    double around = 0.0;  // rad, sum over the directions
+    for (std::size_t k = 0; k < kDirections.size(); ++k) {
+      const glm::dvec3 arm = glm::dvec3(moved[first + k]) - middle;
+      const glm::dvec2& from = kDirections[k];
+      // A turn about +y takes +x to -z and +z to +x.
+      around += std::atan2(arm.x * from.y - arm.z * from.x, arm.x * from.x + arm.z * from.y);
+    }
+    twists.push_back(around / static_cast<double>(kDirections.size()));
   }
   return twists;
 }

@@ -83,7 +83,8 @@ Result<SmoothCompliance> load_or_build_smooth_compliance(const ElasticSolid& sol
                                                          std::span<const Port> ports,
                                                          const SmoothComplianceOptions& options);
 
-/// Up to `count` ports spread over the free surface, each next one farthest from all before it and
+/// Up to `count` ports spread over the free surface, each with its mirror images in the planes in
+/// which the body and its clamp are symmetric, and each next one farthest from all before it and
 /// from the clamp, in distances that count 2.5 times as much at the end of the body opposite of the
 /// clamp as a shortest side away from it; none at the clamp, none so near a sharp edge that the
 /// surface bends away within a third of the ports' mean spacing. Where a scene's contacts are does

@@ -331,7 +331,9 @@ TEST(SmoothComplianceTest, SaysWhatIsWrongWithABody) {
 TEST(ChoosePortsTest, PortsLieOnTheFreeSurfaceSpreadAndAwayFromEdges) {
   const ElasticSolid solid = block_solid({1.0, 1.0, 1.0}, 0.3);
   const std::vector<Port> ports = choose_ports(solid, 60);
-  ASSERT_EQ(ports.size(), 60U);
+  // With its mirror images a port comes with up to three others.
+  ASSERT_LE(ports.size(), 60U);
+  ASSERT_GT(ports.size(), 60U - 4U);
   EXPECT_GT(ports.front().position.z, 0.999);  // the far end from the clamp
   const double spacing = std::sqrt(6.0 / 60.0);
   // Distances count up to 2.5 times as much where contacts are expected: an even spread would keep

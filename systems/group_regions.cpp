@@ -13,6 +13,9 @@
 namespace torsion {
 namespace {
 
+constexpr auto kTakesOver = static_cast<std::uint32_t>(RegionEvent::kTakesOver);
+constexpr auto kBodyFollows = static_cast<std::uint32_t>(RegionEvent::kBodyFollows);
+
 /// The contact points of one pair, by cluster.
 struct PairPoints {
   std::span<const ContactPoint> points;
@@ -50,7 +53,43 @@ void end_region(World& world, std::uint32_t region, std::uint32_t heir) {
     const RegionWrench& ended = world.regions.at<RegionWrench>(region);
     wrench.on_tool.force += ended.on_tool.force;
     wrench.on_tool.torque += ended.on_tool.torque;
-    wrench.event_now = static_cast<std::uint32_t>(RegionEvent::kTakesOver);
+    wrench.event_now = kTakesOver;
+  }
+}
+
+/// Whether a region on the body took over in the last step.
+bool any_took_over(const World& world, std::uint32_t body) {
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    if (world.regions.at<RegionIdentity>(region).body == body &&
+        world.regions.at<RegionWrench>(region).event_now == kTakesOver) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Ends the last step's events. A body with compliance answers to regions that took over from the
+/// next step on, and moves all its regions. Of answers that follow upon each other within the fade
+/// a region that stands by waits for the first alone, lest the force stand still.
+void end_events(World& world) {
+  for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
+    const bool begins_to_follow =
+        world.bodies.at<BodyModels>(body).body == BodyModel::kCompliance &&
+        any_took_over(world, body);
+    for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+      RegionWrench& wrench = world.regions.at<RegionWrench>(region);
+      std::uint32_t& event = wrench.event_now;
+      if (world.regions.at<RegionIdentity>(region).body != body) {
+        continue;
+      }
+      if (begins_to_follow && (event == kTakesOver || wrench.event_share == 0.0)) {
+        event = kBodyFollows;
+      } else if (event >= kBodyFollows && event + 1 < kBodyFollows + kFollowingSteps) {
+        event += 1;
+      } else {
+        event = static_cast<std::uint32_t>(RegionEvent::kNone);
+      }
+    }
   }
 }
 
@@ -76,7 +115,9 @@ std::uint32_t regions_on(const World& world, std::uint32_t body) {
       std::ranges::count(world.regions.column<RegionIdentity>(), body, &RegionIdentity::body));
 }
 
-void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t cluster) {
+/// @param event  kBegins or kTakesOver
+void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t cluster,
+                  RegionEvent event) {
   World& world = context.world;
   Clock& clock = world.clock.at<Clock>(0);
   const std::uint32_t row = world.regions.size();
@@ -106,8 +147,7 @@ void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t c
   }
   place_new_grid(context, row, {pair.points, cluster});
   // on_tool is zero: what it exerts at birth fades in.
-  world.regions.at<RegionWrench>(row).event_now =
-      static_cast<std::uint32_t>(RegionEvent::kTakesOver);
+  world.regions.at<RegionWrench>(row).event_now = static_cast<std::uint32_t>(event);
 }
 
 bool owns_cluster(const Scratch& scratch, std::uint32_t region) {
@@ -187,8 +227,9 @@ std::uint32_t heir_of(const World& world, const Scratch& scratch, std::uint32_t 
   return kNoRow;
 }
 
-/// A cluster without an owner that lies over a living region was split off it.
-void note_splits(World& world, const Scratch& scratch, std::span<const ContactPoint> points) {
+/// A cluster without an owner that lies over a living region was split off it. Leaves in
+/// scratch.owners that such a cluster overlaps one.
+void note_splits(World& world, Scratch& scratch, std::span<const ContactPoint> points) {
   for (const ContactPoint& point : points) {
     if (scratch.owners[point.cluster].region != kNoRow) {
       continue;
@@ -196,8 +237,8 @@ void note_splits(World& world, const Scratch& scratch, std::span<const ContactPo
     for (const ClusterOwner& owner : scratch.owners) {
       if (owner.region != kNoRow &&
           RegionCells(world, owner.region).overlap_with(point.position) >= 1.0) {
-        world.regions.at<RegionWrench>(owner.region).event_now =
-            static_cast<std::uint32_t>(RegionEvent::kTakesOver);
+        world.regions.at<RegionWrench>(owner.region).event_now = kTakesOver;
+        scratch.owners[point.cluster].overlap = 1.0;
       }
     }
   }
@@ -208,9 +249,7 @@ void note_splits(World& world, const Scratch& scratch, std::span<const ContactPo
 void group_regions(StepContext& context) {
   World& world = context.world;
   Scratch& scratch = context.scratch;
-  for (RegionWrench& wrench : world.regions.column<RegionWrench>()) {
-    wrench.event_now = static_cast<std::uint32_t>(RegionEvent::kNone);
-  }
+  end_events(world);
   for (const ContactPair& pair : scratch.pairs) {
     const std::span<const ContactPoint> points(scratch.points.data() + pair.points.first,
                                                pair.points.count);
@@ -228,7 +267,9 @@ void group_regions(StepContext& context) {
       if (owner != kNoRow) {
         follow_contact(context, owner, {pair.points, cluster});
       } else {
-        begin_region(context, pair, cluster);
+        const bool split_off = scratch.owners[cluster].overlap > 0.0;
+        begin_region(context, pair, cluster,
+                     split_off ? RegionEvent::kTakesOver : RegionEvent::kBegins);
       }
     }
     scratch.region_commands.apply(world.regions, world.region_handles);

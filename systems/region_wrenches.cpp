@@ -55,7 +55,8 @@ Wrench computed_wrench(const World& world, std::uint32_t region) {
 void fade_event(RegionWrench& wrench, const Wrench& computed, double faded) {
   const Wrench before = wrench.on_tool;
   const auto event = static_cast<RegionEvent>(wrench.event_now);
-  if (event == RegionEvent::kTakesOver) {
+  if (event == RegionEvent::kBegins || event == RegionEvent::kTakesOver ||
+      event >= RegionEvent::kBodyFollows) {
     wrench.event_change = before - computed;
     wrench.event_share = 1.0;
   } else if (event == RegionEvent::kGridLaidAnew && wrench.event_share == 0.0) {

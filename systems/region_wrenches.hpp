@@ -9,14 +9,24 @@ namespace torsion {
 /// What of a region does not change little by little in this step.
 enum class RegionEvent : std::uint32_t {
   kNone,
-  kTakesOver,    // on_tool holds what it goes on from: it is new, or another's or its own heir
-  kGridLaidAnew  // contact model patch, by interpolation
+  kBegins,        // on_tool is zero: it is new, where there was none
+  kTakesOver,     // on_tool holds what it goes on from: another's or its own heir, or split off one
+  kGridLaidAnew,  // contact model patch, by interpolation
+  kBodyFollows    // to kBodyFollows + kFollowingSteps - 1, one after the other: the whole body
+                  // answers to regions that took over, of which it may be one
 };
+
+/// Steps in which a body with compliance answers to regions that merge or split. Their contact is
+/// found on the body as the step before has left it, without or with what the one region moved the
+/// other (a tenth of the depth), and Newton's method takes one step a step: where two balls of
+/// patch part, the force is 23 % off in the step itself and 2.7, 2.3, 0.9, 0.6 and 0.1 % in those
+/// after it; where two of mdr meet, 19, 2.1 and 0.1 %.
+inline constexpr std::uint32_t kFollowingSteps = 4;
 
 /// Force and torque of every region on its tool, about the tool's mass centre, in the world: T =
 /// (p_eq - c) x F plus the friction couple about the normal (equation (1) with the sign of
 /// docs/models.md). What a birth, merge, split or a grid laid anew would make jump is let out over
-/// kEventFade seconds instead.
+/// kEventFade seconds instead, on a body with compliance from when that has answered.
 void region_wrenches(StepContext& context);
 
 /// Adds the regions' wrenches on every tool, and the work of the tool's holder. After a fault what

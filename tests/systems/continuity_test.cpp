@@ -126,6 +126,25 @@ TEST_P(HalfSpaceContinuityTest, RegionsMeetAndPart) {
   expect_continuous(scene({{-0.008, 0.0, 0.0}, {0.008, 2e-5, 0.0}}), press, 2.0, 3);
 }
 
+/// Presses the feet into a body that gives way until they meet, and lets go.
+void expect_continuous_meeting(SceneDescription scene, std::uint64_t regions) {
+  scene.bodies[0].models.body = BodyModel::kCompliance;
+  const Path press = [](double t) {
+    return at({0.0, 1e-4 - 2.6e-3 * std::sin(3.14159265 * t), 0.0}, 0.1 * t);
+  };
+  expect_continuous(scene, press, 2.0, regions);
+}
+
+TEST_P(HalfSpaceContinuityTest, RegionsMeetAndPartOnABodyThatGivesWay) {
+  // Where two footings become one, so do the body's answers to them.
+  expect_continuous_meeting(scene({{-0.008, 0.0, 0.0}, {0.008, 2e-5, 0.0}}), 3);
+}
+
+TEST_P(HalfSpaceContinuityTest, ThirdFootStandsByWhereTwoMeetAndPart) {
+  // What the two change in the body moves the third, too.
+  expect_continuous_meeting(scene({{-0.008, 0.0, 0.0}, {0.008, 2e-5, 0.0}, {0.0, 0.0, 0.03}}), 4);
+}
+
 INSTANTIATE_TEST_SUITE_P(Models, HalfSpaceContinuityTest,
                          testing::Values(ContactModel::kMdr, ContactModel::kPatch));
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <span>
 
 namespace torsion {
@@ -27,7 +28,7 @@ constexpr std::array<Stop, 5> kPressureStops = {{{0.94, 0.0, 0.0},
 constexpr std::array<Stop, 2> kPaleStops = {{{0.94, 0.0, 0.0}, {0.94, 0.0, 0.0}}};
 
 glm::dvec3 lab_of(const Stop& stop) {
-  const double hue = stop.hue * 3.14159265358979323846 / 180.0;
+  const double hue = stop.hue * std::numbers::pi / 180.0;
   return {stop.lightness, stop.chroma * std::cos(hue), stop.chroma * std::sin(hue)};
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include <glm/geometric.hpp>
@@ -14,9 +15,10 @@
 namespace torsion {
 namespace {
 
+using std::numbers::pi;
+
 constexpr std::size_t kCandidates = 4096;
 constexpr std::size_t kRays = 48;
-constexpr double kPi = 3.14159265358979323846;
 
 /// What every function below reads of one body.
 struct Body {
@@ -261,7 +263,7 @@ void cut_section(const Body& body, const glm::dvec3& point, const TransverseAxes
   std::array<glm::dvec2, kRays> ends;
   std::array<glm::dvec2, kRays> normals;
   for (std::size_t i = 0; i < kRays; ++i) {
-    const double angle = 2.0 * kPi * static_cast<double>(i) / static_cast<double>(kRays);
+    const double angle = 2.0 * pi * static_cast<double>(i) / static_cast<double>(kRays);
     const glm::dvec2 plane_direction(std::cos(angle), std::sin(angle));
     const glm::dvec3 direction = axes.first * plane_direction.x + axes.second * plane_direction.y;
     const RayEnd end = follow_ray(body, point, direction, axes, reach);
@@ -318,8 +320,8 @@ void cut_beam(const Body& body, const glm::dvec3& anchor, const glm::dvec3& refe
     known[k] = sections[k].area > 0.0;
   }
   const double rod = 0.05 * length;
-  const double quarter = kPi * rod * rod * rod * rod / 4.0;
-  const BeamSection thin{kPi * rod * rod, quarter, quarter, 0.0, 2.0 * quarter, 2.0 * quarter};
+  const double quarter = pi * rod * rod * rod * rod / 4.0;
+  const BeamSection thin{pi * rod * rod, quarter, quarter, 0.0, 2.0 * quarter, 2.0 * quarter};
   for (std::size_t k = 0; k < kBeamStations; ++k) {
     if (known[k]) {
       continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <span>
 
 #include <glm/geometric.hpp>
@@ -15,7 +16,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// Height over the fixed region, one at `contact`: over a fixed face measured from the face, else
 /// along `direction` from q_f. Where the contact is less than `least` high the heights fade to zero
@@ -71,7 +72,7 @@ Profiles half_space_profiles(double r) {
     return {1.0 - 0.5 * r * r, 1.0};
   }
   const double angle = inverse_sine_of_reciprocal(r);
-  return {((2.0 - r * r) * angle + std::sqrt(r * r - 1.0)) / kPi, 2.0 / kPi * angle};
+  return {((2.0 - r * r) * angle + std::sqrt(r * r - 1.0)) / pi, 2.0 / pi * angle};
 }
 
 /// The sums of a half-space model in a region; radius 0 where it has none.
@@ -133,8 +134,8 @@ void TurnedDiscs::sum_far_terms() {
   for (std::size_t j = 0; j < kFieldDiscs; ++j) {
     const double s = radius * static_cast<double>(j + 1) / kFieldDiscs;
     const double cube = s * s * s;
-    turn_3 += 4.0 / (3.0 * kPi) * cube * turn[j];
-    turn_5 += 2.0 / (5.0 * kPi) * cube * s * s * turn[j];
+    turn_3 += 4.0 / (3.0 * pi) * cube * turn[j];
+    turn_5 += 2.0 / (5.0 * pi) * cube * s * s * turn[j];
   }
 }
 
@@ -161,7 +162,7 @@ double TurnedDiscs::angle(const glm::dvec3& point) const {
     const double excess = (lateral + height * height) / (s * s) - 1.0;
     const double zeta_2 = 0.5 * (excess + std::sqrt(excess * excess + 4.0 * z * z));
     const double zeta = std::sqrt(std::max(zeta_2, 0.0));
-    sum += turn[j] * 2.0 / kPi * (0.5 * kPi - std::atan(zeta) - zeta / (1.0 + zeta_2));
+    sum += turn[j] * 2.0 / pi * (0.5 * pi - std::atan(zeta) - zeta / (1.0 + zeta_2));
   }
   return near * sum + (1.0 - near) * far;
 }

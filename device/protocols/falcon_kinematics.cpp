@@ -12,6 +12,8 @@
 namespace torsion {
 namespace {
 
+using std::numbers::pi;
+
 // m
 constexpr double kA = 0.060;     // a: motor arm
 constexpr double kB = 0.1025;    // b: forearm
@@ -21,13 +23,12 @@ constexpr double kF = -0.025;    // f: sideways offset of the forearm
 constexpr double kR = 0.0400;    // r: from the middle to a motor's axis
 constexpr double kS = -0.02309;  // s: along it
 
-constexpr double kPi = std::numbers::pi;
-constexpr std::array<double, 3> kPhi = {kPi / 2.0 + kPi / 12.0, -kPi / 6.0 + kPi / 12.0,
-                                        -5.0 * kPi / 6.0 + kPi / 12.0};
+constexpr std::array<double, 3> kPhi = {pi / 2.0 + pi / 12.0, -pi / 6.0 + pi / 12.0,
+                                        -5.0 * pi / 6.0 + pi / 12.0};
 
 constexpr double kCountsPerTurn = 4.0 * 320.0;
 constexpr double kGear = 0.110 / 0.01425;  // diameters of the motor's drum and of its shaft
-constexpr double kZeroAngle = 35.0 * kPi / 180.0;
+constexpr double kZeroAngle = 35.0 * pi / 180.0;
 constexpr double kMotorPerTorque = -10000.0;  // per N m, nominal
 constexpr double kExact = 1e-12;              // rad
 
@@ -81,7 +82,7 @@ glm::dvec3 falcon_joint_angles(const FalconInput& input) {
   glm::dvec3 angles;
   for (glm::length_t leg = 0; leg < 3; ++leg) {
     const auto counts = static_cast<double>(input.encoders[static_cast<std::size_t>(leg)]);
-    angles[leg] = counts * (2.0 * kPi / kCountsPerTurn / kGear) + kZeroAngle;
+    angles[leg] = counts * (2.0 * pi / kCountsPerTurn / kGear) + kZeroAngle;
   }
   return angles;
 }

@@ -1,6 +1,7 @@
 #include "systems/body_models/half_space_fields.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -8,7 +9,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// A point as the half-space sees it, and a wrench in parts. z is the depth below the plane.
 struct Seen {
@@ -117,7 +118,7 @@ glm::dmat3 scaled_gradient(const Port& load, const Wrench& wrench, const glm::dv
 MaterialMotion half_space_motion(const Port& load, const Elasticity& elasticity,
                                  const Wrench& wrench, const glm::dvec3& point) {
   const Seen seen = seen_from(load, wrench, point);
-  const double scale = 1.0 / (4.0 * kPi * elasticity.shear_modulus());
+  const double scale = 1.0 / (4.0 * pi * elasticity.shear_modulus());
   const double k = 1.0 - 2.0 * elasticity.poisson_ratio;
   glm::dvec3 rotation(0.0);
   if (seen.held && k != 0.0) {  // the closed form is not the curl there
@@ -131,7 +132,7 @@ MaterialMotion half_space_motion(const Port& load, const Elasticity& elasticity,
 
 double half_space_mean_stress(const Port& load, const Elasticity& elasticity, const Wrench& wrench,
                               const glm::dvec3& point) {
-  return -(1.0 + elasticity.poisson_ratio) / (3.0 * kPi) *
+  return -(1.0 + elasticity.poisson_ratio) / (3.0 * pi) *
          scaled_trace(seen_from(load, wrench, point));
 }
 
@@ -143,10 +144,10 @@ glm::dmat3 half_space_stress(const Port& load, const Elasticity& elasticity, con
     const glm::dvec3 ray = point - load.position;
     const double square = glm::dot(ray, ray);
     return glm::outerProduct(ray, ray) *
-           (-1.5 / kPi * glm::dot(wrench.force, ray) / (square * square * std::sqrt(square)));
+           (-1.5 / pi * glm::dot(wrench.force, ray) / (square * square * std::sqrt(square)));
   }
   const glm::dmat3 gradient = scaled_gradient(load, wrench, point, k);
-  glm::dmat3 stress = (gradient + glm::transpose(gradient)) * (1.0 / (4.0 * kPi));
+  glm::dmat3 stress = (gradient + glm::transpose(gradient)) * (1.0 / (4.0 * pi));
   const double excess = half_space_mean_stress(load, elasticity, wrench, point) -
                         (stress[0][0] + stress[1][1] + stress[2][2]) / 3.0;
   for (int c = 0; c < 3; ++c) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -11,6 +12,8 @@
 
 namespace torsion {
 namespace {
+
+using std::numbers::pi;
 
 /// What one region does to the main beam's tip, in the beam's frame: minus what the body does to
 /// the tool.
@@ -45,8 +48,7 @@ double place_along(const MainBeam& beam, const FixedRegion& fixed, const glm::dv
 void move_anchors(const MainBeam& beam, const BeamDeflection& deflection, const FixedRegion& fixed,
                   double poisson_ratio, std::span<const AnchorRest> rest,
                   std::span<AnchorMotion> motion) {
-  constexpr double kPi = 3.14159265358979323846;
-  const double radius = std::sqrt(beam.sections[kBeamStations / 2].area / kPi);
+  const double radius = std::sqrt(beam.sections[kBeamStations / 2].area / pi);
   const double over_entry = 1.0 / std::min(radius, 0.5 * beam.length);
   for (std::size_t j = 0; j < rest.size(); ++j) {
     const glm::dvec3 from_root = rest[j].position - fixed.point;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include <glm/common.hpp>
@@ -13,7 +14,8 @@
 namespace torsion {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
+
 constexpr double kCandidateCells = 28.0;  // along the longest side: some thousands on the surface
 
 /// Points spread over a surface.
@@ -80,7 +82,7 @@ bool is_smooth(const ElasticSolid& solid, const Port& port, double reach) {
   const glm::dvec3 first = glm::normalize(glm::cross(port.normal, other));
   const glm::dvec3 second = glm::cross(port.normal, first);
   for (int k = 0; k < kDirections; ++k) {
-    const double angle = 2.0 * kPi * k / kDirections;
+    const double angle = 2.0 * pi * k / kDirections;
     const Distance distance = solid.signed_distance(
         port.position + reach * (std::cos(angle) * first + std::sin(angle) * second));
     if (glm::dot(distance.gradient, port.normal) < 0.6 || std::abs(distance.value) > 0.5 * reach) {

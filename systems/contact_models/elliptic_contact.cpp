@@ -6,6 +6,8 @@
 
 namespace torsion {
 
+using std::numbers::pi;
+
 EllipticIntegrals elliptic_integrals(double m) {
   double a = 1.0;
   double b = std::sqrt(1.0 - m);
@@ -18,7 +20,7 @@ EllipticIntegrals elliptic_integrals(double m) {
     power *= 2.0;
     sum += power * c * c;
   }
-  const double first = 0.5 * std::numbers::pi / a;
+  const double first = 0.5 * pi / a;
   return {first, first * (1.0 - sum)};
 }
 
@@ -55,10 +57,9 @@ struct Directions {
 
 Directions over_directions(double m) {
   if (m < 1e-3) {  // the quotients below lose their digits; to third order in m
-    constexpr double kPi = std::numbers::pi;
-    return {kPi / 2.0 + m * (3.0 * kPi / 8.0 + m * 45.0 * kPi / 128.0),
-            kPi / 4.0 + m * (9.0 * kPi / 32.0 + m * 75.0 * kPi / 256.0),
-            3.0 * kPi / 16.0 + m * (15.0 * kPi / 64.0 + m * 525.0 * kPi / 2048.0)};
+    return {pi / 2.0 + m * (3.0 * pi / 8.0 + m * 45.0 * pi / 128.0),
+            pi / 4.0 + m * (9.0 * pi / 32.0 + m * 75.0 * pi / 256.0),
+            3.0 * pi / 16.0 + m * (15.0 * pi / 64.0 + m * 525.0 * pi / 2048.0)};
   }
   const EllipticIntegrals integrals = elliptic_integrals(m);
   const double zeroth = integrals.second / (1.0 - m);
@@ -81,15 +82,14 @@ double bonded_turn_share(double axes, double poisson_ratio) {
   const double determinant = (along * across - mixed * mixed) / square;
   const double a = (across - mixed) / square / determinant;
   const double b = (along - mixed) / determinant;
-  const double couple = 2.0 * std::numbers::pi / 3.0 * axes * (a * square + b);
+  const double couple = 2.0 * pi / 3.0 * axes * (a * square + b);
   return couple / (axes * square) / (16.0 / 3.0 * axes * std::sqrt(axes));
 }
 
 EllipseShares ellipse_shares(double axes) {
   const EllipticIntegrals integrals = elliptic_integrals(1.0 - axes * axes);
   const double stretch = 1.0 / std::sqrt(axes);  // a / sqrt(a b)
-  return {0.5 * std::numbers::pi / integrals.first * stretch,
-          2.0 / std::numbers::pi * integrals.second * stretch};
+  return {0.5 * pi / integrals.first * stretch, 2.0 / pi * integrals.second * stretch};
 }
 
 EllipticContact elliptic_contact(double depth, double curvature_1, double curvature_2) {

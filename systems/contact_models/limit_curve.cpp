@@ -9,21 +9,22 @@
 namespace torsion {
 namespace {
 
+using std::numbers::pi;
+
 /// Force and couple of a Hertz contact that slides at v and spins at w, x = v / (w a), over their
 /// largest values. Derived like Zhuravlev's solution: J. Appl. Math. Mech. 62 (1998) 705.
 glm::dvec2 sliding_load(double x) {
-  constexpr double kPi = std::numbers::pi;
   const double x2 = x * x;
   if (x <= 1.0) {
-    return {3.0 * kPi / 8.0 * x * (1.0 - 0.25 * x2), 1.0 - x2 + 0.375 * x2 * x2};
+    return {3.0 * pi / 8.0 * x * (1.0 - 0.25 * x2), 1.0 - x2 + 0.375 * x2 * x2};
   }
   if (x > 60.0) {  // the exact terms cancel
-    return {1.0 - 0.1 / x2, 16.0 / (15.0 * kPi * x)};
+    return {1.0 - 0.1 / x2, 16.0 / (15.0 * pi * x)};
   }
   const double w = std::sqrt(x2 - 1.0);
   const double s = std::asin(1.0 / x);
   return {0.75 / x * ((x2 - 0.25 * x2 * x2) * s + 0.25 * (3.0 * w + w * w * w)),
-          4.0 / kPi * ((0.5 - 0.5 * x2 + 0.1875 * x2 * x2) * s + 0.1875 * (w - w * w * w))};
+          4.0 / pi * ((0.5 - 0.5 * x2 + 0.1875 * x2 * x2) * s + 0.1875 * (w - w * w * w))};
 }
 
 /// Half the rate at which the weighted distance from `load` falls when `from` goes towards `to`.
@@ -38,7 +39,7 @@ LimitCurve make_limit_curve() {
   LimitCurve curve;
   for (int k = 0; k <= kLimitCurveSegments; ++k) {
     // Equal steps of the slip's direction, scaled so that the points lie about evenly.
-    const double angle = 0.5 * std::numbers::pi * k / kLimitCurveSegments;
+    const double angle = 0.5 * pi * k / kLimitCurveSegments;
     curve.points[static_cast<std::size_t>(k)] = k == 0 ? glm::dvec2(1.0, 0.0)
                                                 : k == kLimitCurveSegments
                                                     ? glm::dvec2(0.0, 1.0)

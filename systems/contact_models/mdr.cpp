@@ -15,6 +15,8 @@
 namespace torsion {
 namespace {
 
+using std::numbers::pi;
+
 /// What a region's overlap says of its contact.
 struct RoundContact {
   glm::dvec2 center{0.0};  // m, grid
@@ -83,7 +85,7 @@ RoundContact contact_of_cells(const World& world, std::uint32_t region,
   }
   contact.center = shape.apex;
   contact.depth = shape.depth;
-  const double overlap = std::sqrt(geometry.area / std::numbers::pi);
+  const double overlap = std::sqrt(geometry.area / pi);
   // No paraboloid so flat that its contact would reach beyond the overlap.
   const double least_1 = shape.depth / (shape.extent_1 * shape.extent_1);
   const double least_2 = shape.depth / (shape.extent_2 * shape.extent_2);
@@ -159,9 +161,8 @@ void set_cells(World& world, std::uint32_t region, const RoundContact& contact, 
   const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
   const auto cells = world.cells.rows<CellGeometry>(identity.cells);
   const auto tractions = world.cells.rows<CellTraction>(identity.cells);
-  const double pressure = contact.radius > 0.0
-                              ? contact.force / (std::numbers::pi * contact.radius * contact.radius)
-                              : 0.0;
+  const double pressure =
+      contact.radius > 0.0 ? contact.force / (pi * contact.radius * contact.radius) : 0.0;
   const double per_radius = 1.0 / std::max(contact.radius, 1e-300);
   std::uint32_t cell = 0;
   for (std::uint32_t j = 0; j < side; ++j) {
@@ -225,7 +226,7 @@ void set_geometry(World& world, std::uint32_t region, const RoundContact& round)
   geometry.rest_point = grid_to_body(frame, {round.center, height});
   geometry.equivalent_point = geometry.rest_point - frame.normal * round.depth;
   geometry.radius = round.radius;
-  geometry.area = std::numbers::pi * round.radius * round.radius;
+  geometry.area = pi * round.radius * round.radius;
   geometry.mean_depth = round.depth;
 }
 
@@ -276,13 +277,12 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
 double layer_force_share(double chi, double poisson_ratio) {
   const double nu = poisson_ratio;
   const double x = std::clamp(chi, 0.0, 0.5);
-  constexpr double kPi = std::numbers::pi;
   const double a = -(1.2876 - 1.4678 * nu + 1.3442 * nu * nu) / (1.0 - nu);
   const double b = (0.6387 - 1.0277 * nu + 1.5164 * nu * nu) / (1.0 - nu);
-  const double t = 2.0 / kPi * x;
+  const double t = 2.0 / pi * x;
   const double cube = a * a * a;
-  return 1.0 - a * t + a * a * t * t - (cube + 4.0 * kPi * kPi / 15.0 * b) * t * t * t -
-         a * (cube + 0.6 * kPi * kPi * b) * t * t * t * t;
+  return 1.0 - a * t + a * a * t * t - (cube + 4.0 * pi * pi / 15.0 * b) * t * t * t -
+         a * (cube + 0.6 * pi * pi * b) * t * t * t * t;
 }
 
 void mdr_forces(StepContext& context) {

@@ -9,7 +9,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Integrals of 1, x and x^2 from 0 to a place, for the measure dx or x^2 dx.
 struct Moments {
@@ -130,7 +130,7 @@ MdrForces move_layers(const MdrPlaces& places, const LimitCurve& curve, const Md
       contact.turn_stiffness * 16.0 / 3.0 * contact.shear_modulus * a * a * a;
   // Largest couple (3 pi / 16) or (pi / 4) mu F a: docs/models.md.
   const double largest_couple =
-      kPi * std::lerp(3.0 / 16.0, 0.25, contact.flat_share) * a * contact.torque_share * friction;
+      pi * std::lerp(3.0 / 16.0, 0.25, contact.flat_share) * a * contact.torque_share * friction;
   // Loads over the largest ones: a layer's largest load over its stiffness is where it slips, so
   // that all layers together have the exact stiffness before they slip and the exact load after.
   const double shift_unit = slide_stiffness / friction;  // 1/m

@@ -10,7 +10,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Loads at slip of the springs at x = place * a, per length: of the tangential one over mu F, of
 /// the torsional one over (4 / pi) mu F a.
@@ -62,7 +62,7 @@ Loads make_loads(double flat_share, double power, const std::vector<Integrals>& 
   for (std::size_t i = 0; i < kFine; ++i) {
     sum += round.at(fine_place(i), fine[i]).turn / static_cast<double>(kFine);
   }
-  return {flat_share, power, 3.0 * kPi * kPi / 64.0 / sum};  // the integral at power 1
+  return {flat_share, power, 3.0 * pi * pi / 64.0 / sum};  // the integral at power 1
 }
 
 /// Share of all friction that has slipped once so many pieces have: finer where the first and the

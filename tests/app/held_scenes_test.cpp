@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -75,7 +76,7 @@ TEST_P(HeldSceneTest, IsStillInEveryGripLateAndCoarseToo) {
     traits.jitter = 1;
     traits.dropped = 0.1;
     traits.encoder_step = 0.1 / 256.0;  // 8 bits over 100 mm
-    traits.encoder_turn_step = 2.0 * 3.141592653589793 / 256.0;
+    traits.encoder_turn_step = 2.0 * std::numbers::pi / 256.0;
     traits.tremor = 0.05;
     const LoopOutcome outcome = hold({GetParam()}, traits, until, held_seconds());
     SCOPED_TRACE(testing::Message() << "grip " << grip << " N/m");

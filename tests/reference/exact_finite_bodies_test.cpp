@@ -16,7 +16,7 @@
 namespace torsion::reference {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Layer rubber_layer(double thickness, LayerBase base = LayerBase::kBonded, double poisson = 0.5) {
   return {base, thickness, poisson, contact_modulus(3e6, poisson)};
@@ -38,13 +38,13 @@ TEST(LayerTorsionTest, ReachesThickAndThinLimits) {
   const double eta = 0.75 * std::riemann_zeta(3.0);
   for (const double thickness : {20.0, 50.0}) {
     const double excess = layer_torsion_ratio(thickness) - 1.0;
-    const double leading = eta / (3.0 * kPi) * std::pow(thickness, -3);
+    const double leading = eta / (3.0 * pi) * std::pow(thickness, -3);
     EXPECT_NEAR(excess / leading, 1.0, 2.0 / (thickness * thickness)) << thickness;
   }
   // T = (G pi phi / 2 h) (a + (2 ln 2 / pi) h)^4, with an error of the order of (h/a)^2.
   for (const double thickness : {0.02, 0.05}) {
-    const double edge = 1.0 + 2.0 * std::log(2.0) / kPi * thickness;
-    const double thin = kPi / (2.0 * thickness) * std::pow(edge, 4) / (16.0 / 3.0);
+    const double edge = 1.0 + 2.0 * std::log(2.0) / pi * thickness;
+    const double thin = pi / (2.0 * thickness) * std::pow(edge, 4) / (16.0 / 3.0);
     EXPECT_NEAR(layer_torsion_ratio(thickness) / thin, 1.0, 2.0 * thickness * thickness)
         << thickness;
   }
@@ -130,7 +130,7 @@ TEST(LayerSphereTest, CompressibleFilmIsAFoundationOfSprings) {
   const Layer film = rubber_layer(1e-4, LayerBase::kBonded, poisson);
   const double confined = young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
   const LayerContact contact = layer_sphere_at_radius(film, 0.05, 50.0 * film.thickness);
-  const double springs = kPi * confined / film.thickness * 0.05 * contact.depth * contact.depth;
+  const double springs = pi * confined / film.thickness * 0.05 * contact.depth * contact.depth;
   EXPECT_NEAR(contact.force / springs, 1.0, 0.03);
   EXPECT_NEAR(contact.radius * contact.radius / (2.0 * 0.05 * contact.depth), 1.0, 0.03);
 }
@@ -180,7 +180,7 @@ TEST(BarsTest, RectanglesAgreeWithPrandtlsDoubleSeries) {
         sum += 1.0 / (m2 * n2 * (m2 / (side * side) + n2));
       }
     }
-    EXPECT_NEAR(rectangle_torsion_constant(side, 1.0), 256.0 / std::pow(kPi, 6) * side * sum, 1e-8);
+    EXPECT_NEAR(rectangle_torsion_constant(side, 1.0), 256.0 / std::pow(pi, 6) * side * sum, 1e-8);
   }
 }
 

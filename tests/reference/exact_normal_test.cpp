@@ -13,7 +13,7 @@
 namespace torsion::reference {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Boussinesq: u = 1 / (pi E*) times the integral of the pressure over the distance, in polar
 /// coordinates around the place (x, y) inside the contact, where the distance cancels.
@@ -25,14 +25,14 @@ double superposed_displacement(double modulus, double x, double y, const Pressur
   constexpr int kDirections = 128;
   double sum = 0.0;
   for (int i = 0; i < kDirections; ++i) {
-    const double direction = 2.0 * kPi * i / kDirections;
+    const double direction = 2.0 * pi * i / kDirections;
     sum += integrate_tanh_sinh(
         [&](double s, double, double) {
           return pressure(x + s * std::cos(direction), y + s * std::sin(direction));
         },
         0.0, to_rim(direction));
   }
-  return sum * 2.0 * kPi / kDirections / (kPi * modulus);
+  return sum * 2.0 * pi / kDirections / (pi * modulus);
 }
 
 TEST(HertzTest, MatchesPrintedContacts) {
@@ -61,7 +61,7 @@ TEST(HertzTest, MatchesPrintedContacts) {
 TEST(HertzTest, PressureCarriesTheForceAndStiffnessIsItsSlope) {
   const HertzSphere contact = hertz_sphere_at_depth(0.05, 4e6, 4e-4);
   const double force = integrate_tanh_sinh(
-      [&](double r, double, double) { return 2.0 * kPi * r * hertz_pressure(contact, r); }, 0.0,
+      [&](double r, double, double) { return 2.0 * pi * r * hertz_pressure(contact, r); }, 0.0,
       contact.radius);
   EXPECT_NEAR(force / contact.force, 1.0, 1e-12);
   const double h = 1e-8;
@@ -96,11 +96,10 @@ TEST(HertzTest, DisplacementIsThatOfItsPressure) {
     const double sum = integrate_tanh_sinh(
         [&](double s, double, double to_rim) {
           const double p = contact.peak_pressure * std::sqrt(to_rim * (a + s)) / a;
-          return p * 2.0 * kPi * s * 2.0 / (kPi * r) * std::comp_ellint_1(s / r);
+          return p * 2.0 * pi * s * 2.0 / (pi * r) * std::comp_ellint_1(s / r);
         },
         0.0, a);
-    EXPECT_NEAR(hertz_surface_displacement(contact, r) / (sum / (kPi * contact.modulus)), 1.0,
-                1e-11)
+    EXPECT_NEAR(hertz_surface_displacement(contact, r) / (sum / (pi * contact.modulus)), 1.0, 1e-11)
         << share;
   }
 }
@@ -127,7 +126,7 @@ TEST(SneddonTest, IsTheSphereOfDimensionalityReduction) {
           const double r = x * std::sin(t);
           return x * r / std::sqrt((sphere - r) * (sphere + r));
         },
-        0.0, kPi / 2.0);
+        0.0, pi / 2.0);
   };
   const double depth = g(a);
   const double force =
@@ -208,13 +207,13 @@ TEST(HertzEllipseTest, DisplacementOutsideIsThatOfItsPressure) {
   const double a = contact.major;
   const double b = contact.minor;
   // The contact as a stretched disc, t = sin(angle) taking the root of the pressure away.
-  const Quadrature radial = gauss_legendre(60, 0.0, kPi / 2.0);
+  const Quadrature radial = gauss_legendre(60, 0.0, pi / 2.0);
   constexpr int kDirections = 400;
   for (const auto& [x, y] :
        {std::pair{1.3 * a, 0.0}, {0.0, 2.0 * b}, {a, b}, {20.0 * a, 9.0 * a}}) {
     double sum = 0.0;
     for (int i = 0; i < kDirections; ++i) {
-      const double direction = 2.0 * kPi * i / kDirections;
+      const double direction = 2.0 * pi * i / kDirections;
       sum += integrate(radial, [&](double angle) {
         const double t = std::sin(angle);
         const double distance =
@@ -222,7 +221,7 @@ TEST(HertzEllipseTest, DisplacementOutsideIsThatOfItsPressure) {
         return contact.peak_pressure * std::pow(std::cos(angle), 2) * t * a * b / distance;
       });
     }
-    const double expected = sum * 2.0 * kPi / kDirections / (kPi * contact.modulus);
+    const double expected = sum * 2.0 * pi / kDirections / (pi * contact.modulus);
     EXPECT_NEAR(hertz_ellipse_displacement(contact, x, y) / expected, 1.0, 1e-10) << x << " " << y;
   }
   // Continuous through the rim, where the slope is finite.
@@ -255,12 +254,11 @@ TEST(FlatPunchTest, PressureCarriesTheForceAndFarFieldIsThatOfAPoint) {
   const FlatPunch punch{0.005, 4e6, 1e-4};
   const double force = integrate_tanh_sinh(
       [&](double r, double, double to_rim) {
-        return 2.0 * kPi * r * punch.modulus * punch.depth /
-               (kPi * std::sqrt(to_rim * (0.005 + r)));
+        return 2.0 * pi * r * punch.modulus * punch.depth / (pi * std::sqrt(to_rim * (0.005 + r)));
       },
       0.0, punch.radius);
   EXPECT_NEAR(force / flat_punch_force(punch), 1.0, 1e-12);
-  const double far = flat_punch_force(punch) / (kPi * punch.modulus * 5.0);
+  const double far = flat_punch_force(punch) / (pi * punch.modulus * 5.0);
   // asin(t) = t (1 + t^2 / 6), t = 1e-3.
   EXPECT_NEAR(flat_punch_displacement(punch, 5.0) / far, 1.0, 2e-7);
 }

@@ -18,7 +18,7 @@
 namespace torsion::reference {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 CattaneoMindlin rubber() {
   const HertzSphere sphere = hertz_sphere_at_force(0.05, contact_modulus(3e6, 0.5), 10.0);
@@ -50,7 +50,7 @@ TEST(CattaneoMindlinTest, TractionCarriesTheForceUnderFriction) {
     const double force = share * full_slip_force(contact);
     const double c = tangential_stick_radius(contact, force);
     const auto ring = [&](double r, double, double) {
-      return 2.0 * kPi * r * tangential_traction(contact, force, r);
+      return 2.0 * pi * r * tangential_traction(contact, force, r);
     };
     const double sum =
         integrate_tanh_sinh(ring, 0.0, c) + integrate_tanh_sinh(ring, c, contact.radius);
@@ -66,7 +66,7 @@ TEST(CattaneoMindlinTest, TractionCarriesTheForceUnderFriction) {
   const double back = tangential_stick_radius(contact, 0.5 * (turn + 0.5 * turn));
   const double before = tangential_stick_radius(contact, turn);
   const auto ring = [&](double r, double, double) {
-    return 2.0 * kPi * r * tangential_traction_after_turn(contact, turn, -0.5 * turn, r);
+    return 2.0 * pi * r * tangential_traction_after_turn(contact, turn, -0.5 * turn, r);
   };
   const double sum = integrate_tanh_sinh(ring, 0.0, before) +
                      integrate_tanh_sinh(ring, before, back) +
@@ -145,21 +145,21 @@ TEST(LimitSurfaceTest, IsTheIntegralOfFrictionOverTheDisc) {
     double moment_about_centre = 0.0;
     constexpr int kDirections = 512;
     for (int i = 0; i < kDirections; ++i) {
-      const double direction = 2.0 * kPi * i / kDirections;
+      const double direction = 2.0 * pi * i / kDirections;
       // Seen from the centre of rotation the middle of the disc is at (0, x).
       const double along = -x * std::sin(direction);
       const double to_rim = -along + std::sqrt(along * along + 1.0 - x * x);
       const auto p = [&](double s) {
         const double gap = 1.0 - x * x - 2.0 * along * s - s * s;
-        return 1.5 / kPi * std::sqrt(std::max(gap, 0.0));
+        return 1.5 / pi * std::sqrt(std::max(gap, 0.0));
       };
       force += std::sin(direction) *
                integrate_tanh_sinh([&](double s, double, double) { return s * p(s); }, 0.0, to_rim);
       moment_about_centre +=
           integrate_tanh_sinh([&](double s, double, double) { return s * s * p(s); }, 0.0, to_rim);
     }
-    force *= 2.0 * kPi / kDirections;
-    moment_about_centre *= 2.0 * kPi / kDirections;
+    force *= 2.0 * pi / kDirections;
+    moment_about_centre *= 2.0 * pi / kDirections;
     const SlidingSpinning point = hertz_limit_surface(x);
     EXPECT_NEAR(point.force, std::abs(force), 1e-6) << x;
     // Moved to the middle: M = M_centre - x F.
@@ -236,7 +236,7 @@ TEST(TorqueLimitsTest, EachIsTheMomentOfItsPressure) {
   for (const TorqueLimit& limit : kTorqueLimits) {
     const LubkinContact contact{limit.shape, 10.0, 0.75, 0.0045, 1e6};
     const double moment = integrate_tanh_sinh(
-        [&](double r, double, double) { return 2.0 * kPi * r * r * contact_pressure(contact, r); },
+        [&](double r, double, double) { return 2.0 * pi * r * r * contact_pressure(contact, r); },
         0.0, contact.radius);
     // 1 / sqrt(a - r) of the flat punch from a rounded r: half the digits.
     EXPECT_NEAR(0.75 * moment / (0.75 * 10.0 * 0.0045), limit.factor, 1e-7) << limit.name;
@@ -263,7 +263,7 @@ TEST(TorqueLimitsTest, SpinOfTheLimitSurfaceIsHertzsLimit) {
   double mean = 0.0;
   constexpr int kDirections = 64;
   for (int i = 0; i < kDirections; ++i) {
-    const double direction = 2.0 * kPi * i / kDirections;
+    const double direction = 2.0 * pi * i / kDirections;
     mean += std::sqrt(1.0 - m * std::pow(std::sin(direction), 2)) / kDirections;
   }
   EXPECT_NEAR(saturated_torque_ellipse(1.0, 1.0, 1.0, m),

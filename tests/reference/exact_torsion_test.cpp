@@ -16,7 +16,7 @@
 namespace torsion::reference {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Sphere of 50 mm on rubber: the case of most tables.
 LubkinContact rubber(double force = 10.0, double friction = 0.75,
@@ -82,7 +82,7 @@ TEST(ReissnerSagociTest, FieldIsItsHankelIntegral) {
     const double integral = integrate(rule, [&](double k) {
       return std::sph_bessel(1, k) * std::exp(-k) * std::cyl_bessel_j(1.0, k * r);
     });
-    EXPECT_NEAR(bonded_disc_displacement(disc, r, 1.0), 4.0 / kPi * integral, 1e-11) << r;
+    EXPECT_NEAR(bonded_disc_displacement(disc, r, 1.0), 4.0 / pi * integral, 1e-11) << r;
   }
 }
 
@@ -91,8 +91,8 @@ TEST(ReissnerSagociTest, TractionCarriesTheTorqueAndIsTheSlopeOfTheField) {
   const double torque = integrate_tanh_sinh(
       [&](double r, double, double to_rim) {
         const double shear =
-            4.0 * disc.shear_modulus * disc.twist / kPi * r / std::sqrt(to_rim * (disc.radius + r));
-        return 2.0 * kPi * r * r * shear;
+            4.0 * disc.shear_modulus * disc.twist / pi * r / std::sqrt(to_rim * (disc.radius + r));
+        return 2.0 * pi * r * r * shear;
       },
       0.0, disc.radius);
   EXPECT_NEAR(torque / bonded_disc_torque(disc), 1.0, 1e-12);
@@ -112,8 +112,7 @@ TEST(ReissnerSagociTest, FarFieldIsThatOfATorqueAlone) {
   const BondedDisc disc{0.005, 1e6, 0.01};
   const double torque = bonded_disc_torque(disc);
   for (const auto& [r, z] : {std::pair{5.0, 0.0}, {3.0, 4.0}}) {
-    const double far =
-        torque * r / (4.0 * kPi * disc.shear_modulus * std::pow(std::hypot(r, z), 3));
+    const double far = torque * r / (4.0 * pi * disc.shear_modulus * std::pow(std::hypot(r, z), 3));
     // The next term of the field is smaller by (a / distance)^2 = 1e-6.
     EXPECT_NEAR(bonded_disc_displacement(disc, r, z) / far, 1.0, 2e-6);
   }

@@ -14,7 +14,8 @@
 namespace torsion::reference {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
+
 constexpr PressureShape kShapes[] = {PressureShape::kWinkler, PressureShape::kHertz,
                                      PressureShape::kUniform, PressureShape::kFlatPunch};
 
@@ -79,7 +80,7 @@ TEST(TwistFieldTest, TractionOfTheDiscsObeysFrictionWhereItSlips) {
                    std::sqrt(from * (s + r));
           },
           r, a);
-      const double traction = 4.0 * contact.shear_modulus * r / kPi * (rim + discs);
+      const double traction = 4.0 * contact.shear_modulus * r / pi * (rim + discs);
       // The uniform pressure's weight is infinite at the rim, where s is rounded: half the digits.
       EXPECT_NEAR(traction / (contact.friction * contact_pressure(contact, r)), 1.0, 1e-7) << share;
     }
@@ -93,7 +94,7 @@ TEST(TwistFieldTest, TractionCarriesTheTorqueAndStaysUnderFriction) {
     for (const double twist : {0.02, 0.08}) {
       const double c = stick_radius(contact, twist);
       const auto ring = [&](double r, double, double) {
-        return 2.0 * kPi * r * r * twist_traction(contact, twist, r);
+        return 2.0 * pi * r * r * twist_traction(contact, twist, r);
       };
       const double sum =
           integrate_tanh_sinh(ring, 0.0, c) + (c < a ? integrate_tanh_sinh(ring, c, a) : 0.0);
@@ -134,7 +135,7 @@ TEST(TwistFieldTest, FarFieldIsThatOfTheTorque) {
     const LubkinContact contact = rubber(shape);
     const double distance = 300.0 * contact.radius;
     const double far =
-        torque(contact, 0.07) * 0.6 / (4.0 * kPi * contact.shear_modulus * distance * distance);
+        torque(contact, 0.07) * 0.6 / (4.0 * pi * contact.shear_modulus * distance * distance);
     // The next term is smaller by (a / distance)^2 = 1.1e-5.
     EXPECT_NEAR(twist_displacement(contact, 0.07, 0.6 * distance, 0.8 * distance) / far, 1.0, 2e-5);
   }

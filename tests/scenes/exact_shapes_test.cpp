@@ -10,6 +10,8 @@
 namespace torsion::test {
 namespace {
 
+using std::numbers::pi;
+
 struct Fitted {
   std::vector<Problem> found;
   std::optional<ShapePart> shape;
@@ -53,7 +55,7 @@ TEST(ExactShapesTest, ScaleOfTheNodeCountsBeforeTheBoundsAreJudged) {
 TEST(ExactShapesTest, CenterOfTheBoundsIsCarriedIntoTheOwnersFrame) {
   NodeTransform to_owner;
   to_owner.translation = {0.0, 0.0, 1.0};
-  to_owner.rotation = glm::angleAxis(std::numbers::pi / 2.0, glm::dvec3(0.0, 0.0, 1.0));
+  to_owner.rotation = glm::angleAxis(pi / 2.0, glm::dvec3(0.0, 0.0, 1.0));
   to_owner.scale = {-2.0, 1.0, 1.0};  // mirrored
   std::vector<Problem> found;
   const auto shape = fit_shape(ShapeKind::kBox, {1.0, 0.0, 0.0}, {3.0, 2.0, 2.0}, to_owner, "n",
@@ -106,15 +108,13 @@ TEST_P(TessellateTest, FillsTheBoundsThatItWasFittedTo) {
   }
 }
 
-constexpr double kPi = std::numbers::pi;
-
 INSTANTIATE_TEST_SUITE_P(
     Solids, TessellateTest,
     testing::Values(Solid{"box", {1.0, 2.0, 3.0}, 6.0},
-                    Solid{"sphere", {2.0, 2.0, 2.0}, 4.0 / 3.0 * kPi},
-                    Solid{"ellipsoid", {2.0, 4.0, 1.0}, 4.0 / 3.0 * kPi},
-                    Solid{"cylinder", {2.0, 5.0, 2.0}, 5.0 * kPi},
-                    Solid{"capsule", {2.0, 5.0, 2.0}, 3.0 * kPi + 4.0 / 3.0 * kPi}),
+                    Solid{"sphere", {2.0, 2.0, 2.0}, 4.0 / 3.0 * pi},
+                    Solid{"ellipsoid", {2.0, 4.0, 1.0}, 4.0 / 3.0 * pi},
+                    Solid{"cylinder", {2.0, 5.0, 2.0}, 5.0 * pi},
+                    Solid{"capsule", {2.0, 5.0, 2.0}, 3.0 * pi + 4.0 / 3.0 * pi}),
     [](const testing::TestParamInfo<Solid>& solid) { return std::string(solid.param.name); });
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "systems/beam_sections.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -8,7 +9,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 
 std::vector<glm::dvec2> rectangle(double width, double height) {
   const double x = width / 2.0;
@@ -19,7 +20,7 @@ std::vector<glm::dvec2> rectangle(double width, double height) {
 std::vector<glm::dvec2> ellipse(double a, double b, int corners) {
   std::vector<glm::dvec2> polygon;
   for (int i = 0; i < corners; ++i) {
-    const double angle = 2.0 * kPi * i / corners;
+    const double angle = 2.0 * pi * i / corners;
     polygon.emplace_back(a * std::cos(angle), b * std::sin(angle));
   }
   return polygon;
@@ -49,7 +50,7 @@ TEST(PolygonMomentsTest, TriangleHasItsProductOfInertia) {
 
 TEST(TorsionConstantTest, CircleHasItsPolarMoment) {
   // A regular 96-gon has an area 7.1e-4 smaller than its circle, so J is 1.4e-3 smaller.
-  EXPECT_NEAR(torsion_constant(ellipse(0.03, 0.03, 96)) / (kPi * std::pow(0.03, 4) / 2.0), 1.0,
+  EXPECT_NEAR(torsion_constant(ellipse(0.03, 0.03, 96)) / (pi * std::pow(0.03, 4) / 2.0), 1.0,
               2e-3);
 }
 
@@ -57,7 +58,7 @@ TEST(TorsionConstantTest, EllipsesMatchTheClosedForm) {
   for (const double ratio : {1.5, 2.0, 4.0, 8.0}) {
     const double a = 0.1;
     const double b = a / ratio;
-    const double exact = kPi * a * a * a * b * b * b / (a * a + b * b);
+    const double exact = pi * a * a * a * b * b * b / (a * a + b * b);
     EXPECT_NEAR(torsion_constant(ellipse(a, b, 400)) / exact, 1.0, 5e-3) << "a/b = " << ratio;
   }
 }
@@ -67,9 +68,9 @@ TEST(TorsionConstantTest, RectanglesMatchSaintVenantsSeries) {
   for (const double ratio : {1.0, 1.3, 2.0, 3.0, 5.0, 10.0}) {
     double sum = 0.0;
     for (int n = 1; n < 40; n += 2) {
-      sum += std::tanh(n * kPi * ratio / 2.0) / std::pow(n, 5);
+      sum += std::tanh(n * pi * ratio / 2.0) / std::pow(n, 5);
     }
-    const double exact = ratio / 3.0 * (1.0 - 192.0 / std::pow(kPi, 5) / ratio * sum);
+    const double exact = ratio / 3.0 * (1.0 - 192.0 / std::pow(pi, 5) / ratio * sum);
     const double j = torsion_constant(rectangle(ratio, 1.0));
     EXPECT_NEAR(j / exact, 1.0, 5e-4) << "a/b = " << ratio;
   }

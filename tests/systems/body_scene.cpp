@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -14,7 +15,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// Appends a grid of (cells x cells) quads that f maps to the surface; outward if f's tangents are
 /// counter-clockwise.
@@ -68,7 +69,7 @@ SurfaceMesh shape_surface(ShapeKind kind, const glm::dvec3& half_extent, std::ui
     }
   } else if (kind == ShapeKind::kCylinder) {
     const auto around = [&](double u, double radius, double y) {
-      const double angle = -2.0 * kPi * u;
+      const double angle = -2.0 * pi * u;
       return glm::dvec3(half_extent.x * radius * std::cos(angle), half_extent.y * y,
                         half_extent.x * radius * std::sin(angle));
     };
@@ -82,8 +83,8 @@ SurfaceMesh shape_surface(ShapeKind kind, const glm::dvec3& half_extent, std::ui
     append_patch(
         4 * cells, 2 * cells,
         [&](double u, double v) {
-          const double angle = -2.0 * kPi * u;
-          const double polar = kPi * (1.0 - v);
+          const double angle = -2.0 * pi * u;
+          const double polar = pi * (1.0 - v);
           return half_extent * glm::dvec3(std::sin(polar) * std::cos(angle), std::cos(polar),
                                           std::sin(polar) * std::sin(angle));
         },
@@ -180,7 +181,7 @@ std::uint32_t add_region(World& world, const RegionOnBody& region) {
   geometry.equivalent_point = region.point - 0.5 * region.depth * region.normal;
   geometry.rest_point = region.point;
   geometry.radius = region.radius;
-  geometry.area = kPi * region.radius * region.radius;
+  geometry.area = pi * region.radius * region.radius;
   geometry.mean_depth = 0.5 * region.depth;
   geometry.largest_depth = region.depth;
   world.regions.at<RegionNormal>(row).force = -glm::dot(region.force_on_body, region.normal);

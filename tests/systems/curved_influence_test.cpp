@@ -18,11 +18,12 @@
 namespace torsion {
 namespace {
 
+using std::numbers::pi;
+
 using Complex = std::complex<double>;
 
 constexpr int kHighest = 9;   // wave of the angle; with one more on the way the results end at 4
 constexpr int kSamples = 32;  // of a turn: more than twice as many
-constexpr double kPi = std::numbers::pi;
 
 /// Coefficients of exp(i m angle), m from -kHighest to kHighest.
 struct Waves {
@@ -47,7 +48,7 @@ Waves sampled(const Function& function) {
   return make_waves([&](int m) {
     Complex sum(0.0);
     for (int sample = 0; sample < kSamples; ++sample) {
-      const double angle = 2.0 * kPi * sample / kSamples;
+      const double angle = 2.0 * pi * sample / kSamples;
       sum += function(angle) / kSamples * std::polar(1.0, -m * angle);
     }
     return sum;
@@ -78,7 +79,7 @@ std::array<double, 3> surface_stress(int axis, double nu, double angle) {
   const double c = std::cos(angle);
   const double s = std::sin(angle);
   const double n = 1.0 - 2.0 * nu;
-  const double unit = 0.5 / kPi;
+  const double unit = 0.5 / pi;
   if (axis == 0) {
     return {unit * (-3.0 * c * c * c + n * (3.0 * c * c * c - 2.0 * c)),
             unit * (-3.0 * c * c * s + n * (3.0 * c * c * s - s)),
@@ -105,7 +106,7 @@ std::array<Waves, 3> taken_off(int axis, const SurfaceCurvature& curvature, doub
   // -d/dx = sin d/dangle / r and -d/dy = -cos d/dangle / r of what does not depend on r.
   const auto traction = [](const Waves& by_x, const Waves& by_y) {
     return make_waves([&](int m) {
-      return 2.0 * kPi * quarter_turns(m) * (times_sine(by_x, m) - times_cosine(by_y, m));
+      return 2.0 * pi * quarter_turns(m) * (times_sine(by_x, m) - times_cosine(by_y, m));
     });
   };
   const Waves x = traction(slope[0], slope[1]);
@@ -121,9 +122,9 @@ std::array<Waves, 3> taken_off(int axis, const SurfaceCurvature& curvature, doub
 /// Back from Fourier's space, at a distance and angle: exp(i m angle) / k^2 is i^|m| exp(i m angle)
 /// / (2 pi |m|), for m = 0 -ln r / (2 pi).
 double back(const Waves& waves, double distance, double angle) {
-  Complex sum = -waves.at(0) * std::log(distance) / (2.0 * kPi);
+  Complex sum = -waves.at(0) * std::log(distance) / (2.0 * pi);
   for (int m = 1; m <= kHighest; ++m) {
-    sum += std::conj(quarter_turns(m)) / (2.0 * kPi * m) *
+    sum += std::conj(quarter_turns(m)) / (2.0 * pi * m) *
            (waves.at(m) * std::polar(1.0, m * angle) + waves.at(-m) * std::polar(1.0, -m * angle));
   }
   return sum.real();
@@ -137,7 +138,7 @@ double sideways(int force, int motion, const SurfaceCurvature& curvature, double
   const double c2 = std::cos(2.0 * angle);
   const double wave = force != motion ? std::sin(2.0 * angle) : (force == 0 ? c2 : -c2);
   return back(taken_off(force, curvature, nu)[static_cast<std::size_t>(motion)], distance, angle) +
-         (1.0 - 2.0 * nu) / (4.0 * kPi) * below(curvature, angle) * wave;
+         (1.0 - 2.0 * nu) / (4.0 * pi) * below(curvature, angle) * wave;
 }
 
 TEST(CurvedInfluenceTest, ClosedFormIsThePerturbationOfTheBoundary) {
@@ -148,10 +149,10 @@ TEST(CurvedInfluenceTest, ClosedFormIsThePerturbationOfTheBoundary) {
     const CurvedResponse response = curved_response(curvature, nu);
     for (int place = 0; place < 8; ++place) {
       const double distance = std::exp(uniform(random));
-      const double angle = kPi * uniform(random);
+      const double angle = pi * uniform(random);
       const glm::dvec2 offset(distance * std::cos(angle), distance * std::sin(angle));
       const auto found = [&](std::size_t kind) {
-        return curved_displacement(response[kind], offset, 1.0) / (8.0 * kPi);
+        return curved_displacement(response[kind], offset, 1.0) / (8.0 * pi);
       };
       EXPECT_NEAR(found(0), back(taken_off(2, curvature, nu)[2], distance, angle), 1e-14) << nu;
       EXPECT_NEAR(found(1), sideways(0, 0, curvature, nu, distance, angle), 1e-14) << nu;
@@ -178,7 +179,7 @@ TEST(CurvedInfluenceTest, ASphereTwistsAsItsModes) {
     constexpr int kPlaces = 20000;
     double mean = 0.0;
     for (int place = 0; place < kPlaces; ++place) {
-      const double angle = 2.0 * kPi * (place + 0.5) / kPlaces;
+      const double angle = 2.0 * pi * (place + 0.5) / kPlaces;
       const glm::dvec2 at(std::cos(angle), std::sin(angle));
       const glm::dvec2 offset = at - glm::dvec2(1.0, 0.0);
       // The force is along y, the ring's motion along (-sin, cos): not of the plane of the force
@@ -186,14 +187,13 @@ TEST(CurvedInfluenceTest, ASphereTwistsAsItsModes) {
       // r^2).
       const double along_x = curved_displacement(response[2], offset, 1.0);
       const double along_y = curved_displacement(response[3], offset, 1.0);
-      const double depression =
-          (1.0 - 2.0 * nu) * offset.y / (4.0 * kPi * glm::dot(offset, offset));
+      const double depression = (1.0 - 2.0 * nu) * offset.y / (4.0 * pi * glm::dot(offset, offset));
       const glm::dvec2 along(-at.y, at.x);
-      mean += ((at.x * along_y - at.y * along_x) / (8.0 * kPi) +
+      mean += ((at.x * along_y - at.y * along_x) / (8.0 * pi) +
                depression * glm::dot(offset, along) / radius) /
               kPlaces;
     }
-    EXPECT_NEAR(mean, 3.0 / (2.0 * radius) / (4.0 * kPi), 1e-4 * mean) << nu;
+    EXPECT_NEAR(mean, 3.0 / (2.0 * radius) / (4.0 * pi), 1e-4 * mean) << nu;
   }
 }
 
@@ -214,18 +214,17 @@ TEST(CurvedInfluenceTest, TablesAddWhatTheCurvatureDoes) {
       const std::size_t at = curved.index(0, 0, i, j);
       // A cell's force is its pressure times its area; the table's unit is the cell's length over
       // the shear modulus. Within a cell it hardly varies.
-      const double wanted =
-          curved_displacement(response[kind], offset, 0.01) / (8.0 * kPi) * cell.y;
-      EXPECT_NEAR(curved.kinds[kind][at] - plane.kinds[kind][at], wanted, 3e-2 * 3.0 * cell.y / kPi)
+      const double wanted = curved_displacement(response[kind], offset, 0.01) / (8.0 * pi) * cell.y;
+      EXPECT_NEAR(curved.kinds[kind][at] - plane.kinds[kind][at], wanted, 3e-2 * 3.0 * cell.y / pi)
           << kind;
       // Reciprocity: the same seen from the other cell.
       EXPECT_EQ(curved.kinds[kind][at], curved.kinds[kind][curved.index(i, j, 0, 0)]);
       // On the other side in x alone.
       const std::size_t across = curved.index(i, 0, 0, j);
       const double there =
-          curved_displacement(response[kind], {-offset.x, offset.y}, 0.01) / (8.0 * kPi) * cell.y;
+          curved_displacement(response[kind], {-offset.x, offset.y}, 0.01) / (8.0 * pi) * cell.y;
       EXPECT_NEAR(curved.kinds[kind][across] - plane.kinds[kind][across], there,
-                  3e-2 * 3.0 * cell.y / kPi)
+                  3e-2 * 3.0 * cell.y / pi)
           << kind;
       EXPECT_EQ(curved.kinds[kind][across], curved.kinds[kind][curved.index(0, j, i, 0)]);
     }

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -14,7 +15,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 
 const Port kLoad{glm::dvec3(0.3, -0.2, 0.1), glm::normalize(glm::dvec3(0.3, 0.8, -0.4))};
 
@@ -108,9 +109,9 @@ TEST(HalfSpaceFieldsTest, HemisphereAroundTheLoadCarriesIt) {
       for (int ring = 0; ring < kRings; ++ring) {
         const double share = (ring + 0.5) / kRings;
         for (int sector = 0; sector < kSectors; ++sector) {
-          const glm::dvec3 point = point_below(0.5, share, 2.0 * kPi * (sector + 0.5) / kSectors);
+          const glm::dvec3 point = point_below(0.5, share, 2.0 * pi * (sector + 0.5) / kSectors);
           const glm::dvec3 arm = point - kLoad.position;
-          const double area = 2.0 * kPi * 0.25 / (kRings * kSectors);
+          const double area = 2.0 * pi * 0.25 / (kRings * kSectors);
           const glm::dvec3 force =
               area * (half_space_stress(kLoad, with_ratio(poisson_ratio), wrench, point) *
                       glm::normalize(arm));
@@ -149,12 +150,12 @@ TEST(HalfSpaceFieldsTest, FarFromADiscItsExactFieldsAreMet) {
   const glm::dvec3 point = point_below(1.0, 0.0, 0.3);
   const Wrench pressed{-2.0 * elasticity.contact_modulus() * a * kLoad.normal, glm::dvec3(0.0)};
   const glm::dvec3 sunk = half_space_motion(kLoad, elasticity, pressed, point).displacement;
-  EXPECT_NEAR(-glm::dot(sunk, kLoad.normal) / (2.0 / kPi * std::asin(a)), 1.0, 5e-4);
+  EXPECT_NEAR(-glm::dot(sunk, kLoad.normal) / (2.0 / pi * std::asin(a)), 1.0, 5e-4);
 
   const Wrench turned{glm::dvec3(0.0),
                       16.0 / 3.0 * elasticity.shear_modulus() * a * a * a * kLoad.normal};
   const glm::dvec3 moved = half_space_motion(kLoad, elasticity, turned, point).displacement;
-  const double exact = 2.0 / kPi * (std::asin(a) - a * std::sqrt(1.0 - a * a));
+  const double exact = 2.0 / pi * (std::asin(a) - a * std::sqrt(1.0 - a * a));
   EXPECT_NEAR(glm::dot(moved, glm::cross(kLoad.normal, point - kLoad.position)) / exact, 1.0, 1e-3);
 }
 

@@ -1,6 +1,7 @@
 // The loop closed without hardware: emulated hand, coupling, physics, passivity, guard.
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -161,7 +162,7 @@ TEST(HeldToolLoopTest, StaysStableWithDelayLostSamplesAndCoarseEncoders) {
   traits.delay = 3;
   traits.dropped = 0.1;
   traits.encoder_step = 0.1 / 256.0;  // 8 bits over 100 mm
-  traits.encoder_turn_step = 2.0 * 3.141592653589793 / 256.0;
+  traits.encoder_turn_step = 2.0 * std::numbers::pi / 256.0;
   traits.tremor = 0.05;
   const LoopOutcome outcome = run_loop(traits, ContactModel::kMdr, 0.3, 4000);
   EXPECT_EQ(outcome.faults, 0U);

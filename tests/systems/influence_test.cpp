@@ -11,7 +11,8 @@
 namespace torsion {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
+
 constexpr std::uint32_t kSide = 12;
 
 /// Displacements at a place (x, y) off a unit point load on a half-space with G = 1, z into the
@@ -23,21 +24,21 @@ double point_load(InfluenceKind kind, double nu, double x, double y) {
   const double cube = square * distance;
   switch (kind) {
     case InfluenceKind::kZZ:
-      return (1.0 - nu) / (2.0 * kPi * distance);
+      return (1.0 - nu) / (2.0 * pi * distance);
     case InfluenceKind::kXX:
-      return ((1.0 - nu) / distance + nu * x * x / cube) / (2.0 * kPi);
+      return ((1.0 - nu) / distance + nu * x * x / cube) / (2.0 * pi);
     case InfluenceKind::kXY:
-      return nu * x * y / (2.0 * kPi * cube);
+      return nu * x * y / (2.0 * pi * cube);
     case InfluenceKind::kYY:
-      return ((1.0 - nu) / distance + nu * y * y / cube) / (2.0 * kPi);
+      return ((1.0 - nu) / distance + nu * y * y / cube) / (2.0 * pi);
     case InfluenceKind::kZX:
-      return (1.0 - 2.0 * nu) * x / (4.0 * kPi * square);
+      return (1.0 - 2.0 * nu) * x / (4.0 * pi * square);
     case InfluenceKind::kZY:
-      return (1.0 - 2.0 * nu) * y / (4.0 * kPi * square);
+      return (1.0 - 2.0 * nu) * y / (4.0 * pi * square);
     case InfluenceKind::kXXLessXY:
-      return ((1.0 - nu) / distance + nu * x * (x - y) / cube) / (2.0 * kPi);
+      return ((1.0 - nu) / distance + nu * x * (x - y) / cube) / (2.0 * pi);
     case InfluenceKind::kYYLessXY:
-      return ((1.0 - nu) / distance + nu * y * (y - x) / cube) / (2.0 * kPi);
+      return ((1.0 - nu) / distance + nu * y * (y - x) / cube) / (2.0 * pi);
   }
   return 0.0;
 }
@@ -83,7 +84,7 @@ double integrated_at_centre(InfluenceKind kind, double nu, const Rectangle& cell
     return length * point_load(kind, nu, std::cos(angle), std::sin(angle));
   };
   return 4.0 * (reference::integrate(reference::gauss_legendre(40, 0.0, corner), ray) +
-                reference::integrate(reference::gauss_legendre(40, corner, 0.5 * kPi), ray));
+                reference::integrate(reference::gauss_legendre(40, corner, 0.5 * pi), ray));
 }
 
 constexpr InfluenceKind kKinds[] = {
@@ -150,7 +151,7 @@ TEST(InfluenceTest, FarCellsSeeAPointLoad) {
       // The next term of the expansion is the cell's second moment, h^2 / 12 each way, times
       // second derivatives that are at most 6 / r^2 of 1 / (2 pi r).
       const double square = di * di + dj * dj;
-      const double bound = 0.5 / square / (2.0 * kPi * std::sqrt(square));
+      const double bound = 0.5 / square / (2.0 * pi * std::sqrt(square));
       EXPECT_NEAR(at(tables, kind, di, dj), point_load(kind, 0.3, di, dj), bound);
     }
   }

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -13,7 +14,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// A bar 0.03 x 0.2 x 0.05 m of rubber, its lower end clamped.
 struct Bar {
@@ -201,7 +202,7 @@ TEST(BeamSummaryTest, RoundBarHasItsClosedForms) {
       beam_summary(main_beam(world, 0, {0.0, 0.05, 0.0}), world.bodies.at<Elasticity>(0));
   // physics B8: G = 1e6 Pa, r = 0.05 m, L = 0.1 m, phi = 0.1 rad needs 9.81747704 N m.
   EXPECT_NEAR(summary.torsion_compliance * 9.81747704 / 0.1, 1.0, 5e-3);
-  EXPECT_NEAR(summary.area / (kPi * 0.0025), 1.0, 5e-3);
+  EXPECT_NEAR(summary.area / (pi * 0.0025), 1.0, 5e-3);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "systems/body_models/smooth_compliance_solver.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -16,7 +17,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// A cell whose corners are moved by up to a sixth of its sides.
 std::array<glm::dvec3, 8> crooked_cell() {
@@ -99,7 +100,7 @@ TEST(SolidGridTest, BlocksAreFilledExactlyAndRoundBarsToTheirPolygon) {
     return sum;
   };
   EXPECT_NEAR(volume(block.value()), 0.63, 1e-12);
-  EXPECT_NEAR(volume(bar.value()) / (0.25 * kPi), 1.0, 0.005);
+  EXPECT_NEAR(volume(bar.value()) / (0.25 * pi), 1.0, 0.005);
   const ElasticSolid solid = round_bar(0.5, 1.0, 0.3);
   for (const std::array<std::uint32_t, 4>& face : bar.value().faces) {
     for (const std::uint32_t node : face) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
@@ -15,7 +16,8 @@
 namespace torsion {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
+
 constexpr double kSquareTorsion = 0.14057701;  // J over b^4 of a square bar
 
 SmoothCompliance build(const ElasticSolid& solid, const std::vector<Port>& ports,
@@ -63,7 +65,7 @@ TEST(SmoothComplianceTest, TwistSpreadOverADiscOnACubeMeetsFiniteElements) {
       const int ring = i / 8;
       const auto row = static_cast<std::size_t>(ring);
       const double share = std::sqrt(1.0 - points[row] * points[row]);
-      const double angle = 0.25 * kPi * (i + 0.5 * ring);
+      const double angle = 0.25 * pi * (i + 0.5 * ring);
       const glm::dvec3 along(std::cos(angle), std::sin(angle), 0.0);
       ports.push_back({radius * share * along + glm::dvec3(0.0, 0.0, 1.0), {0.0, 0.0, 1.0}});
       forces.push_back(share * weights[row] * glm::dvec3(-along.y, along.x, 0.0));
@@ -85,7 +87,7 @@ TEST(SmoothComplianceTest, RoundBarTwistsByItsEffectiveLength) {
   const double radius = 0.5;
   const double height = 3.0;
   const double exact =
-      (height - 0.6 * radius) / (shear_modulus(0.5) * 0.5 * kPi * std::pow(radius, 4));
+      (height - 0.6 * radius) / (shear_modulus(0.5) * 0.5 * pi * std::pow(radius, 4));
   EXPECT_NEAR(at_top(round_bar(radius, height, 0.5), 24)(5, 5) / exact, 1.0, 0.03);
   EXPECT_NEAR(at_top(round_bar(radius, height, 0.5), 48)(5, 5) / exact, 1.0, 0.012);
 }

@@ -12,7 +12,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 VirtualCoupling springs() {
   constexpr double kUnlimited = std::numeric_limits<double>::infinity();
@@ -38,8 +38,8 @@ TEST(VirtualCouplingTest, TorqueIsThatOfItsPotentialAtAnyAngle) {
     const Wrench wrench = coupling_wrench(springs(), turned(angle, {1.0, 2.0, -0.5}), {});
     EXPECT_NEAR(glm::length(wrench.torque), 2.0 * 2.0 * std::sin(angle / 2.0), 1e-14);
   }
-  EXPECT_GT(coupling_wrench(springs(), turned(kPi - 0.01), {}).torque.y, 0.0);
-  EXPECT_LT(coupling_wrench(springs(), turned(kPi + 0.01), {}).torque.y, 0.0);
+  EXPECT_GT(coupling_wrench(springs(), turned(pi - 0.01), {}).torque.y, 0.0);
+  EXPECT_LT(coupling_wrench(springs(), turned(pi + 0.01), {}).torque.y, 0.0);
 }
 
 TEST(VirtualCouplingTest, ClosedPathsOfTurnsTakeNoWork) {
@@ -53,8 +53,8 @@ TEST(VirtualCouplingTest, ClosedPathsOfTurnsTakeNoWork) {
   double work = 0.0;
   double throughput = 0.0;
   for (int i = 0; i < kSteps; ++i) {
-    const glm::dquat from = rotation(2.0 * kPi * i / kSteps);
-    const glm::dquat to = rotation(2.0 * kPi * (i + 1) / kSteps);
+    const glm::dquat from = rotation(2.0 * pi * i / kSteps);
+    const glm::dquat to = rotation(2.0 * pi * (i + 1) / kSteps);
     const glm::dquat middle = glm::normalize(from + to);
     const glm::dvec3 torque = coupling_wrench(coupling, {{glm::dvec3(0.0), middle}}, {}).torque;
     const double step = glm::dot(torque, turn_between(from, to));

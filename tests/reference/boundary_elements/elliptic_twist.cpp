@@ -20,7 +20,8 @@
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
+
 constexpr int kSteps = 24;
 constexpr int kMostSweeps = 400;
 
@@ -94,9 +95,9 @@ Influences make_influences(const std::vector<Cell>& cells, double nu, double hx,
           over_corners([](double u, double v) { return u * log_sum(v, u); }, x, y, hx, hy);
       const double xy =
           over_corners([](double u, double v) { return -std::hypot(u, v); }, x, y, hx, hy);
-      made.xx.push_back((x2 + (1.0 - nu) * y2) / (2.0 * kPi));
-      made.yy.push_back((y2 + (1.0 - nu) * x2) / (2.0 * kPi));
-      made.xy.push_back(nu * xy / (2.0 * kPi));
+      made.xx.push_back((x2 + (1.0 - nu) * y2) / (2.0 * pi));
+      made.yy.push_back((y2 + (1.0 - nu) * x2) / (2.0 * pi));
+      made.xy.push_back(nu * xy / (2.0 * pi));
     }
   }
   return made;

@@ -14,7 +14,7 @@ namespace torsion::reference {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Beyond k h = 25 what distinguishes a layer from a half-space, of order u^2 exp(-2 u), is under
 /// 1e-18.
@@ -64,7 +64,7 @@ Fredholm make_fredholm(double thickness, Lack&& lack, Wave&& wave) {
     const double u = numbers.nodes[static_cast<std::size_t>(j)];
     const double k = u / thickness;
     equation.wave_power[j] =
-        2.0 / kPi * lack(u) * numbers.weights[static_cast<std::size_t>(j)] / thickness;
+        2.0 / pi * lack(u) * numbers.weights[static_cast<std::size_t>(j)] / thickness;
     equation.rim_waves[j] = wave(k);
     for (Eigen::Index i = 0; i < rows; ++i) {
       equation.waves(i, j) = wave(k * equation.places.nodes[static_cast<std::size_t>(i)]);

@@ -6,16 +6,13 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "render/box.hpp"
+
 namespace torsion {
 namespace {
 
 constexpr double kFieldOfView = 0.5;  // rad
 const glm::dvec3 kFrom(0.5, 0.62, 0.85);
-
-struct Box {
-  glm::dvec3 lowest{1e300};
-  glm::dvec3 highest{-1e300};
-};
 
 template <class Owners, class Vertices>
 void include(const Owners& owners, const Vertices& vertices, Box& box) {
@@ -23,10 +20,7 @@ void include(const Owners& owners, const Vertices& vertices, Box& box) {
     const Pose& pose = owners.template at<Pose>(row);
     const DrawRange& range = owners.template at<DrawRange>(row);
     for (const VertexRest& vertex : vertices.template rows<VertexRest>(range.vertices)) {
-      const glm::dvec3 world =
-          pose.rotation * glm::dvec3(glm::vec3(vertex.position)) + pose.position;
-      box.lowest = glm::min(box.lowest, world);
-      box.highest = glm::max(box.highest, world);
+      box.add(pose.rotation * glm::dvec3(glm::vec3(vertex.position)) + pose.position);
     }
   }
 }
@@ -43,11 +37,11 @@ Camera auto_camera(const FrameWorld& frame, double aspect) {
   include(frame.bodies, frame.body_vertices, box);
   include(frame.tools, frame.tool_vertices, box);
   Camera camera;
-  if (!(box.lowest.x <= box.highest.x)) {
+  if (box.empty()) {
     return camera;
   }
-  const glm::dvec3 center = 0.5 * (box.lowest + box.highest);
-  const double radius = 0.5 * glm::length(box.highest - box.lowest);
+  const glm::dvec3 center = box.center();
+  const double radius = 0.5 * glm::length(box.size());
   const double half_angle =
       std::min(0.5 * kFieldOfView, std::atan(std::tan(0.5 * kFieldOfView) * aspect));
   const double distance = 1.02 * radius / std::sin(half_angle);

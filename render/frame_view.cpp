@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+
+#include "render/box.hpp"
 
 namespace torsion {
 namespace {
@@ -27,21 +28,6 @@ constexpr double kSmallestArc = 0.25;
 constexpr double kLargestArc = 0.75;
 
 const glm::dvec3 kToKeyLight = glm::normalize(glm::dvec3(-0.45, 0.85, 0.40));
-
-struct Box {
-  glm::dvec3 lowest{std::numeric_limits<double>::infinity()};
-  glm::dvec3 highest{-std::numeric_limits<double>::infinity()};
-
-  void add(const glm::dvec3& point) {
-    lowest = glm::min(lowest, point);
-    highest = glm::max(highest, point);
-  }
-  [[nodiscard]] bool empty() const { return lowest.x > highest.x; }
-  [[nodiscard]] glm::dvec3 center() const {
-    return empty() ? glm::dvec3(0.0) : 0.5 * (lowest + highest);
-  }
-  [[nodiscard]] glm::dvec3 size() const { return empty() ? glm::dvec3(0.0) : highest - lowest; }
-};
 
 glm::dvec3 to_world(const Pose& pose, const glm::vec4& point) {
   return pose.rotation * glm::dvec3(point) + pose.position;

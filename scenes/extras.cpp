@@ -32,7 +32,7 @@ std::string number_text(double number) {
   return text.str();
 }
 
-std::string shown(const tinygltf::Value& value) {
+std::string value_text(const tinygltf::Value& value) {
   if (value.IsString()) {
     return '"' + value.Get<std::string>() + '"';
   }
@@ -122,7 +122,7 @@ void add_unknown(const std::string& name, const tinygltf::Value& value, const st
     known.push_back(key.name.substr(kPrefix.size()));
   }
   const auto meant = did_you_mean(std::string_view(name).substr(kPrefix.size()), known);
-  problems.add(where, name, shown(value), "there is no such key",
+  problems.add(where, name, value_text(value), "there is no such key",
                meant ? "did you mean " + std::string(kPrefix) + *meant + "?"
                      : "take it out; docs/scenes.md lists the keys that there are");
 }
@@ -181,7 +181,7 @@ void NodeKeys::add(const tinygltf::Value& extras, const std::string& where,
     if (key == nullptr) {
       add_unknown(name, value, where, problems);
     } else if (!fits(*key, value)) {
-      problems.add(where, name, shown(value), expected_of(*key, value));
+      problems.add(where, name, value_text(value), expected_of(*key, value));
     } else {
       entries_.insert_or_assign(name, Entry{value, where});
     }
@@ -193,7 +193,7 @@ void NodeKeys::check_role(Role role, const ProblemList& problems) const {
     const SceneKey* key = find_key(name);
     if ((key->roles & bits(role)) == 0) {
       problems.add(
-          entry.where, name, shown(entry.value),
+          entry.where, name, value_text(entry.value),
           "belongs to " + roles_text(key->roles) + ", but this is " + std::string(name_of(role)),
           "move it to such a node, or set this node's torsion_role");
     }

@@ -16,16 +16,8 @@
 
 namespace torsion {
 
-namespace {
-
-/// What of a triangle is closest to a point: 0 to 2 a corner, 3 to 5 the edge from corner k-3 to
-/// the next, 6 the face.
-using Feature = std::uint32_t;
-constexpr Feature kFirstEdge = 3;
-constexpr Feature kFace = 6;
-
 /// Two cache lines: the first is enough to turn down most triangles.
-struct alignas(64) Corners {
+struct alignas(64) TriangleCorners {
   glm::dvec3 middle;
   glm::dvec3 normal;  // unit, or zero for a triangle without area
   double reach;       // m, from `middle` to the farthest corner
@@ -35,6 +27,14 @@ struct alignas(64) Corners {
   glm::dvec3 c;
 };
 
+namespace {
+
+/// What of a triangle is closest to a point: 0 to 2 a corner, 3 to 5 the edge from corner k-3 to
+/// the next, 6 the face.
+using Feature = std::uint32_t;
+constexpr Feature kFirstEdge = 3;
+constexpr Feature kFace = 6;
+
 struct FeaturePoint {
   glm::dvec3 point;
   Feature feature;
@@ -42,7 +42,7 @@ struct FeaturePoint {
 
 /// Closest point of a triangle by its Voronoi regions: Ericson, Real-Time Collision Detection,
 /// 2005, 5.1.5.
-FeaturePoint closest_on_triangle(const Corners& t, const glm::dvec3& p) {
+FeaturePoint closest_on_triangle(const TriangleCorners& t, const glm::dvec3& p) {
   const glm::dvec3 ab = t.b - t.a;
   const glm::dvec3 ac = t.c - t.a;
   const glm::dvec3 ap = p - t.a;
@@ -88,7 +88,7 @@ struct HalfEdge {
 };
 
 struct Query {
-  const Corners* corners;
+  const TriangleCorners* corners;
   glm::dvec3 point;
   double slack;  // m: the boxes are float
   double best_squared = std::numeric_limits<double>::infinity();
@@ -99,7 +99,7 @@ struct Query {
 /// True if `triangle` is nearer than what was found so far; equally near: the lower row, whatever
 /// the tree's order.
 bool try_triangle(Query& query, std::uint32_t triangle) {
-  const Corners& corners = query.corners[triangle];
+  const TriangleCorners& corners = query.corners[triangle];
   // The triangle lies in its plane, within `reach` of its middle.
   const glm::dvec3 from_middle = query.point - corners.middle;
   const double height = glm::dot(corners.normal, from_middle);
@@ -137,7 +137,7 @@ bool on_triangle(RTCPointQueryFunctionArguments* arguments) {
 }
 
 /// Corner angles of a triangle.
-glm::dvec3 angles(const Corners& t) {
+glm::dvec3 angles(const TriangleCorners& t) {
   const auto angle = [](const glm::dvec3& u, const glm::dvec3& v) {
     const glm::dvec3 normal = glm::cross(u, v);
     return std::atan2(std::sqrt(glm::dot(normal, normal)), glm::dot(u, v));
@@ -148,7 +148,7 @@ glm::dvec3 angles(const Corners& t) {
 }  // namespace
 
 struct MeshDistance::Tree {
-  std::vector<Corners> corners;
+  std::vector<TriangleCorners> corners;
   std::vector<glm::uvec3> triangles;
   std::vector<glm::dvec3> vertex_normals;  // pseudonormals; only their direction counts
   std::vector<glm::dvec3> edge_normals;    // 3 a triangle
@@ -184,7 +184,7 @@ void MeshDistance::Tree::set_corners(const SurfaceMesh& mesh) {
   glm::dvec3 highest = lowest;
   corners.reserve(triangles.size());
   for (const glm::uvec3& triangle : triangles) {
-    Corners t{};
+    TriangleCorners t{};
     t.a = mesh.positions[triangle.x];
     t.b = mesh.positions[triangle.y];
     t.c = mesh.positions[triangle.z];

@@ -14,9 +14,6 @@
 namespace torsion {
 namespace {
 
-constexpr double kSteepest =
-    0.25;  // smallest |cosine| between a surface's normal and the grid's that is divided by
-
 /// Where the material under the grid has gone, in the frame of its body.
 Pose moved_grid_in_body(const Grid& grid) {
   const RegionCarrier& carrier = grid.carrier;

@@ -61,6 +61,9 @@ using CellBits = std::array<std::uint64_t, kMaxGridSide>;
 /// The cells with coverage. Leaves that in Scratch::cell_columns.
 CellBits covered_cells(const Grid& grid);
 
+/// Smallest cosine between a surface's normal and the grid's that is divided by.
+inline constexpr double kSteepest = 0.25;
+
 /// Cosine from which facing_share is 1.
 inline constexpr double kFullyFacing = 0.5;
 

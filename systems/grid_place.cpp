@@ -11,9 +11,6 @@
 namespace torsion {
 namespace {
 
-constexpr double kSteepest =
-    0.25;  // smallest cosine between the surface's normal and the grid's that is divided by
-
 /// The highest set bit alone.
 std::uint64_t last_bit(std::uint64_t bits) {
   return bits == 0 ? 0 : std::uint64_t{1} << (63 - std::countl_zero(bits));

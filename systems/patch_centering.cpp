@@ -14,7 +14,7 @@ namespace torsion {
 namespace {
 
 constexpr int kMostPasses = 12;
-constexpr double kNear = 2e-3;  // of the grid: so near, cells keep what they know of the tool
+constexpr double kNearGrid = 2e-3;  // of the grid: so near, cells keep what they know of the tool
 constexpr double kLeastShare = 1.0 / 32;  // of its size, that a grid has after a pass
 
 /// How a pass moves and resizes a grid, in its own plane, m.
@@ -241,7 +241,7 @@ void center_patch(const Grid& grid, const RegionPoints& contact, double start_de
     }
     lay(grid, step.shift, glm::max(before + step.growth, kLeastShare * before));
     turn_normal_to(grid.frame, body_normal(grid, grid.frame.origin));
-    if (largest_share(step, before) > kNear) {
+    if (largest_share(step, before) > kNearGrid) {
       restart_heights(grid, start_depth);
     }
   }

@@ -121,10 +121,10 @@ bool inside(const Before& before, const glm::ivec2& cell) {
 
 /// On a cell's centre but for rounding: there, so that mirror images fall on the same side of it.
 glm::dvec2 on_centers(const glm::dvec2& place) {
-  constexpr double kNear = 1e-6;
+  constexpr double kOnCenter = 1e-6;
   const glm::dvec2 nearest = glm::round(place);
-  return {std::abs(place.x - nearest.x) < kNear ? nearest.x : place.x,
-          std::abs(place.y - nearest.y) < kNear ? nearest.y : place.y};
+  return {std::abs(place.x - nearest.x) < kOnCenter ? nearest.x : place.x,
+          std::abs(place.y - nearest.y) < kOnCenter ? nearest.y : place.y};
 }
 
 Resampled resample(const Before& before, const glm::dvec2& cells) {

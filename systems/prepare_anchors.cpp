@@ -11,6 +11,7 @@
 
 #include "systems/beam_sections.hpp"
 #include "systems/distance.hpp"
+#include "systems/fixed_volume.hpp"
 
 namespace torsion {
 namespace {
@@ -40,14 +41,6 @@ Bounds bounds_of(const std::vector<PartDescription>& parts) {
     }
   }
   return bounds;
-}
-
-bool in_volume(const FixedVolume& volume, const glm::dvec3& point) {
-  const glm::dvec3 unit = volume.to_unit * (point - volume.center);
-  if (volume.kind == VolumeKind::kSphere) {
-    return glm::dot(unit, unit) <= 1.0;
-  }
-  return std::abs(unit.x) <= 1.0 && std::abs(unit.y) <= 1.0 && std::abs(unit.z) <= 1.0;
 }
 
 bool in_fixed_volume(const Body& body, const glm::dvec3& point) {

@@ -10,6 +10,7 @@
 
 #include "systems/body_models/smooth_compliance.hpp"
 #include "systems/distance.hpp"
+#include "systems/fixed_volume.hpp"
 #include "systems/prepare_anchors.hpp"
 
 namespace torsion {
@@ -20,13 +21,6 @@ constexpr std::uint32_t kPortsPerBody = 128;
 constexpr std::size_t kFewestPorts = 4;
 constexpr double kClampOfPoint = 0.25;    // of the shortest side
 constexpr double kClampTolerance = 1e-6;  // of the longest side; of a mesh, what its edges are off
-
-bool in_volume(const FixedVolume& volume, const glm::dvec3& point) {
-  const glm::dvec3 unit = volume.to_unit * (point - volume.center);
-  return volume.kind == VolumeKind::kSphere
-             ? glm::length(unit) <= 1.0
-             : std::max({std::abs(unit.x), std::abs(unit.y), std::abs(unit.z)}) <= 1.0;
-}
 
 /// How far beyond a face of the body what is on it may seem to lie, m. The distance to a mesh
 /// rounds edges by up to half a fine cell of its field: a face's rim would not be held.

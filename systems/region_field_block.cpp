@@ -11,7 +11,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kNear = 4.0;  // radii: beyond there is nothing but the far field
+constexpr double kNearRadii = 4.0;  // radii: beyond there is nothing but the far field
 
 /// displacement_by_force() of a block, in float, with what is the same for all points taken out.
 struct SpreadForce {
@@ -84,7 +84,7 @@ void TurnedDiscs::angles(const BlockVectors& points, std::size_t used, BlockColu
     angles[i] = (far_3 + far_5 * inverse * (1.0F - 5.0F * height * height * inverse)) * inverse /
                 std::sqrt(square[i]);
   }
-  const auto near = static_cast<float>(kNear * kNear * radius * radius);
+  const auto near = static_cast<float>(kNearRadii * kNearRadii * radius * radius);
   for (std::size_t i = 0; i < used; ++i) {
     if (square[i] < near) {
       angles[i] = static_cast<float>(angle(points.at(i)));
@@ -111,7 +111,7 @@ void PressedSurface::add_displacements(const BlockVectors& points, std::size_t u
   BlockVectors near;
   std::size_t found = 0;
   const glm::vec3 c(all.place);
-  const auto reach = static_cast<float>(kNear * kNear * radius * radius);
+  const auto reach = static_cast<float>(kNearRadii * kNearRadii * radius * radius);
   for (std::size_t i = 0; i < used; ++i) {
     const float dx = points.x[i] - c.x;
     const float dy = points.y[i] - c.y;

@@ -23,7 +23,7 @@ constexpr double kPieceOverSpacing =
 constexpr std::uint32_t kMostPieces =
     400'000;  // a mesh of slivers keeps larger balls rather than a longer load
 
-struct Candidate {
+struct SampleCandidate {
   glm::dvec3 position;
   glm::dvec3 normal;
   std::uint32_t part;
@@ -31,9 +31,10 @@ struct Candidate {
 
 /// Points spread over the pieces by area: equal steps through the areas, and in each piece the R2
 /// sequence (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
-std::vector<Candidate> candidates_on(std::span<const SurfacePiece> pieces, const PartSolids& solids,
-                                     double total_area, std::uint32_t count) {
-  std::vector<Candidate> candidates;
+std::vector<SampleCandidate> candidates_on(std::span<const SurfacePiece> pieces,
+                                           const PartSolids& solids, double total_area,
+                                           std::uint32_t count) {
+  std::vector<SampleCandidate> candidates;
   candidates.reserve(count);
   std::size_t piece = 0;
   double end = pieces[0].area;
@@ -65,13 +66,13 @@ struct CandidateColumns {
   std::vector<float> squared_distance;  // to the nearest of the chosen
 };
 
-CandidateColumns columns_of(std::span<const Candidate> candidates, double spacing) {
+CandidateColumns columns_of(std::span<const SampleCandidate> candidates, double spacing) {
   CandidateColumns columns;
   const glm::dvec3 origin = candidates[0].position;
   for (int axis = 0; axis < 3; ++axis) {
     auto& place = columns.column[static_cast<std::size_t>(axis)];
     auto& normal = columns.column[static_cast<std::size_t>(axis) + 3];
-    for (const Candidate& candidate : candidates) {
+    for (const SampleCandidate& candidate : candidates) {
       place.push_back(static_cast<float>((candidate.position[axis] - origin[axis]) / spacing));
       normal.push_back(static_cast<float>(candidate.normal[axis]));
     }
@@ -113,7 +114,7 @@ TORSION_WIDEST std::size_t lower_distances(CandidateColumns& columns, std::size_
 /// Picks again and again the candidate that is farthest from all picked so far: Gonzalez,
 /// "Clustering to minimize the maximum intercluster distance", 1985; the largest hole is at most
 /// twice the smallest possible.
-std::vector<std::uint32_t> spread_out(std::span<const Candidate> candidates, double spacing,
+std::vector<std::uint32_t> spread_out(std::span<const SampleCandidate> candidates, double spacing,
                                       std::uint32_t count) {
   CandidateColumns columns = columns_of(candidates, spacing);
   std::vector<std::uint32_t> chosen;
@@ -254,7 +255,7 @@ SampledSurface sample_surface(std::span<const PartDescription> parts, std::uint3
   if (pieces.empty() || target_count == 0) {
     return surface;
   }
-  const std::vector<Candidate> candidates =
+  const std::vector<SampleCandidate> candidates =
       candidates_on(pieces, solids, area, kCandidatesPerSample * target_count);
   if (candidates.empty()) {
     return surface;

@@ -30,7 +30,7 @@ Parent parent_at(const MotionScript& script, double time) {
   return parent;
 }
 
-bool same(const Pose& a, const Pose& b) {
+bool same_pose(const Pose& a, const Pose& b) {
   return a.position == b.position && a.rotation == b.rotation;
 }
 
@@ -58,7 +58,8 @@ std::vector<NodeMotion> recorded_motions(const Recording& recording,
     const double time = static_cast<double>(entry.step) / recording.rate;
     const Pose pose = in_parent(pose_of(entry), parent_at(scene.tools[entry.index].script, time));
     const std::size_t keys = motion.poses.size();
-    if (keys >= 2 && same(motion.poses[keys - 1], pose) && same(motion.poses[keys - 2], pose)) {
+    if (keys >= 2 && same_pose(motion.poses[keys - 1], pose) &&
+        same_pose(motion.poses[keys - 2], pose)) {
       motion.times.back() = static_cast<float>(time);  // the rest goes on
       continue;
     }

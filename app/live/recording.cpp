@@ -10,7 +10,7 @@
 namespace torsion {
 namespace {
 
-bool same(const BodyPick& a, const BodyPick& b) {
+bool same_pick(const BodyPick& a, const BodyPick& b) {
   return body_entry(0, 0, a).values == body_entry(0, 0, b).values;
 }
 
@@ -73,7 +73,7 @@ Result<Session> open_recorded(const std::filesystem::path& scene, const Recordin
     tools.push_back(tool.node);
   }
   if (tools != recording.tools ||
-      !std::ranges::equal(picks_of(session.scene, {}), recording.scene_picks, same)) {
+      !std::ranges::equal(picks_of(session.scene, {}), recording.scene_picks, same_pick)) {
     return Error{
         fmt::format("{}: not the scene of the recording, which was made of {}: it has "
                     "other tools, bodies or materials",

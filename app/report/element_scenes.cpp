@@ -6,14 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "app/report/paper_ball.hpp"
 #include "app/report/shapes.hpp"
 
 namespace torsion {
 namespace {
 
-constexpr double kBallRadius = 0.05;  // m
-constexpr double kDepth = 4.127e-4;   // m
-const double kContact = std::sqrt(kBallRadius * kDepth);
+const double kContact = std::sqrt(kPaperBallRadius * kPaperBallDepth);
 constexpr glm::vec4 kBodyColor(0.85F, 0.72F, 0.6F, 1.0F);
 constexpr glm::vec4 kToolColor(0.45F, 0.55F, 0.7F, 1.0F);
 
@@ -228,20 +227,21 @@ std::vector<ElementScene> element_scenes() {
   const Material soft{1e4, 0.4999, 5.0};
   std::vector<ElementScene> scenes;
   scenes.push_back(ball_on_block("half_space", "Ball on a half-space, by finite elements",
-                                 kBallRadius, 8000.0 * kContact, 4000.0 * kContact, Material{}));
-  scenes.push_back(ball_on_block("ball_on_cube_nu30", "Ball on a cube, \u03bd = 0.3", kBallRadius,
-                                 0.1, 0.1, nu30));
-  scenes.push_back(ball_on_block("ball_on_cube_nu49", "Ball on a cube, \u03bd = 0.49", kBallRadius,
-                                 0.1, 0.1, nu49));
-  scenes.push_back(ball_on_block("thin_layer", "Ball on a thin layer", kBallRadius, 24.0 * kContact,
-                                 2.0 * kContact, Material{}));
+                                 kPaperBallRadius, 8000.0 * kContact, 4000.0 * kContact,
+                                 Material{}));
+  scenes.push_back(ball_on_block("ball_on_cube_nu30", "Ball on a cube, \u03bd = 0.3",
+                                 kPaperBallRadius, 0.1, 0.1, nu30));
+  scenes.push_back(ball_on_block("ball_on_cube_nu49", "Ball on a cube, \u03bd = 0.49",
+                                 kPaperBallRadius, 0.1, 0.1, nu49));
+  scenes.push_back(ball_on_block("thin_layer", "Ball on a thin layer", kPaperBallRadius,
+                                 24.0 * kContact, 2.0 * kContact, Material{}));
   scenes.push_back(ball_on_block("soft_column", "Ball on a soft column: a large contact", 0.2,
                                  kColumn, kColumn, soft));
   scenes.push_back(ball_on_block("large_strain_linear",
                                  "Ball pressed deep into a cube, as linear elasticity has it",
-                                 kBallRadius, 0.1, 0.1, nu49));
+                                 kPaperBallRadius, 0.1, 0.1, nu49));
   ElementScene large = ball_on_block("large_strain", "Ball pressed deep into a cube, large strain",
-                                     kBallRadius, 0.1, 0.1, nu49);
+                                     kPaperBallRadius, 0.1, 0.1, nu49);
   large.description +=
       " The reference is neo-Hookean at large strain: it shows where all models here, which are "
       "linear, end.";

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/report/paper_ball.hpp"
 #include "app/report/shapes.hpp"
 #include "tests/reference/exact/cattaneo_mindlin.hpp"
 #include "tests/reference/exact/hertz.hpp"
@@ -16,11 +17,8 @@
 namespace torsion {
 namespace {
 
-// The paper's ball, and the depth at which its contact is a tenth of its radius.
-constexpr double kBallRadius = 0.05;  // m
-constexpr double kDepth = 4.127e-4;   // m
-constexpr double kHalfSize = 2.0;     // m: 440 contact radii, so that the block is a half-space
-constexpr double kClearance = 1e-5;   // m
+constexpr double kHalfSize = 2.0;    // m: 440 contact radii, so that the block is a half-space
+constexpr double kClearance = 1e-5;  // m
 constexpr int kPressPoints = 8;
 constexpr int kPointsOfLeg = 16;
 
@@ -34,8 +32,9 @@ struct SphereOnHalfSpace {
 /// A sphere's own contact radius and force, with Hertz' form of the pressure.
 reference::HertzSphere sphere_contact(double modulus, double depth) {
   const reference::SneddonSphere exact =
-      reference::sneddon_sphere_at_depth(kBallRadius, modulus, depth);
-  reference::HertzSphere contact = reference::hertz_sphere_at_depth(kBallRadius, modulus, depth);
+      reference::sneddon_sphere_at_depth(kPaperBallRadius, modulus, depth);
+  reference::HertzSphere contact =
+      reference::hertz_sphere_at_depth(kPaperBallRadius, modulus, depth);
   contact.force = exact.force;
   contact.radius = exact.radius;
   return contact;
@@ -43,7 +42,7 @@ reference::HertzSphere sphere_contact(double modulus, double depth) {
 
 SphereOnHalfSpace sphere_on_half_space(bool quick) {
   SphereOnHalfSpace sphere;
-  sphere.hertz = sphere_contact(sphere.elasticity.contact_modulus(), kDepth);
+  sphere.hertz = sphere_contact(sphere.elasticity.contact_modulus(), kPaperBallDepth);
   sphere.steps = quick ? 10 : 40;
   return sphere;
 }
@@ -69,25 +68,25 @@ SceneDescription scene_of(const SphereOnHalfSpace& sphere) {
   scene.bodies.push_back(std::move(body));
   ToolDescription tool;
   tool.node = "ball";
-  tool.parts.push_back(exact_part(ShapeKind::kSphere, glm::dvec3(kBallRadius)));
-  tool.draw = drawn({shape_surface(ShapeKind::kSphere, glm::dvec3(kBallRadius), 41)}, true,
+  tool.parts.push_back(exact_part(ShapeKind::kSphere, glm::dvec3(kPaperBallRadius)));
+  tool.draw = drawn({shape_surface(ShapeKind::kSphere, glm::dvec3(kPaperBallRadius), 41)}, true,
                     {0.45F, 0.55F, 0.7F, 1.0F});
   scene.tools.push_back(std::move(tool));
   return scene;
 }
 
 Pose pose_at(double depth, double turn, double shift) {
-  return {glm::dvec3(shift, kBallRadius - depth, 0.0),
+  return {glm::dvec3(shift, kPaperBallRadius - depth, 0.0),
           glm::angleAxis(turn, glm::dvec3(0.0, 1.0, 0.0))};
 }
 
-/// From just above the surface down to kDepth.
+/// From just above the surface down to kPaperBallDepth.
 std::vector<PathPoint> press(const SphereOnHalfSpace& sphere, bool force_is_normal) {
   std::vector<PathPoint> path{
       {pose_at(-kClearance, 0.0, 0.0), 1, Leg::kApproach, 0.0, kNoReference, kNoReference}};
   for (int i = 1; i <= kPressPoints; ++i) {
     PathPoint point;
-    const double depth = kDepth * i / kPressPoints;
+    const double depth = kPaperBallDepth * i / kPressPoints;
     point.tool = pose_at(depth, 0.0, 0.0);
     point.steps = sphere.steps;
     if (force_is_normal) {
@@ -118,8 +117,8 @@ std::string sphere_text(const SphereOnHalfSpace& sphere) {
       "\u03bd = {:.2g}, \u03bc = {:.2g}) that stands for a half-space. It is pressed {:.4g} mm "
       "deep: "
       "F = {:.3g} N, contact radius a = {:.3g} mm.",
-      1e3 * kBallRadius, 2.0 * kHalfSize, 1e-6 * sphere.elasticity.youngs_modulus,
-      sphere.elasticity.poisson_ratio, sphere.friction.dynamic_friction, 1e3 * kDepth,
+      1e3 * kPaperBallRadius, 2.0 * kHalfSize, 1e-6 * sphere.elasticity.youngs_modulus,
+      sphere.elasticity.poisson_ratio, sphere.friction.dynamic_friction, 1e3 * kPaperBallDepth,
       sphere.hertz.force, 1e3 * sphere.hertz.radius);
 }
 
@@ -128,7 +127,7 @@ std::string sphere_text(const SphereOnHalfSpace& sphere) {
 /// over a, k = (a / R)^2 / 3, and a couple of the integral of x times it: 0.375 (1 + 2 k / 15) F a
 /// to first order.
 double pressure_error(const SphereOnHalfSpace& sphere) {
-  const double share = sphere.hertz.radius / kBallRadius;
+  const double share = sphere.hertz.radius / kPaperBallRadius;
   return 2.0 / 15.0 * share * share / 3.0;
 }
 
@@ -165,8 +164,8 @@ ReferenceCase twist_case(bool quick) {
   to_and_fro(amplitude, [&](double twist, Leg leg) {
     const double torque = reference::move_to(
         history, [&](double phi) { return reference::torque(contact, phi); }, twist);
-    result.path.push_back(
-        {pose_at(kDepth, twist, 0.0), sphere.steps, leg, twist, sphere.hertz.force, torque});
+    result.path.push_back({pose_at(kPaperBallDepth, twist, 0.0), sphere.steps, leg, twist,
+                           sphere.hertz.force, torque});
     if (twist == amplitude && leg == Leg::kLoad) {
       result.field.point = result.path.size() - 1;
     }
@@ -214,7 +213,7 @@ ReferenceCase shear_case(bool quick) {
     const double force = reference::move_to(
         history, [&](double u) { return reference::tangential_force(contact, u); }, shift);
     result.path.push_back(
-        {pose_at(kDepth, 0.0, shift), sphere.steps, leg, shift, force, kNoReference});
+        {pose_at(kPaperBallDepth, 0.0, shift), sphere.steps, leg, shift, force, kNoReference});
   });
   result.x = {PlotAxis::Quantity::kAbscissa, "shift of the tool (mm)", 1e3};
   result.y = {PlotAxis::Quantity::kForce, "force along the push (N)", 1.0};
@@ -258,8 +257,8 @@ ReferenceCase slide_and_spin_case(bool quick) {
     shift += slide;
     turn += rim / radius;
     const reference::SlidingSpinning load = reference::hertz_limit_surface(slide, rim);
-    result.path.push_back({pose_at(kDepth, turn, shift), 8 * sphere.steps, Leg::kLoad, angle,
-                           limit * load.force, limit * radius * load.moment});
+    result.path.push_back({pose_at(kPaperBallDepth, turn, shift), 8 * sphere.steps, Leg::kLoad,
+                           angle, limit * load.force, limit * radius * load.moment});
   }
   result.connected = false;
   result.x = {PlotAxis::Quantity::kForce, "friction force (N)", 1.0};

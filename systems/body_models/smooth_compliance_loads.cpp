@@ -21,7 +21,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// How near the surface counts as the contact's own surroundings. It must be wide enough for the
 /// elements to follow, and a large contact's size at most.
-constexpr double kNear = 0.15;           // of the shortest side
+constexpr double kNearOfSide = 0.15;     // of the shortest side
 constexpr double kNearInElements = 1.5;  // at least
 /// On surfaces across an edge, where tractions are bounded, only what no contact could fit into.
 constexpr double kNearAcrossEdge = 0.02;  // of the shortest side
@@ -231,7 +231,7 @@ PortLoads loads_of_port(const SolidGrid& grid, const Elasticity& elasticity, con
                         double shortest_side, int columns) {
   const auto nodes = static_cast<Eigen::Index>(grid.nodes.size());
   const Near near{
-      std::max(kNear * shortest_side,
+      std::max(kNearOfSide * shortest_side,
                kNearInElements * std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z})),
       kNearAcrossEdge * shortest_side};
   PortLoads loads{WrenchColumns::Zero(3 * nodes, columns), WrenchColumns::Zero(3 * nodes, columns)};

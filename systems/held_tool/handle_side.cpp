@@ -11,7 +11,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kNear = 0.01;            // m: a hand finds that without a guide
+constexpr double kNearHandle = 0.01;      // m: a hand finds that without a guide
 constexpr double kRiseTime = 0.01;        // s: from nothing to the largest force, at the fastest
 constexpr double kUsualPeriod = 1e-3;     // s
 constexpr double kLongestPeriod = 20e-3;  // s: a gap, not a period
@@ -26,7 +26,7 @@ void begin_epoch(HandleSide& side, const DeviceSample& sample, const Pose& tool)
   side.limits.largest_torque = side.coupling.largest_torque;
   side.limits.largest_force_rate = side.coupling.largest_force / kRiseTime;
   side.limits.largest_torque_rate = side.coupling.largest_torque / kRiseTime;
-  side.limits.near = kNear;
+  side.limits.near = kNearHandle;
   side.map.origin = sample.steers_rate ? tool.position - sample.pose.position : side.home.position;
 }
 

@@ -66,4 +66,7 @@ Ran run_torsion(const std::vector<std::string>& words);
 std::string read_text(const std::string& path);
 void write_text(const std::string& path, const std::string& text);
 
+/// The fields of a line of a .csv, empty ones too.
+std::vector<std::string> fields_of(const std::string& line);
+
 }  // namespace torsion::test

@@ -10,6 +10,7 @@ namespace torsion {
 namespace {
 
 using nlohmann::json;
+using test::fields_of;
 using test::Folder;
 using test::Ran;
 using test::read_text;
@@ -23,15 +24,6 @@ std::vector<std::string> lines_of(const std::string& text) {
     lines.push_back(line);
   }
   return lines;
-}
-
-std::vector<std::string> fields_of(const std::string& line) {
-  std::vector<std::string> fields;
-  std::istringstream stream(line);
-  for (std::string field; std::getline(stream, field, ',');) {
-    fields.push_back(field);
-  }
-  return fields;
 }
 
 TEST(SimulateTest, TraceHasTheColumnsOfTheGuideAndARowAStep) {

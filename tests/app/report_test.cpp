@@ -15,6 +15,7 @@
 namespace torsion {
 namespace {
 
+using test::fields_of;
 using test::Folder;
 using test::Ran;
 using test::read_text;
@@ -25,18 +26,6 @@ constexpr const char* kHeader =
     "torque_error,twist_error,memory_bytes";
 
 /// Fields of one line; an empty last field counts.
-std::vector<std::string> fields_of(const std::string& line) {
-  std::vector<std::string> fields(1);
-  for (const char c : line) {
-    if (c == ',') {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
-
 /// Lines of a report by "scene contact body cells".
 std::map<std::string, std::vector<std::string>> rows_of(const std::string& csv) {
   std::map<std::string, std::vector<std::string>> rows;

@@ -17,8 +17,8 @@ using test::EmulatedOdrive;
 using test::EmulatedSpaceMouse;
 using test::EmulatedWooden;
 using test::FakeBus;
+using test::kStartTime;
 
-constexpr double kStart = 0.5;   // s: by then a device that needs nobody is live
 constexpr double kLetGo = 2e-3;  // s: the longest that a force may outlive what it counted on
 
 TEST(DeviceLoopTest, AFalconMovesAndAKnobTwists) {
@@ -30,7 +30,7 @@ TEST(DeviceLoopTest, AFalconMovesAndAKnobTwists) {
   knob.turns = -0.125;
   const std::size_t first = bus.plug(falcon);
   const std::size_t second = bus.plug(knob);
-  bus.run(kStart);
+  bus.run(kStartTime);
   ASSERT_EQ(client.last.state, DeviceState::kLive);
   EXPECT_EQ(client.last.sensed, kTranslationAxes | kTwistAxis);
   EXPECT_EQ(client.last.actuated, kTranslationAxes | kTwistAxis);
@@ -45,7 +45,7 @@ TEST(DeviceLoopTest, AFalconMovesAndASpaceMouseTurns) {
   FakeBus bus({}, client.sink());
   bus.plug(EmulatedFalcon{});
   const std::size_t mouse = bus.plug(EmulatedSpaceMouse{});
-  bus.run(kStart);
+  bus.run(kStartTime);
   ASSERT_EQ(client.last.state, DeviceState::kLive);
   EXPECT_FALSE(client.last.steers_rate);  // its place is the Falcon's
   for (int i = 0; i < 10; ++i) {
@@ -63,7 +63,7 @@ TEST(DeviceLoopTest, TwoButtonsOfAFalconTurnTheTool) {
   options.turn_buttons = {1U << 1, 1U << 2, 0.5};
   FakeBus bus(options, client.sink());
   const std::size_t falcon = bus.plug(EmulatedFalcon{});
-  bus.run(kStart);
+  bus.run(kStartTime);
   ASSERT_EQ(client.last.state, DeviceState::kLive);
   EXPECT_TRUE(client.last.buttons_turn);
   EXPECT_EQ(client.last.sensed, kTranslationAxes);
@@ -92,7 +92,7 @@ TEST(DeviceLoopTest, ButtonsTurnNothingBesideADeviceThatTurns) {
   FakeBus bus({}, client.sink());
   const std::size_t falcon = bus.plug(EmulatedFalcon{});
   bus.plug(EmulatedOdrive{});
-  bus.run(kStart);
+  bus.run(kStartTime);
   ASSERT_EQ(client.last.state, DeviceState::kLive);
   bus.device<EmulatedFalcon>(falcon).buttons = 1U << 0;
   bus.run(0.2);
@@ -106,7 +106,7 @@ TEST(DeviceLoopTest, TwoFalconsDisplayATorqueAcrossTheirLine) {
   FakeBus bus({}, client.sink());
   const std::size_t left = bus.plug(EmulatedFalcon{});
   const std::size_t right = bus.plug(EmulatedFalcon{});
-  bus.run(kStart);
+  bus.run(kStartTime);
   ASSERT_EQ(client.last.state, DeviceState::kLive);
   EXPECT_EQ(client.last.actuated, kTranslationAxes | kRotationAxes);
   // 0.2 m apart: 1 N each, opposite, along z.
@@ -120,7 +120,7 @@ TEST(DeviceLoopTest, PullingOneOutLetsGoOfTheOthersForce) {
   FakeBus bus({}, client.sink());
   const std::size_t first = bus.plug(EmulatedFalcon{});
   const std::size_t second = bus.plug(EmulatedFalcon{});
-  bus.run(kStart);
+  bus.run(kStartTime);
   ASSERT_EQ(bus.without_force_for(second), 0.0);
   const std::uint32_t epoch = client.last.epoch;
   client.wanted = {};  // as a guard does that sees another epoch
@@ -130,7 +130,7 @@ TEST(DeviceLoopTest, PullingOneOutLetsGoOfTheOthersForce) {
   EXPECT_NE(client.last.epoch, epoch);
   EXPECT_EQ(client.last.sensed, kTranslationAxes);  // it goes on by itself
   bus.plug(EmulatedFalcon{});
-  bus.run(kStart);
+  bus.run(kStartTime);
   EXPECT_EQ(client.last.actuated, kTranslationAxes | kRotationAxes);
 }
 
@@ -140,7 +140,7 @@ TEST(DeviceLoopTest, OneThatIsHeldElsewhereDoesNotKeepTheOthersFromWorking) {
   bus.plug(EmulatedFalcon{});
   const std::size_t mouse = bus.plug(EmulatedSpaceMouse{});
   bus.claims(mouse, UsbStatus::kBusy);
-  bus.run(kStart);
+  bus.run(kStartTime);
   EXPECT_EQ(client.last.state, DeviceState::kLive);
   EXPECT_EQ(client.last.trouble, DeviceTrouble::kHeldElsewhere);  // but it is said
 }

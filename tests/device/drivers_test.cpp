@@ -19,8 +19,7 @@ using test::EmulatedOdrive;
 using test::EmulatedSpaceMouse;
 using test::EmulatedWooden;
 using test::FakeBus;
-
-constexpr double kStart = 0.5;  // s: by then a device that needs nobody is live
+using test::kStartTime;
 
 TEST(SpaceMouseDriverTest, SteersAtTheSpeedOfItsDeflection) {
   DeviceClient client;
@@ -71,7 +70,7 @@ TEST(FalconDriverTest, SaysItsPlaceAndTakesForce) {
   EmulatedFalcon falcon;
   falcon.place = {0.01, -0.02, 0.12};
   const std::size_t row = bus.plug(falcon);
-  bus.run(kStart);
+  bus.run(kStartTime);
   ASSERT_EQ(client.last.state, DeviceState::kLive);
   // One count of an encoder is 0.036 degrees, at most 64 um at the grip for each of three legs.
   EXPECT_NEAR(glm::length(client.last.pose.position - glm::dvec3(0.01, -0.02, 0.005)), 0.0, 1e-4);
@@ -137,9 +136,9 @@ TEST(FalconDriverTest, HasNoForceBeforeItsZerosAreFound) {
   EmulatedFalcon falcon;
   falcon.homed = false;
   const std::size_t row = bus.plug(falcon);
-  bus.run(kStart);
+  bus.run(kStartTime);
   EXPECT_EQ(client.last.trouble, DeviceTrouble::kNotHomed);
-  EXPECT_GT(bus.without_force_for(row), 0.9 * kStart);
+  EXPECT_GT(bus.without_force_for(row), 0.9 * kStartTime);
   EXPECT_GT(bus.writes(row), 400U);  // it is fed all the same
   bus.device<EmulatedFalcon>(row).homed = true;
   bus.run(0.1);
@@ -154,7 +153,7 @@ TEST(WoodenDriverTest, PushesInTheWorldsAxes) {
   EmulatedWooden wooden;
   wooden.encoders = {0, 300, 300, 0, 0, 0};
   const std::size_t row = bus.plug(wooden);
-  bus.run(kStart);
+  bus.run(kStartTime);
   ASSERT_EQ(client.last.state, DeviceState::kLive);
   EXPECT_EQ(client.last.sensed, kTranslationAxes | kRotationAxes);
   EXPECT_GT(client.last.rate, 900.0);
@@ -172,7 +171,7 @@ TEST(WoodenDriverTest, SetsItsEncodersOnceWhenTheButtonIsPressed) {
   EmulatedWooden wooden;
   wooden.encoders = {10, 20, 30, 40, 50, 60};
   const std::size_t row = bus.plug(wooden);
-  bus.run(kStart);
+  bus.run(kStartTime);
   const std::uint32_t epoch = client.last.epoch;
   bus.device<EmulatedWooden>(row).button = true;
   bus.run(0.2);
@@ -192,7 +191,7 @@ TEST(OdriveDriverTest, TurnsTheTwistAxisAndTakesTorqueUpToItsLimit) {
   EmulatedOdrive knob;
   knob.turns = 0.25;
   const std::size_t row = bus.plug(knob);
-  bus.run(kStart);
+  bus.run(kStartTime);
   ASSERT_EQ(client.last.state, DeviceState::kLive);
   EXPECT_TRUE(bus.device<EmulatedOdrive>(row).closed_loop);
   EXPECT_NEAR(client.last.pose.rotation.y, std::sin(std::numbers::pi / 4.0), 1e-6);
@@ -210,7 +209,7 @@ TEST(OdriveDriverTest, AnErrorOfItsAxisEndsTheTorqueUntilItIsPluggedInAgain) {
   DeviceClient client;
   FakeBus bus({}, client.sink());
   const std::size_t row = bus.plug(EmulatedOdrive{});
-  bus.run(kStart);
+  bus.run(kStartTime);
   ASSERT_EQ(client.last.state, DeviceState::kLive);
   bus.device<EmulatedOdrive>(row).errors = 0x40;
   bus.device<EmulatedOdrive>(row).closed_loop = false;
@@ -227,7 +226,7 @@ TEST(OdriveDriverTest, AnErrorOfItsAxisEndsTheTorqueUntilItIsPluggedInAgain) {
   bus.unplug(row);
   bus.run(0.01);
   bus.plug(EmulatedOdrive{});
-  bus.run(kStart);
+  bus.run(kStartTime);
   EXPECT_EQ(client.last.state, DeviceState::kLive);
 }
 
@@ -235,7 +234,7 @@ TEST(OdriveDriverTest, OneThatWasNotFedInTimeIsSetUpAnew) {
   DeviceClient client;
   FakeBus bus({}, client.sink());
   const std::size_t row = bus.plug(EmulatedOdrive{});
-  bus.run(kStart);
+  bus.run(kStartTime);
   const std::uint32_t epoch = client.last.epoch;
   bus.device<EmulatedOdrive>(row).errors = kOdriveWatchdog;
   bus.device<EmulatedOdrive>(row).closed_loop = false;
@@ -255,7 +254,7 @@ TEST(OdriveDriverTest, SaysThatItIsNotCalibratedAndWhenItLeftItsControlWithoutAn
     EmulatedOdrive knob;
     knob.calibrated = calibrated;
     const std::size_t row = bus.plug(knob);
-    bus.run(kStart);
+    bus.run(kStartTime);
     EXPECT_EQ(client.last.state == DeviceState::kLive, calibrated);
     bus.device<EmulatedOdrive>(row).closed_loop = false;
     bus.run(0.03);
@@ -281,7 +280,7 @@ TEST_P(WireFaultTest, LetsGoOrKeepsTheLastPoseAndIsLiveAgain) {
     kind == 1 ? device = EmulatedFalcon{} : kind == 2 ? device = EmulatedWooden{} : device;
     kind == 3 ? device = EmulatedOdrive{} : device;
     const std::size_t row = bus.plug(device);
-    bus.run(kStart);
+    bus.run(kStartTime);
     SCOPED_TRACE(testing::Message() << GetParam().name << ", kind " << kind);
     ASSERT_EQ(client.last.state, DeviceState::kLive);
     const Pose before = client.last.pose;
@@ -317,7 +316,7 @@ TEST(DriversTest, AStallLetsGoOfTheForceAtOnce) {
     DeviceClient client;
     FakeBus bus({}, client.sink());
     const std::size_t row = falcon ? bus.plug(EmulatedFalcon{}) : bus.plug(EmulatedOdrive{});
-    bus.run(kStart);
+    bus.run(kStartTime);
     ASSERT_EQ(bus.without_force_for(row), 0.0);
     bus.silence(row, true);
     bus.run(1e-3);  // the last answer
@@ -338,7 +337,7 @@ TEST(DriversTest, ASilentDeviceIsToldToLetGoAndComesBack) {
     const std::size_t row = kind == 1   ? bus.plug(EmulatedFalcon{})
                             : kind == 2 ? bus.plug(wooden)
                                         : bus.plug(EmulatedOdrive{});
-    bus.run(kStart);
+    bus.run(kStartTime);
     SCOPED_TRACE(kind);
     ASSERT_EQ(client.last.state, DeviceState::kLive);
     bus.silence(row, true);

@@ -13,6 +13,8 @@
 
 namespace torsion::test {
 
+inline constexpr double kStartTime = 0.5;  // s: by then a device that needs nobody is live
+
 class FakeBus {
  public:
   explicit FakeBus(const LoopOptions& options, SampleSink sink) {

@@ -5,8 +5,12 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "tests/support/directions.hpp"
+
 namespace torsion {
 namespace {
+
+using test::kUp;
 
 KeyedChannel steps_of_two(Interpolation interpolation) {
   return {interpolation,
@@ -17,8 +21,6 @@ KeyedChannel steps_of_two(Interpolation interpolation) {
 glm::dvec4 xyzw(const glm::dquat& q) {
   return {q.x, q.y, q.z, q.w};
 }
-
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
 
 TEST(ScriptedMotionTest, HoldsTheFirstAndTheLastValueOutsideTheKeys) {
   const KeyedChannel channel = steps_of_two(Interpolation::kLinear);

@@ -20,13 +20,13 @@ namespace {
 
 using std::numbers::pi;
 
-CattaneoMindlin rubber() {
+CattaneoMindlin slid_rubber() {
   const HertzSphere sphere = hertz_sphere_at_force(0.05, contact_modulus(3e6, 0.5), 10.0);
   return {10.0, 0.75, sphere.radius, tangential_modulus(3e6, 0.5)};
 }
 
 TEST(CattaneoMindlinTest, MatchesPrintedValues) {
-  const CattaneoMindlin contact = rubber();
+  const CattaneoMindlin contact = slid_rubber();
   EXPECT_TRUE(rounds_to(tangential_stiffness(contact), 2.422827e4, 7));
   EXPECT_TRUE(rounds_to(full_slip_displacement(contact), 4.64333519e-4, 9));
   const double shares[] = {0.1, 0.5, 0.9, 0.99};
@@ -44,7 +44,7 @@ TEST(CattaneoMindlinTest, MatchesPrintedValues) {
 }
 
 TEST(CattaneoMindlinTest, TractionCarriesTheForceUnderFriction) {
-  const CattaneoMindlin contact = rubber();
+  const CattaneoMindlin contact = slid_rubber();
   const HertzSphere sphere = hertz_sphere_at_force(0.05, contact_modulus(3e6, 0.5), 10.0);
   for (const double share : {0.2, 0.7, -0.7}) {
     const double force = share * full_slip_force(contact);
@@ -77,7 +77,7 @@ TEST(CattaneoMindlinTest, TractionCarriesTheForceUnderFriction) {
 TEST(CattaneoMindlinTest, HistoryOfManyTurnsEqualsSpringsWithFriction) {
   // Dimensionality reduction: springs 2 Gt dx on [0, a] with the limit mu 2 E* (delta - x^2 / R) dx
   // each.
-  const CattaneoMindlin contact = rubber();
+  const CattaneoMindlin contact = slid_rubber();
   const HertzSphere sphere = hertz_sphere_at_force(0.05, contact_modulus(3e6, 0.5), 10.0);
   const Quadrature rule = gauss_legendre(2000, 0.0, contact.radius);
   std::vector<double> stretches(rule.nodes.size(), 0.0);
@@ -104,7 +104,7 @@ TEST(CattaneoMindlinTest, HistoryOfManyTurnsEqualsSpringsWithFriction) {
 }
 
 TEST(CattaneoMindlinTest, LossPerCycleIsTheAreaOfTheLoop) {
-  const CattaneoMindlin contact = rubber();
+  const CattaneoMindlin contact = slid_rubber();
   for (const double share : {0.05, 0.0999, 0.1001, 0.5, 1.0}) {
     const double amplitude = share * full_slip_force(contact);
     const double end = tangential_displacement(contact, amplitude);

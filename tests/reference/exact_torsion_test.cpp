@@ -12,21 +12,12 @@
 #include "tests/reference/exact/quadrature.hpp"
 #include "tests/reference/exact/reissner_sagoci.hpp"
 #include "tests/reference/printed_number.hpp"
+#include "tests/reference/twisted_rubber.hpp"
 
 namespace torsion::reference {
 namespace {
 
 using std::numbers::pi;
-
-/// Sphere of 50 mm on rubber: the case of most tables.
-LubkinContact rubber(double force = 10.0, double friction = 0.75,
-                     PressureShape shape = PressureShape::kHertz) {
-  const HertzSphere sphere = hertz_sphere_at_force(0.05, contact_modulus(3e6, 0.5), force);
-  return {shape, force, friction, sphere.radius, shear_modulus(3e6, 0.5)};
-}
-
-constexpr PressureShape kShapes[] = {PressureShape::kWinkler, PressureShape::kHertz,
-                                     PressureShape::kUniform, PressureShape::kFlatPunch};
 
 TEST(ReissnerSagociTest, MatchesPrintedTorquesAndDisplacements) {
   const BondedDisc discs[] = {{0.005, 1e6, 0.01}, {0.01, 2e5, 0.05}};
@@ -44,7 +35,7 @@ TEST(ReissnerSagociTest, MatchesPrintedTorquesAndDisplacements) {
     EXPECT_TRUE(rounds_to(bonded_disc_displacement(discs[i], 10.0 * a), at_ten[i], 7));
     EXPECT_TRUE(rounds_to(bonded_disc_displacement(discs[i], a, a), inside[i], 7));
   }
-  const BondedDisc small{rubber().radius, 1e6, 0.01};
+  const BondedDisc small{twisted_rubber().radius, 1e6, 0.01};
   EXPECT_TRUE(rounds_to(bonded_disc_torque(small), 5.0e-3, 8));
   EXPECT_TRUE(rounds_to(bonded_disc_displacement(small, 1.1 * small.radius), 2.425287e-5, 7));
 }
@@ -124,7 +115,7 @@ TEST(LubkinTest, MatchesPrintedTorquesAndStickRadii) {
                             1.47857373e-2, 1.88848661e-2, 2.00252581e-2, 2.00694807e-2};
   const double stick[] = {0.9992664, 0.9926759, 0.9279943, 0.8588246,
                           0.6696088, 0.4198543, 0.1442482};
-  const LubkinContact contact = rubber();
+  const LubkinContact contact = twisted_rubber();
   for (int i = 0; i < 8; ++i) {
     EXPECT_TRUE(rounds_to(torque(contact, twists[i]), torques[i], 9)) << twists[i];
   }
@@ -137,15 +128,18 @@ TEST(LubkinTest, MatchesPrintedTorquesAndStickRadii) {
 }
 
 TEST(LubkinTest, MatchesPrintedTorquesOfOtherLoads) {
-  EXPECT_TRUE(rounds_to(torque(rubber(1.0), 0.01), 3.95948466e-4, 9));
-  EXPECT_TRUE(rounds_to(torque(rubber(100.0), 0.1), 3.06399705e-1, 9));
-  EXPECT_TRUE(rounds_to(torque(rubber(10.0, 0.3), 0.01), 3.81729480e-3, 9));
+  EXPECT_TRUE(
+      rounds_to(torque(twisted_rubber(PressureShape::kHertz, 1.0), 0.01), 3.95948466e-4, 9));
+  EXPECT_TRUE(
+      rounds_to(torque(twisted_rubber(PressureShape::kHertz, 100.0), 0.1), 3.06399705e-1, 9));
+  EXPECT_TRUE(
+      rounds_to(torque(twisted_rubber(PressureShape::kHertz, 10.0, 0.3), 0.01), 3.81729480e-3, 9));
 }
 
 TEST(LubkinTest, MasterCurveMatchesPrintedValues) {
   const double reduced[] = {0.25, 0.5, 1.0, 2.0, 4.0};
   const double printed[] = {0.22402568, 0.40220997, 0.65271792, 0.89174643, 0.99169372};
-  const LubkinContact contact = rubber();
+  const LubkinContact contact = twisted_rubber();
   const double natural = saturated_torque(contact) / torsional_stiffness(contact);
   for (int i = 0; i < 5; ++i) {
     EXPECT_TRUE(rounds_to(torque(contact, reduced[i] * natural) / saturated_torque(contact),
@@ -154,11 +148,11 @@ TEST(LubkinTest, MasterCurveMatchesPrintedValues) {
 }
 
 TEST(LubkinTest, LossPerCycleMatchesPrintedValuesAndTheLoop) {
-  const LubkinContact contact = rubber();
+  const LubkinContact contact = twisted_rubber();
   EXPECT_TRUE(rounds_to(torsional_loss_per_cycle(contact, 0.02), 4.87825740e-5, 9));
   EXPECT_TRUE(rounds_to(torsional_loss_per_cycle(contact, 0.1), 2.89708735e-3, 9));
-  for (const PressureShape shape : kShapes) {
-    const LubkinContact other = rubber(10.0, 0.75, shape);
+  for (const PressureShape shape : kPressureShapes) {
+    const LubkinContact other = twisted_rubber(shape);
     const double amplitude = 0.08;
     const double work = integrate_tanh_sinh(
         [&](double phi, double, double) { return torque(other, phi); }, 0.0, amplitude);
@@ -171,8 +165,8 @@ TEST(LubkinTest, LossPerCycleMatchesPrintedValuesAndTheLoop) {
 }
 
 TEST(LubkinTest, SlipTwistIsTheAbelIntegralOfThePressure) {
-  for (const PressureShape shape : kShapes) {
-    const LubkinContact contact = rubber(10.0, 0.75, shape);
+  for (const PressureShape shape : kPressureShapes) {
+    const LubkinContact contact = twisted_rubber(shape);
     const double a = contact.radius;
     for (const double share : {0.01, 0.3, 0.7, 0.99}) {
       const double x = share * a;
@@ -196,7 +190,7 @@ TEST(LubkinTest, SlipTwistIsTheAbelIntegralOfThePressure) {
 TEST(LubkinTest, SmallSlipFollowsDeresiewicz) {
   // G a^2 phi / (mu F) = (1 - s)(3 - s) / 8, s = sqrt(1 - 1.5 T / (mu F a)) for slip in a thin
   // ring: its first neglected term is of the square of T / T_sat.
-  const LubkinContact contact = rubber();
+  const LubkinContact contact = twisted_rubber();
   const double scale = contact.friction * contact.normal_force;
   for (const double twist : {1e-5, 1e-4, 1e-3}) {
     const double s = std::sqrt(1.0 - 1.5 * torque(contact, twist) / (scale * contact.radius));
@@ -208,8 +202,8 @@ TEST(LubkinTest, SmallSlipFollowsDeresiewicz) {
 }
 
 TEST(LubkinTest, HugeAndTinyTwistsReachTheLimits) {
-  for (const PressureShape shape : kShapes) {
-    const LubkinContact contact = rubber(10.0, 0.75, shape);
+  for (const PressureShape shape : kPressureShapes) {
+    const LubkinContact contact = twisted_rubber(shape);
     for (const double twist : {50.0, 1e6}) {
       EXPECT_NEAR(torque(contact, twist) / saturated_torque(contact), 1.0, 1e-12) << twist;
       EXPECT_TRUE(std::isfinite(twist_displacement(contact, twist, 1.5 * contact.radius)));
@@ -249,7 +243,7 @@ struct SpringFoundation {
 };
 
 TEST(LubkinTest, HistoryOfManyTurnsEqualsSpringsWithFriction) {
-  const LubkinContact contact = rubber();
+  const LubkinContact contact = twisted_rubber();
   const auto loading = [&](double twist) {
     return torque(contact, twist);
   };
@@ -270,7 +264,7 @@ TEST(LubkinTest, HistoryOfManyTurnsEqualsSpringsWithFriction) {
 }
 
 TEST(LubkinTest, TurnGivesTheSameAsTheHistory) {
-  const LubkinContact contact = rubber();
+  const LubkinContact contact = twisted_rubber();
   const auto loading = [&](double twist) {
     return torque(contact, twist);
   };

@@ -10,22 +10,15 @@
 #include "tests/reference/exact/quadrature.hpp"
 #include "tests/reference/exact/reissner_sagoci.hpp"
 #include "tests/reference/printed_number.hpp"
+#include "tests/reference/twisted_rubber.hpp"
 
 namespace torsion::reference {
 namespace {
 
 using std::numbers::pi;
 
-constexpr PressureShape kShapes[] = {PressureShape::kWinkler, PressureShape::kHertz,
-                                     PressureShape::kUniform, PressureShape::kFlatPunch};
-
-LubkinContact rubber(PressureShape shape = PressureShape::kHertz) {
-  const HertzSphere sphere = hertz_sphere_at_force(0.05, contact_modulus(3e6, 0.5), 10.0);
-  return {shape, 10.0, 0.75, sphere.radius, shear_modulus(3e6, 0.5)};
-}
-
 TEST(TwistFieldTest, MatchesPrintedValues) {
-  const LubkinContact contact = rubber();
+  const LubkinContact contact = twisted_rubber();
   const double radii[] = {0.3, 0.6, 0.8, 1.0, 1.1, 1.5, 2.0, 3.0};
   const double printed[] = {1.0, 1.0, 0.804579, 0.374067, 0.247259, 0.083637, 0.033354, 0.009540};
   for (int i = 0; i < 8; ++i) {
@@ -35,8 +28,8 @@ TEST(TwistFieldTest, MatchesPrintedValues) {
 }
 
 TEST(TwistFieldTest, IsARigidTurnWhereItSticksForEveryPressure) {
-  for (const PressureShape shape : kShapes) {
-    const LubkinContact contact = rubber(shape);
+  for (const PressureShape shape : kPressureShapes) {
+    const LubkinContact contact = twisted_rubber(shape);
     for (const double twist : {0.01, 0.05, 0.2}) {
       const double c = stick_radius(contact, twist);
       for (const double share : {0.1, 0.5, 0.999}) {
@@ -50,8 +43,8 @@ TEST(TwistFieldTest, IsARigidTurnWhereItSticksForEveryPressure) {
 TEST(TwistFieldTest, LagsBehindTheToolWhereItSlips) {
   // Friction does positive work only if the body's surface has turned less than the tool over every
   // slipping ring.
-  for (const PressureShape shape : kShapes) {
-    const LubkinContact contact = rubber(shape);
+  for (const PressureShape shape : kPressureShapes) {
+    const LubkinContact contact = twisted_rubber(shape);
     const double c = stick_radius(contact, 0.06);
     double before = 1.0;
     for (int i = 1; i <= 20; ++i) {
@@ -68,8 +61,8 @@ TEST(TwistFieldTest, LagsBehindTheToolWhereItSlips) {
 TEST(TwistFieldTest, TractionOfTheDiscsObeysFrictionWhereItSlips) {
   // The discs were weighted so that their tractions add up to mu p outside the stick radius: their
   // sum is formed here anew, over s from r to the rim, without the shortcut of twist_traction().
-  for (const PressureShape shape : kShapes) {
-    const LubkinContact contact = rubber(shape);
+  for (const PressureShape shape : kPressureShapes) {
+    const LubkinContact contact = twisted_rubber(shape);
     const double a = contact.radius;
     for (const double share : {0.2, 0.6, 0.95}) {
       const double r = share * a;
@@ -88,8 +81,8 @@ TEST(TwistFieldTest, TractionOfTheDiscsObeysFrictionWhereItSlips) {
 }
 
 TEST(TwistFieldTest, TractionCarriesTheTorqueAndStaysUnderFriction) {
-  for (const PressureShape shape : kShapes) {
-    const LubkinContact contact = rubber(shape);
+  for (const PressureShape shape : kPressureShapes) {
+    const LubkinContact contact = twisted_rubber(shape);
     const double a = contact.radius;
     for (const double twist : {0.02, 0.08}) {
       const double c = stick_radius(contact, twist);
@@ -112,7 +105,7 @@ TEST(TwistFieldTest, TractionCarriesTheTorqueAndStaysUnderFriction) {
 }
 
 TEST(TwistFieldTest, SlopeAtTheSurfaceIsTheTractionAndThereIsNoneOutside) {
-  const LubkinContact contact = rubber();
+  const LubkinContact contact = twisted_rubber();
   const double a = contact.radius;
   const double twist = 0.05;
   for (const double share : {0.3, 0.5, 0.85, 1.3, 2.0}) {
@@ -131,8 +124,8 @@ TEST(TwistFieldTest, SlopeAtTheSurfaceIsTheTractionAndThereIsNoneOutside) {
 }
 
 TEST(TwistFieldTest, FarFieldIsThatOfTheTorque) {
-  for (const PressureShape shape : kShapes) {
-    const LubkinContact contact = rubber(shape);
+  for (const PressureShape shape : kPressureShapes) {
+    const LubkinContact contact = twisted_rubber(shape);
     const double distance = 300.0 * contact.radius;
     const double far =
         torque(contact, 0.07) * 0.6 / (4.0 * pi * contact.shear_modulus * distance * distance);
@@ -142,8 +135,8 @@ TEST(TwistFieldTest, FarFieldIsThatOfTheTorque) {
 }
 
 TEST(TwistFieldTest, IsContinuousAcrossStickRadiusAndRim) {
-  for (const PressureShape shape : kShapes) {
-    const LubkinContact contact = rubber(shape);
+  for (const PressureShape shape : kPressureShapes) {
+    const LubkinContact contact = twisted_rubber(shape);
     const double twist = 0.05;
     for (const double r : {stick_radius(contact, twist), contact.radius}) {
       // The field of a disc has a vertical slope of sqrt at its rim at most: 1e-9 aside it changes
@@ -155,7 +148,7 @@ TEST(TwistFieldTest, IsContinuousAcrossStickRadiusAndRim) {
 }
 
 TEST(TwistFieldTest, ReversesToItsMirrorImage) {
-  const LubkinContact contact = rubber();
+  const LubkinContact contact = twisted_rubber();
   for (const double share : {0.5, 0.9, 1.4}) {
     const double r = share * contact.radius;
     EXPECT_NEAR(twist_displacement_after_turn(contact, 0.06, -0.06, r),

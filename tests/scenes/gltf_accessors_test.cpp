@@ -1,7 +1,5 @@
 #include "scenes/gltf_accessors.hpp"
 
-#include <cstring>
-
 #include <gtest/gtest.h>
 
 #include "scenes/gltf_file.hpp"
@@ -11,13 +9,6 @@ namespace torsion::test {
 namespace {
 
 using nlohmann::json;
-
-template <class T>
-std::string bytes_of(const std::vector<T>& values) {
-  std::string bytes(values.size() * sizeof(T), '\0');
-  std::memcpy(bytes.data(), values.data(), bytes.size());
-  return bytes;
-}
 
 /// A file that holds one accessor, checked.
 tinygltf::Model model_with(GltfBuilder& builder, const json& accessor) {

@@ -34,13 +34,6 @@ std::string word(std::uint32_t value) {
   return bytes;
 }
 
-template <class T>
-std::string bytes_of(const std::vector<T>& values) {
-  std::string bytes(values.size() * sizeof(T), '\0');
-  std::memcpy(bytes.data(), values.data(), bytes.size());
-  return bytes;
-}
-
 /// Appends to an array of `document`, which it makes where there is none. Returns the row.
 int append(json& document, const char* array, const json& element) {
   document[array].push_back(element);

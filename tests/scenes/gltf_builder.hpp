@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -12,6 +13,14 @@
 #include "scenes/load_gltf.hpp"
 
 namespace torsion::test {
+
+/// The values as a glTF file holds them.
+template <class T>
+std::string bytes_of(const std::vector<T>& values) {
+  std::string bytes(values.size() * sizeof(T), '\0');
+  std::memcpy(bytes.data(), values.data(), bytes.size());
+  return bytes;
+}
 
 /// Writes small glTF files. `document` is open, so that a test can put one fault into a good scene.
 class GltfBuilder {

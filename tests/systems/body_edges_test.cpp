@@ -10,14 +10,15 @@
 
 #include "systems/contact_models/paper.hpp"
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/directions.hpp"
 
 namespace torsion {
 namespace {
 
 using test::Hand;
+using test::kUp;
+using test::kUpright;
 
-const glm::dquat kUpright(1.0, 0.0, 0.0, 0.0);
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
 constexpr double kHalfWidth = 0.03;  // m, of the body along the rod
 constexpr double kRodRadius = 0.012;
 

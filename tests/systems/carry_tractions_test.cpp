@@ -4,14 +4,15 @@
 
 #include "tests/reference/paper_shaft.hpp"
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/directions.hpp"
 
 namespace torsion {
 namespace {
 
 using reference::PaperShaft;
 using test::Hand;
+using test::kUp;
 
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
 constexpr double kDeep = 8e-4;     // m
 constexpr double kShallow = 4e-4;  // m: the disc's radius is deep's over the square root of 2
 

@@ -7,14 +7,14 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/contact_scenes.hpp"
+#include "tests/systems/soft_bodies.hpp"
 
 namespace torsion {
 namespace {
 
 using test::Hand;
-
-constexpr double kShear = 1e5;  // Pa
-constexpr double kBall = 0.02;  // m
+using test::kSmallBallRadius;
+using test::kSoftShearModulus;
 
 /// A box of these half sides on its fixed lower face, and a tool above the middle of its top.
 SceneDescription box_scene(const glm::dvec3& half, std::vector<PartDescription> tool,
@@ -26,7 +26,7 @@ SceneDescription box_scene(const glm::dvec3& half, std::vector<PartDescription> 
   body.fixed.point = glm::dvec3(0.0);
   body.fixed.normal = {0.0, 1.0, 0.0};
   body.elasticity.poisson_ratio = 0.5;
-  body.elasticity.youngs_modulus = 3.0 * kShear;
+  body.elasticity.youngs_modulus = 3.0 * kSoftShearModulus;
   body.friction = {5.0, 5.0};
   body.models.contact = contact;
   body.models.body = body_model;
@@ -36,7 +36,7 @@ SceneDescription box_scene(const glm::dvec3& half, std::vector<PartDescription> 
 }
 
 PartDescription ball_at(double x) {
-  return test::make_part(ShapeKind::kSphere, glm::dvec3(kBall),
+  return test::make_part(ShapeKind::kSphere, glm::dvec3(kSmallBallRadius),
                          {glm::dvec3(x, 0.0, 0.0), glm::dquat(1.0, 0.0, 0.0, 0.0)});
 }
 
@@ -45,7 +45,7 @@ Hand hand_over(const SceneDescription& scene, double height) {
   PrepareOptions options;
   options.settings.grid_side = 12;
   Hand hand(scene, options);
-  hand.step_to({{glm::dvec3(0.0, height + kBall, 0.0), glm::dquat(1.0, 0.0, 0.0, 0.0)}});
+  hand.step_to({{glm::dvec3(0.0, height + kSmallBallRadius, 0.0), glm::dquat(1.0, 0.0, 0.0, 0.0)}});
   return hand;
 }
 
@@ -69,9 +69,9 @@ TEST(ComplianceTest, TwistOfAColumnAndOfItsContactAdd) {
   hand.move(glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), kTurn, 100);
   hand.move(glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 20);
   const double a = hand.world().regions.at<RegionGeometry>(0).radius;
-  const double disc = 16.0 / 3.0 * kShear * a * a * a;
+  const double disc = 16.0 / 3.0 * kSoftShearModulus * a * a * a;
   const double length = 2.0 * half.y - 0.35 * side;
-  const double bar = 0.140577 * kShear * std::pow(side, 4) / length;
+  const double bar = 0.140577 * kSoftShearModulus * std::pow(side, 4) / length;
   const double in_series = disc * bar / (disc + bar);
   ASSERT_GT(disc / bar, 0.05);
   EXPECT_NEAR(-hand.wrench().torque.y / kTurn / in_series, 1.0, 0.005 + 0.04 * disc / bar);
@@ -110,7 +110,7 @@ TEST(ComplianceTest, AHigherColumnSinksByTheStretchOfWhatIsAdded) {
     hand.move(glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 50);
     return -hand.world().regions.at<RegionSupport>(0).translation.y / normal_force(hand);
   };
-  const double bar = 1.0 / (3.0 * kShear * 0.04 * 0.04);  // 1/N: E A, E = 3 G
+  const double bar = 1.0 / (3.0 * kSoftShearModulus * 0.04 * 0.04);  // 1/N: E A, E = 3 G
   const double low = compliance_of(0.08);
   const double high = compliance_of(0.16);
   EXPECT_NEAR((high - low) / (0.08 * bar), 1.0, 0.015);
@@ -163,7 +163,8 @@ TEST(ComplianceTest, StaysCalmOnALayerAndOnASoftColumn) {
       hand.move(glm::dvec3(0.0, -1e-3, 0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 100);
       std::mt19937 random(7);
       std::uniform_real_distribution<double> part(-1.0, 1.0);
-      const double hertz = 16.0 / 3.0 * kShear * std::sqrt(kBall) * std::pow(1e-3, 1.5);
+      const double hertz =
+          16.0 / 3.0 * kSoftShearModulus * std::sqrt(kSmallBallRadius) * std::pow(1e-3, 1.5);
       for (int leg = 0; leg < 20; ++leg) {
         const glm::dvec3 way(1e-3 * part(random), 0.0, 1e-3 * part(random));
         hand.move(way, glm::dvec3(0.0, 1.0, 0.0), 0.3 * part(random), 50);

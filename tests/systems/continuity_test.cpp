@@ -4,14 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/directions.hpp"
 
 namespace torsion {
 namespace {
 
 using test::Hand;
-
-const glm::dquat kUpright(1.0, 0.0, 0.0, 0.0);
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
+using test::kUp;
+using test::kUpright;
 
 /// A motion of tool 0 over the time 0 to 1.
 using Path = std::function<Pose(double)>;

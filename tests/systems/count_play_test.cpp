@@ -8,11 +8,13 @@
 #include <gtest/gtest.h>
 
 #include "systems/rotation_vector.hpp"
+#include "tests/systems/held_tool.hpp"
 
 namespace torsion {
 namespace {
 
-constexpr double kPeriod = 1e-3;     // s
+using test::kPeriod;
+
 constexpr double kCount = 1e-4;      // m
 constexpr double kTurnCount = 1e-2;  // rad
 const glm::dquat kNoTurn(1.0, 0.0, 0.0, 0.0);

@@ -5,8 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/systems/held_tool.hpp"
+
 namespace torsion {
 namespace {
+
+using test::kPeriod;
 
 /// Energy that a spring K, sampled at T and held, gives while it is pressed slowly to and fro, less
 /// what a damper of b takes, J. Below zero a passive device would be a source of energy.
@@ -26,7 +30,6 @@ double taken_by(double stiffness, double damping, double period) {
 
 TEST(CouplingChoiceTest, ExperimentFindsColgatesBound) {
   // b > K T / 2: the largest stiffness at which the hand gets back no more than it gave.
-  constexpr double kPeriod = 1e-3;
   for (const double damping : {0.005, 0.5, 5.0}) {
     double low = 0.0;
     double high = 1e6;

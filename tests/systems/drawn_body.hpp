@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/surface_field.hpp"
+#include "tests/support/directions.hpp"
 #include "tests/systems/body_scene.hpp"
 
 namespace torsion {
@@ -55,7 +56,7 @@ struct Drawn {
   std::vector<glm::vec4> positions;
 };
 
-inline constexpr glm::dvec3 kUp(0.0, 1.0, 0.0);
+using test::kUp;
 
 inline Drawn cube() {
   return Drawn(exact_body(ShapeKind::kBox, glm::dvec3(0.05), FixedKind::kFace, 20));

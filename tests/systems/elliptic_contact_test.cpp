@@ -122,15 +122,15 @@ struct Paraboloid {
   double angle = 0.0;
 };
 
-constexpr std::uint32_t kSide = 12;
+constexpr std::uint32_t kOverlapSide = 12;
 
 Overlap overlap_of(const Paraboloid& shape, const glm::dvec2& half_size) {
   Overlap overlap;
   overlap.frame.half_size = half_size;
-  for (std::uint32_t j = 0; j < kSide; ++j) {
-    for (std::uint32_t i = 0; i < kSide; ++i) {
+  for (std::uint32_t j = 0; j < kOverlapSide; ++j) {
+    for (std::uint32_t i = 0; i < kOverlapSide; ++i) {
       const glm::dvec2 place =
-          half_size * ((2.0 * glm::dvec2(i, j) + 1.0) / static_cast<double>(kSide) - 1.0);
+          half_size * ((2.0 * glm::dvec2(i, j) + 1.0) / static_cast<double>(kOverlapSide) - 1.0);
       const glm::dvec2 arm = place - shape.apex;
       const double along = std::cos(shape.angle) * arm.x + std::sin(shape.angle) * arm.y;
       const double across = std::cos(shape.angle) * arm.y - std::sin(shape.angle) * arm.x;
@@ -150,7 +150,7 @@ TEST(ContactShapeTest, FindsAParaboloidWhereverItLies) {
   for (const double angle : {0.0, 0.4, 1.2, 2.5}) {
     const Paraboloid shape{kDepth, {3e-4, -5e-4}, 8.0, 24.0, angle};
     const Overlap overlap = overlap_of(shape, {1.3e-2, 1.1e-2});
-    const ContactShape found = fit_contact_shape(overlap.frame, kSide, overlap.cells);
+    const ContactShape found = fit_contact_shape(overlap.frame, kOverlapSide, overlap.cells);
     EXPECT_NEAR(found.depth / shape.depth, 1.0, 1e-6);
     EXPECT_NEAR(std::min(found.curvature_1, found.curvature_2), 8.0, 8e-6);
     EXPECT_NEAR(std::max(found.curvature_1, found.curvature_2), 24.0, 24e-6);
@@ -161,7 +161,7 @@ TEST(ContactShapeTest, FindsAParaboloidWhereverItLies) {
 
 TEST(ContactShapeTest, AFlatFaceHasNoCurvatureAndItsApexInTheMiddle) {
   Overlap overlap = overlap_of({kDepth, {0.0, 0.0}, 0.0, 0.0, 0.0}, {1e-2, 1e-2});
-  const ContactShape found = fit_contact_shape(overlap.frame, kSide, overlap.cells);
+  const ContactShape found = fit_contact_shape(overlap.frame, kOverlapSide, overlap.cells);
   EXPECT_EQ(found.curvature_1, 0.0);
   EXPECT_EQ(found.curvature_2, 0.0);
   EXPECT_NEAR(found.depth / kDepth, 1.0, 1e-9);
@@ -171,7 +171,7 @@ TEST(ContactShapeTest, AFlatFaceHasNoCurvatureAndItsApexInTheMiddle) {
 
 TEST(ContactShapeTest, WithoutOverlapThereIsNoShape) {
   Overlap overlap = overlap_of({-kDepth, {0.0, 0.0}, 20.0, 20.0, 0.0}, {1e-2, 1e-2});
-  EXPECT_EQ(fit_contact_shape(overlap.frame, kSide, overlap.cells).depth, 0.0);
+  EXPECT_EQ(fit_contact_shape(overlap.frame, kOverlapSide, overlap.cells).depth, 0.0);
 }
 
 }  // namespace

@@ -6,14 +6,15 @@
 #include "ecs/hash.hpp"
 #include "systems/fault.hpp"
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/directions.hpp"
 
 namespace torsion {
 namespace {
 
 using test::Hand;
+using test::kUp;
+using test::kUpright;
 
-const glm::dquat kUpright(1.0, 0.0, 0.0, 0.0);
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Hand pressed() {

@@ -14,7 +14,7 @@
 namespace torsion {
 namespace {
 
-const glm::dvec3 kUp(0.0, 0.0, 1.0);
+const glm::dvec3 kNormal(0.0, 0.0, 1.0);
 
 /// Ports on z = 0, at random places of the square of half side 1, and no compliance yet.
 struct Body {
@@ -25,7 +25,7 @@ struct Body {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> place(-1.0, 1.0);
     for (std::size_t i = 0; i < count; ++i) {
-      ports.push_back({{place(random), place(random), 0.0}, kUp});
+      ports.push_back({{place(random), place(random), 0.0}, kNormal});
     }
   }
 
@@ -34,7 +34,7 @@ struct Body {
 
 ContactEllipse ellipse_at(const glm::dvec3& center, double a, double b) {
   const glm::dvec3 way = glm::normalize(glm::dvec3(0.6, 0.8, 0.0));
-  return {center, a * way, b * glm::cross(kUp, way), kUp, std::sqrt(a * b)};
+  return {center, a * way, b * glm::cross(kNormal, way), kNormal, std::sqrt(a * b)};
 }
 
 PortVectors displacements_of(const Body& body, const Footing& footing,
@@ -134,7 +134,7 @@ TEST(FootingTest, BendingOfAQuarticIsFound) {
   SupportMoments moments{};
   const auto terms = support_terms(coordinates_in(footing, loaded));
   for (std::size_t k = 0; k < kSupportTerms; ++k) {
-    moments[k] = kUp * terms[k];
+    moments[k] = kNormal * terms[k];
   }
   PortVectors forces;
   PortVectors displacements;

@@ -8,11 +8,12 @@
 #include <gtest/gtest.h>
 
 #include "systems/rotation_vector.hpp"
+#include "tests/systems/held_tool.hpp"
 
 namespace torsion {
 namespace {
 
-constexpr double kPeriod = 1e-3;  // s
+using test::kPeriod;
 
 /// A device at a kilohertz, and a physics thread that holds the tool where the test says.
 struct Rig {

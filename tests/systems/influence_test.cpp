@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::uint32_t kSide = 12;
+constexpr std::uint32_t kTableSide = 12;
 
 /// Displacements at a place (x, y) off a unit point load on a half-space with G = 1, z into the
 /// body. Source: Boussinesq's and Cerruti's solutions, Johnson, Contact Mechanics, 1985, (3.18) and
@@ -92,15 +92,15 @@ constexpr InfluenceKind kKinds[] = {
     InfluenceKind::kZX, InfluenceKind::kZY, InfluenceKind::kXXLessXY, InfluenceKind::kYYLessXY};
 
 std::vector<double> filled(double nu) {
-  std::vector<double> values(influence_count(kSide));
-  fill_influences(nu, kSide, values);
+  std::vector<double> values(influence_count(kTableSide));
+  fill_influences(nu, kTableSide, values);
   return values;
 }
 
 /// The table's value at a cell `di` columns and `dj` rows away from the loaded one.
 double at(const InfluenceTables& tables, InfluenceKind kind, int di, int dj) {
   const auto source = [](int d) {
-    return static_cast<std::uint32_t>(d < 0 ? kSide - 1 : 0);
+    return static_cast<std::uint32_t>(d < 0 ? kTableSide - 1 : 0);
   };
   const auto moved = [](std::uint32_t from, int d) {
     return static_cast<std::uint32_t>(static_cast<int>(from) + d);
@@ -127,7 +127,7 @@ TEST(InfluenceTest, EveryNearCellHoldsTheIntegralOfThePointLoad) {
   for (const double nu : {0.0, 0.3, 0.45, 0.5}) {
     const std::vector<double> values = filled(nu);
     for (std::int32_t aspect = -kMostAspect; aspect <= kMostAspect; ++aspect) {
-      const InfluenceTables tables = influence_tables(values, kSide, aspect);
+      const InfluenceTables tables = influence_tables(values, kTableSide, aspect);
       const double width = std::ldexp(1.0, -aspect);  // along y, in lengths along x
       const Rectangle cell{0.5, 0.5 * width};
       for (const InfluenceKind kind : kKinds) {
@@ -145,7 +145,7 @@ TEST(InfluenceTest, EveryNearCellHoldsTheIntegralOfThePointLoad) {
 
 TEST(InfluenceTest, FarCellsSeeAPointLoad) {
   const std::vector<double> values = filled(0.3);
-  const InfluenceTables tables = influence_tables(values, kSide, 0);
+  const InfluenceTables tables = influence_tables(values, kTableSide, 0);
   for (const auto& [di, dj] : {std::pair{8, 3}, {-9, 9}, {11, -11}, {-7, -10}}) {
     for (const InfluenceKind kind : kKinds) {
       // The next term of the expansion is the cell's second moment, h^2 / 12 each way, times
@@ -163,8 +163,8 @@ TEST(InfluenceTest, TheSameWorkIsDoneEitherWayRound) {
   // pairs of equal cells this is a symmetry in the offset.
   const std::vector<double> values = filled(0.3);
   for (std::int32_t aspect = -kMostAspect; aspect <= kMostAspect; ++aspect) {
-    const InfluenceTables tables = influence_tables(values, kSide, aspect);
-    const int reach = static_cast<int>(kSide) - 1;
+    const InfluenceTables tables = influence_tables(values, kTableSide, aspect);
+    const int reach = static_cast<int>(kTableSide) - 1;
     for (int di = -reach; di <= reach; ++di) {
       for (int dj = -reach; dj <= reach; ++dj) {
         for (const InfluenceKind kind : kKinds) {
@@ -181,8 +181,8 @@ TEST(InfluenceTest, TheSameWorkIsDoneEitherWayRound) {
 
 TEST(InfluenceTest, IncompressiblePressureMovesNothingSideways) {
   const std::vector<double> values = filled(0.5);
-  const InfluenceTables tables = influence_tables(values, kSide, 1);
-  const int reach = static_cast<int>(kSide) - 1;
+  const InfluenceTables tables = influence_tables(values, kTableSide, 1);
+  const int reach = static_cast<int>(kTableSide) - 1;
   for (int di = -reach; di <= reach; ++di) {
     for (int dj = -reach; dj <= reach; ++dj) {
       EXPECT_EQ(at(tables, InfluenceKind::kZX, di, dj), 0.0);

@@ -2,13 +2,13 @@
 
 #include "systems/frames.hpp"
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/directions.hpp"
 
 namespace torsion {
 namespace {
 
 using test::Hand;
-
-const glm::dquat kUpright(1.0, 0.0, 0.0, 0.0);
+using test::kUpright;
 
 /// A motion that presses, slides and twists.
 Pose pose_at(double t) {

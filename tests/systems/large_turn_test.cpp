@@ -11,17 +11,19 @@
 #include "systems/body_models/anchor_motions.hpp"
 #include "systems/surface_field.hpp"
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/directions.hpp"
+#include "tests/systems/soft_bodies.hpp"
 
 namespace torsion {
 namespace {
 
 using test::Hand;
+using test::kSoftShearModulus;
+using test::kUp;
 
-constexpr double kShear = 1e5;    // Pa
-constexpr double kRadius = 0.02;  // m: of the column
-constexpr double kHeight = 0.12;  // m
+constexpr double kColumnRadius = 0.02;  // m: of the column
+constexpr double kColumnHeight = 0.12;  // m
 constexpr double kContact = 0.008;
-constexpr glm::dvec3 kUp(0.0, 1.0, 0.0);
 
 constexpr std::uint32_t kRings = 40;
 constexpr std::uint32_t kAround = 36;
@@ -37,11 +39,11 @@ DrawMesh column_mesh() {
   };
   for (std::uint32_t ring = 0; ring <= kRings; ++ring) {
     for (std::uint32_t k = 0; k < kAround; ++k) {
-      add(kRadius, kHeight * ring / kRings, 2.0 * std::numbers::pi * k / kAround);
+      add(kColumnRadius, kColumnHeight * ring / kRings, 2.0 * std::numbers::pi * k / kAround);
     }
   }
   add(0.0, 0.0, 0.0);
-  add(0.0, kHeight, 0.0);
+  add(0.0, kColumnHeight, 0.0);
   const std::uint32_t top = kRings * kAround;
   const std::uint32_t middles = top + kAround;
   for (std::uint32_t k = 0; k < kAround; ++k) {
@@ -60,14 +62,14 @@ DrawMesh column_mesh() {
 
 SceneDescription column_scene() {
   SceneDescription scene;
-  BodyDescription body =
-      test::make_body({test::make_part(ShapeKind::kCylinder, {kRadius, 0.5 * kHeight, kRadius},
-                                       {0.5 * kHeight * kUp, glm::dquat(1.0, 0.0, 0.0, 0.0)})});
+  BodyDescription body = test::make_body(
+      {test::make_part(ShapeKind::kCylinder, {kColumnRadius, 0.5 * kColumnHeight, kColumnRadius},
+                       {0.5 * kColumnHeight * kUp, glm::dquat(1.0, 0.0, 0.0, 0.0)})});
   body.fixed.kind = FixedKind::kFace;
   body.fixed.point = glm::dvec3(0.0);
   body.fixed.normal = kUp;
   body.elasticity.poisson_ratio = 0.5;
-  body.elasticity.youngs_modulus = 3.0 * kShear;
+  body.elasticity.youngs_modulus = 3.0 * kSoftShearModulus;
   body.models = {ContactModel::kMdr, BodyModel::kCompliance};
   body.draw = column_mesh();
   scene.bodies.push_back(std::move(body));
@@ -79,7 +81,7 @@ SceneDescription column_scene() {
 class LargeTurnTest : public ::testing::Test {
  protected:
   LargeTurnTest() : scene_(column_scene()), hand_(scene_) {
-    hand_.step_to({{(kHeight + 0.02) * kUp, glm::dquat(1.0, 0.0, 0.0, 0.0)}});
+    hand_.step_to({{(kColumnHeight + 0.02) * kUp, glm::dquat(1.0, 0.0, 0.0, 0.0)}});
     hand_.move(-1e-3 * kUp, kUp, 0.0, 10);
     frame_ = prepare_frame(scene_, hand_.world());
     snapshot_.reserve(hand_.world());
@@ -91,7 +93,7 @@ class LargeTurnTest : public ::testing::Test {
     World& world = hand_.simulation().world;
     ASSERT_EQ(world.regions.size(), 1U);
     RegionFrame& grid = world.regions.at<RegionFrame>(0);
-    grid.origin = kHeight * kUp;
+    grid.origin = kColumnHeight * kUp;
     grid.normal = kUp;
     grid.tangent_x = {1.0, 0.0, 0.0};
     grid.tangent_y = {0.0, 0.0, -1.0};
@@ -107,7 +109,8 @@ class LargeTurnTest : public ::testing::Test {
     RegionField& field = world.regions.at<RegionField>(0);
     field = RegionField{};
     field.radius = kContact;  // a bonded disc: Reissner and Sagoci, 1944
-    field.turn[kFieldDiscs - 1] = couple / (16.0 / 3.0 * kShear * std::pow(kContact, 3.0));
+    field.turn[kFieldDiscs - 1] =
+        couple / (16.0 / 3.0 * kSoftShearModulus * std::pow(kContact, 3.0));
     StepContext context{world, hand_.poses, *hand_.simulation().scratch};
     anchor_motions(context);
     capture(world, snapshot_);
@@ -137,8 +140,8 @@ class LargeTurnTest : public ::testing::Test {
     const glm::dvec3 middle = middle_of(ring);
     double most = 0.0;
     for (std::uint32_t k = 0; k < kAround; ++k) {
-      most = std::max(most,
-                      std::abs(glm::distance(moved(ring * kAround + k), middle) / kRadius - 1.0));
+      most = std::max(
+          most, std::abs(glm::distance(moved(ring * kAround + k), middle) / kColumnRadius - 1.0));
     }
     return most;
   }
@@ -162,8 +165,8 @@ class LargeTurnTest : public ::testing::Test {
 
 /// Saint-Venant's couple for a turn of the top of a round bar, J = pi a^4 / 2.
 double couple_for(double turn) {
-  const double polar = 0.5 * std::numbers::pi * std::pow(kRadius, 4.0);
-  return turn * kShear * polar / kHeight;
+  const double polar = 0.5 * std::numbers::pi * std::pow(kColumnRadius, 4.0);
+  return turn * kSoftShearModulus * polar / kColumnHeight;
 }
 
 constexpr double kQuarter = 0.5 * std::numbers::pi;
@@ -177,10 +180,11 @@ TEST_F(LargeTurnTest, SectionsOfAColumnTurnedBy90DegreesKeepTheirRadius) {
   draw(glm::dvec3(0.0), couple_for(kQuarter));
   for (std::uint32_t ring = 0; ring <= kRings; ++ring) {
     EXPECT_LT(swelling_of(ring), ring < kEnd ? 0.003 : 0.015) << "ring " << ring;
-    EXPECT_LT(glm::distance(middle_of(ring), kHeight * ring / kRings * kUp), 0.01 * kRadius);
+    EXPECT_LT(glm::distance(middle_of(ring), kColumnHeight * ring / kRings * kUp),
+              0.01 * kColumnRadius);
   }
-  const double column = 0.5 * kAround * std::sin(2.0 * std::numbers::pi / kAround) * kRadius *
-                        kRadius * kHeight;  // a prism with kAround sides
+  const double column = 0.5 * kAround * std::sin(2.0 * std::numbers::pi / kAround) * kColumnRadius *
+                        kColumnRadius * kColumnHeight;  // a prism with kAround sides
   // Sections turn against each other, so the flat triangles between them cut off some of the
   // column: a chord between two rings, pi / 2 / kRings apart at most, (pi / 80)^2 / 2 = 0.08 %.
   EXPECT_NEAR(volume() / column, 1.0, 0.015);
@@ -190,13 +194,13 @@ TEST_F(LargeTurnTest, SectionsTurnAsFarAsSaintVenantSays) {
   draw(glm::dvec3(0.0), couple_for(kQuarter));
   // Away from the ends, where the couple and the clamp are felt.
   for (std::uint32_t ring = 8; ring <= 28; ++ring) {
-    const double y = kHeight * ring / kRings;
+    const double y = kColumnHeight * ring / kRings;
     for (std::uint32_t k = 0; k < kAround; ++k) {
       const glm::dvec3 from = rest(ring * kAround + k);
       const glm::dvec3 to = moved(ring * kAround + k);
       const double turned =
           std::atan2(from.z * to.x - from.x * to.z, from.x * to.x + from.z * to.z);
-      EXPECT_NEAR(turned, kQuarter * y / kHeight, 0.06 * kQuarter) << "y = " << y;
+      EXPECT_NEAR(turned, kQuarter * y / kColumnHeight, 0.06 * kQuarter) << "y = " << y;
     }
   }
 }
@@ -217,7 +221,7 @@ TEST_F(LargeTurnTest, SmallTurnsAreTheLinearField) {
       const glm::dvec3 linear = slope[v] * turn;
       // Under the contact the half-space turns by more than the column.
       const double angle = std::abs(static_cast<double>(frame_.twist.at<TwistAngle>(v).angle));
-      const double bound = 0.5 * angle * angle * kRadius * 1.1 + 4e-8 * turn / kSmall;
+      const double bound = 0.5 * angle * angle * kColumnRadius * 1.1 + 4e-8 * turn / kSmall;
       EXPECT_NEAR(glm::distance(moved(v) - rest(v), linear), 0.0, bound) << turn;
     }
   }
@@ -236,7 +240,7 @@ TEST_F(LargeTurnTest, ATurnDoesNotTurnWhatAForceDoes) {
   }
   const std::uint32_t contact = vertices() - 1;
   const glm::dvec3 gone = moved(contact) - rest(contact);
-  EXPECT_GT(gone.x, 0.1 * kRadius);
+  EXPECT_GT(gone.x, 0.1 * kColumnRadius);
   // What finite elements say a couple does to the middle of its region is small and not nothing.
   draw(glm::dvec3(0.0), couple_for(kQuarter));
   const glm::dvec3 by_couple = moved(contact) - rest(contact);
@@ -261,7 +265,7 @@ TEST(TurnedByAToolTest, SurfaceTurnsWithTheToolAndTheColumnSwellsOnlyByTheForce)
   scene.bodies[0].friction = {5.0, 5.0};
   scene.bodies[0].models.contact = ContactModel::kPatch;
   Hand hand(scene);
-  hand.step_to({{(kHeight + 0.02) * kUp, glm::dquat(1.0, 0.0, 0.0, 0.0)}});
+  hand.step_to({{(kColumnHeight + 0.02) * kUp, glm::dquat(1.0, 0.0, 0.0, 0.0)}});
   hand.move(-4e-3 * kUp, kUp, 0.0, 100);
   hand.move(glm::dvec3(0.0), kUp, kQuarter, 1600);
   hand.move(glm::dvec3(0.0), kUp, 0.0, 16);
@@ -274,8 +278,8 @@ TEST(TurnedByAToolTest, SurfaceTurnsWithTheToolAndTheColumnSwellsOnlyByTheForce)
   deform_vertices(frame, 0, positions);
   EXPECT_NEAR(static_cast<double>(positions.back().w), kQuarter, 0.05 * kQuarter);
   EXPECT_GT(hand.world().regions.at<RegionSupport>(0).rotation.y, 0.3);
-  const double area = std::numbers::pi * kRadius * kRadius;
-  const double swollen = 0.5 * hand.wrench().force.y / (3.0 * kShear * area);
+  const double area = std::numbers::pi * kColumnRadius * kColumnRadius;
+  const double swollen = 0.5 * hand.wrench().force.y / (3.0 * kSoftShearModulus * area);
   for (std::uint32_t ring = 8; ring < kEnd; ++ring) {
     glm::dvec3 middle(0.0);
     for (std::uint32_t k = 0; k < kAround; ++k) {
@@ -285,7 +289,7 @@ TEST(TurnedByAToolTest, SurfaceTurnsWithTheToolAndTheColumnSwellsOnlyByTheForce)
     for (std::uint32_t k = 0; k < kAround; ++k) {
       radius += glm::distance(glm::dvec3(positions[ring * kAround + k]), middle) / kAround;
     }
-    EXPECT_NEAR(radius / kRadius - 1.0, swollen, 0.003) << "ring " << ring;
+    EXPECT_NEAR(radius / kColumnRadius - 1.0, swollen, 0.003) << "ring " << ring;
   }
 }
 

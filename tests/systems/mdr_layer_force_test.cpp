@@ -9,13 +9,13 @@
 #include "tests/reference/exact/hertz.hpp"
 #include "tests/reference/exact/layers.hpp"
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/directions.hpp"
 
 namespace torsion {
 namespace {
 
 using test::Hand;
-
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
+using test::kUp;
 
 /// The radius that a half-space's contact has, over the layer's thickness, and how far the series
 /// of Dimitriadis et al. (2002) is from the exact solution there, incompressible: 0.02, 0.2, 1.1

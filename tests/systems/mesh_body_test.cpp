@@ -11,16 +11,18 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/directions.hpp"
+#include "tests/systems/soft_bodies.hpp"
 
 namespace torsion {
 namespace {
 
 using test::Hand;
+using test::kSmallBallRadius;
+using test::kUp;
+using test::kUpright;
 
-const glm::dquat kUpright(1.0, 0.0, 0.0, 0.0);
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
-constexpr double kBall = 0.02;   // m
-constexpr double kDepth = 1e-3;  // m
+constexpr double kMeshDepth = 1e-3;  // m
 constexpr double kFriction = 0.8;
 
 struct MeshCase {
@@ -39,7 +41,7 @@ void PrintTo(const MeshCase& each, std::ostream* out) {
 constexpr glm::dvec3 kBox(0.02, 0.03, 0.02);
 constexpr glm::dvec3 kEllipsoid(0.03, 0.02, 0.025);
 
-const MeshCase kCases[] = {
+const MeshCase kMeshCases[] = {
     {"BoxPatch", ShapeKind::kBox, kBox, FixedKind::kPoint, ContactModel::kPatch, 0.5},
     {"BoxMdr", ShapeKind::kBox, kBox, FixedKind::kPoint, ContactModel::kMdr, 0.3},
     {"BoxOnAFacePatch", ShapeKind::kBox, kBox, FixedKind::kFace, ContactModel::kPatch, 0.5},
@@ -66,14 +68,15 @@ SceneDescription scene_of(const MeshCase& each, bool as_mesh) {
   body.models.contact = each.contact;
   body.models.body = BodyModel::kCompliance;
   scene.bodies.push_back(std::move(body));
-  scene.tools.push_back(test::make_tool({test::make_part(ShapeKind::kSphere, glm::dvec3(kBall))}));
+  scene.tools.push_back(
+      test::make_tool({test::make_part(ShapeKind::kSphere, glm::dvec3(kSmallBallRadius))}));
   return scene;
 }
 
 /// The wrench at a hundred poses: pressed, slid, turned and turned back, all in partial slip.
 std::vector<Wrench> press_slide_twist(const MeshCase& each, bool as_mesh) {
   Hand hand(scene_of(each, as_mesh));
-  hand.step_to({{glm::dvec3(0.0, 2.0 * each.half.y + kBall + 1e-6, 0.0), kUpright}});
+  hand.step_to({{glm::dvec3(0.0, 2.0 * each.half.y + kSmallBallRadius + 1e-6, 0.0), kUpright}});
   std::vector<Wrench> wrenches;
   const auto move = [&](const glm::dvec3& way, double turn) {
     for (int k = 0; k < 25; ++k) {
@@ -81,13 +84,13 @@ std::vector<Wrench> press_slide_twist(const MeshCase& each, bool as_mesh) {
       wrenches.push_back(hand.wrench());
     }
   };
-  move({0.0, -1e-6 - kDepth, 0.0}, 0.0);
+  move({0.0, -1e-6 - kMeshDepth, 0.0}, 0.0);
   move({2e-4, 0.0, 1e-4}, 0.0);
   move(glm::dvec3(0.0), 0.05);
   move(glm::dvec3(0.0), -0.03);
   EXPECT_EQ(hand.clock().faults_ever, 0U);
   // The body gives way by several per cent of the depth: a mesh that did not would be noticed.
-  EXPECT_LT(hand.world().regions.at<RegionSupport>(0).translation.y, -0.03 * kDepth);
+  EXPECT_LT(hand.world().regions.at<RegionSupport>(0).translation.y, -0.03 * kMeshDepth);
   return wrenches;
 }
 
@@ -109,8 +112,8 @@ TEST_P(MeshBodyTest, GivesWayLikeTheExactShape) {
   }
   // Hertz, at the depth that the body leaves; R of the ball over a flat face or less.
   const double modulus = 3e5 / (1.0 - GetParam().poisson * GetParam().poisson);
-  const double couple =
-      3.0 / 16.0 * std::numbers::pi * kFriction * force * std::cbrt(0.75 * force * kBall / modulus);
+  const double couple = 3.0 / 16.0 * std::numbers::pi * kFriction * force *
+                        std::cbrt(0.75 * force * kSmallBallRadius / modulus);
   for (std::size_t i = 0; i < exact.size(); ++i) {
     const glm::dvec3 off = mesh[i].force - exact[i].force;
     EXPECT_LE(std::abs(off.y), kBound * force) << i;
@@ -119,7 +122,7 @@ TEST_P(MeshBodyTest, GivesWayLikeTheExactShape) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, MeshBodyTest, testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Cases, MeshBodyTest, testing::ValuesIn(kMeshCases),
                          [](const auto& at) { return std::string(at.param.name); });
 
 }  // namespace

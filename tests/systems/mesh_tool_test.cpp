@@ -10,15 +10,15 @@
 
 #include "systems/contact_models/paper.hpp"
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/directions.hpp"
 #include "tests/systems/distance_meshes.hpp"
 
 namespace torsion {
 namespace {
 
 using test::Hand;
-
-const glm::dquat kUpright(1.0, 0.0, 0.0, 0.0);
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
+using test::kUp;
+using test::kUpright;
 
 PartDescription mesh_part(SurfaceMesh mesh) {
   PartDescription part;

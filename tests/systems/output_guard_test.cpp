@@ -6,10 +6,12 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "tests/systems/held_tool.hpp"
+
 namespace torsion {
 namespace {
 
-constexpr double kPeriod = 1e-3;  // s
+using test::kPeriod;
 
 GuardLimits limits() {
   GuardLimits limits;

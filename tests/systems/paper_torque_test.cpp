@@ -5,12 +5,14 @@
 #include "systems/contact_models/paper.hpp"
 #include "tests/reference/paper_shaft.hpp"
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/directions.hpp"
 
 namespace torsion {
 namespace {
 
 using reference::PaperShaft;
 using test::Hand;
+using test::kUp;
 
 constexpr double kPressDepth = 4e-4;  // m
 
@@ -35,8 +37,6 @@ PaperShaft shaft_of(const Hand& hand) {
           world.bodies.at<Elasticity>(0).shear_modulus(),
           world.regions.at<RegionGeometry>(0).radius, world.regions.at<RegionMotion>(0).lever};
 }
-
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
 
 TEST(PaperTorqueTest, RegionOfThePressedBallIsTheOverlapDisc) {
   const Hand hand = pressed_ball();

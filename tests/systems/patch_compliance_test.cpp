@@ -12,13 +12,13 @@
 #include "systems/body_models/contact_load.hpp"
 #include "systems/body_models/footing_response.hpp"
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/directions.hpp"
 
 namespace torsion {
 namespace {
 
 using test::Hand;
-
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
+using test::kUp;
 
 /// A block on its fixed lower face, and a ball that is pressed into the middle of its top.
 struct Ground {

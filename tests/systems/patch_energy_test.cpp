@@ -28,16 +28,16 @@ using test::WorkedBall;
 constexpr double kLeast = 1e-3;
 constexpr double kMost = 1e-1;
 
-struct EnergyCase {
+struct PatchEnergyCase {
   double poisson;
   std::uint32_t side;
 };
 
-void PrintTo(const EnergyCase& energy, std::ostream* out) {
+void PrintTo(const PatchEnergyCase& energy, std::ostream* out) {
   *out << energy.poisson << " " << energy.side;
 }
 
-class PatchEnergyTest : public testing::TestWithParam<EnergyCase> {};
+class PatchEnergyTest : public testing::TestWithParam<PatchEnergyCase> {};
 
 TEST_P(PatchEnergyTest, EveryPathCostsWhatTheRegionHoldsMoreAfterIt) {
   // A hundred thousand steps and more, one path after the other with all that the last one left.
@@ -111,9 +111,9 @@ TEST_P(PatchEnergyTest, PressingAndLiftingOffComesOutEven) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Grids, PatchEnergyTest,
-                         testing::Values(EnergyCase{0.5, 12}, EnergyCase{0.3, 12},
-                                         EnergyCase{0.0, 12}, EnergyCase{0.5, 16},
-                                         EnergyCase{0.3, 16}));
+                         testing::Values(PatchEnergyCase{0.5, 12}, PatchEnergyCase{0.3, 12},
+                                         PatchEnergyCase{0.0, 12}, PatchEnergyCase{0.5, 16},
+                                         PatchEnergyCase{0.3, 16}));
 
 TEST(PatchEnergyOfClosedPathsTest, AHundredThousandOfSmallStepsFromRestCostWork) {
   // The goal: never below -1e-9 of the path's throughput. From springs at rest, which an

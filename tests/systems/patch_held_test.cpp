@@ -7,6 +7,7 @@
 #include "systems/patch_grid.hpp"
 #include "tests/reference/exact/flat_punch.hpp"
 #include "tests/reference/exact/hertz_ellipse.hpp"
+#include "tests/support/directions.hpp"
 #include "tests/systems/pressed_ball.hpp"
 
 namespace torsion {
@@ -15,11 +16,10 @@ namespace {
 using test::BallScene;
 using test::Hand;
 using test::kBallShearModulus;
+using test::kUp;
 using test::make_ball_scene;
 using test::make_part;
 using test::options_of;
-
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
 
 /// Worst difference of the depressions that the first region's cells hold from those that its
 /// pressures cause, over the largest depth.

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/reference/dense_pressure.hpp"
+#include "tests/support/directions.hpp"
 #include "tests/systems/pressed_ball.hpp"
 
 namespace torsion {
@@ -20,11 +21,11 @@ namespace {
 using test::BallScene;
 using test::Hand;
 using test::kBallFriction;
+using test::kBallModulus;
 using test::kBallShearModulus;
+using test::kUp;
 
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
-constexpr double kModulus = 4.0 * kBallShearModulus;  // E* at nu = 0.5, Pa
-constexpr double kRound = 0.05;                       // m: radius of curvature of all shapes here
+constexpr double kRound = 0.05;  // m: radius of curvature of all shapes here
 
 // A blunt ring: a body of revolution about y whose lower side is a parabola around a circle.
 constexpr double kRing = 0.008;        // m: radius of the circle that touches first
@@ -105,7 +106,7 @@ struct HollowCase {
   double half;  // m: what the overlap fits in
 };
 
-const HollowCase kCases[] = {
+const HollowCase kHollowCases[] = {
     {"Ring", ring_tool, ring_depth, kRingDepth, 0.016},
     {"TwoLobes", lobed_tool, lobed_depth, kLobeDepth, 0.0145},
 };
@@ -125,9 +126,9 @@ class PatchHollowTest : public testing::TestWithParam<HollowCase> {};
 TEST_P(PatchHollowTest, PressesAndSpinsAsADenseSolutionSays) {
   const HollowCase& shape = GetParam();
   const reference::DensePressure rough =
-      reference::dense_pressure(kModulus, shape.half, 24, shape.depth);
+      reference::dense_pressure(kBallModulus, shape.half, 24, shape.depth);
   const reference::DensePressure exact =
-      reference::dense_pressure(kModulus, shape.half, 48, shape.depth);
+      reference::dense_pressure(kBallModulus, shape.half, 48, shape.depth);
   // The reference has converged: half the cells change it by 0.3 %, so that it is off by half of
   // that or less, as errors of the rim at least halve.
   EXPECT_NEAR(rough.force / exact.force, 1.0, 0.004);
@@ -150,7 +151,7 @@ TEST_P(PatchHollowTest, PressesAndSpinsAsADenseSolutionSays) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, PatchHollowTest, testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Shapes, PatchHollowTest, testing::ValuesIn(kHollowCases),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace

@@ -53,7 +53,7 @@ void PrintTo(const EnergyCase& energy, std::ostream* out) {
 // staircase of its rim.
 constexpr double kStill = 1e-9;
 constexpr double kSlightly = 4e-8;
-const EnergyCase kCases[] = {
+const EnergyCase kEnergyCases[] = {
     {"mdr", {.model = ContactModel::kMdr}, 1e-5},
     {"patch12", {.side = 12}, 1e-3},
     {"patch16", {.side = 16}, 1e-3},
@@ -131,7 +131,7 @@ TEST_P(EnergyTest, WhatSlipsCostsAsMuchAsItsForceTimesItsWay) {
   EXPECT_NEAR(work.sum, 2.0 * limit * way, ends + 0.02 * 2.0 * limit * way);
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, EnergyTest, testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Models, EnergyTest, testing::ValuesIn(kEnergyCases),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace

@@ -17,26 +17,26 @@ using test::PressedBall;
 constexpr double kStatic = 0.9;
 constexpr double kDynamic = 0.6;
 
-struct ModelCase {
+struct FrictionCase {
   const char* name;
   BallScene scene;
   double peak;  // at least, over the normal force
 };
 
-void PrintTo(const ModelCase& model, std::ostream* out) {
+void PrintTo(const FrictionCase& model, std::ostream* out) {
   *out << model.name;
 }
 
 // While the rim slips already at mu_d the middle still sticks, so no contact of a ball shows all of
 // mu_s at once. patch goes over cell by cell; mdr has one state for all of a region, which most of
 // the way is down before the last spring slips.
-const ModelCase kCases[] = {
+const FrictionCase kFrictionCases[] = {
     {"mdr", {.model = ContactModel::kMdr}, 1.005 * kDynamic},
     {"patch12", {.side = 12}, 1.04 * kDynamic},
     {"patch16", {.side = 16}, 1.04 * kDynamic},
 };
 
-class FrictionTest : public testing::TestWithParam<ModelCase> {
+class FrictionTest : public testing::TestWithParam<FrictionCase> {
  protected:
   [[nodiscard]] static BallScene scene() {
     BallScene ball = GetParam().scene;
@@ -131,7 +131,7 @@ TEST_P(FrictionTest, TheWayBackBringsStaticFrictionBack) {
   EXPECT_NEAR(back.back(), -kDynamic, 0.005 * kDynamic);
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, FrictionTest, testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Models, FrictionTest, testing::ValuesIn(kFrictionCases),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace

@@ -31,13 +31,13 @@ Pose pose_at(double t, double length = 1.0, double hand = 1.0) {
   return {length * place, glm::angleAxis(hand * 0.8 * t, axis)};
 }
 
-struct ModelCase {
+struct InvarianceCase {
   const char* name;
   BallScene scene;
   double mirror;  // bound of the mirrored wrench's difference, relative
 };
 
-void PrintTo(const ModelCase& model, std::ostream* out) {
+void PrintTo(const InvarianceCase& model, std::ostream* out) {
   *out << model.name;
 }
 
@@ -45,7 +45,7 @@ void PrintTo(const ModelCase& model, std::ostream* out) {
 // rounding; patch lays its grid by the overlap alone, where iterations end at 1e-9 of it, and
 // solves for all cells at once. Grids of even sides lie half a cell aside of the contact's middle,
 // to the same hand for mirror images: that must not show either.
-const ModelCase kCases[] = {
+const InvarianceCase kInvarianceCases[] = {
     {"mdr", {.model = ContactModel::kMdr, .poisson = 0.45}, 1e-9},
     {"patch12", {.poisson = 0.3, .side = 12}, 1e-8},
     {"patch16", {.poisson = 0.45}, 1e-8},
@@ -54,13 +54,13 @@ const ModelCase kCases[] = {
 
 // A grid so coarse that its place tells in how many steps it has come there; and the paper's cube,
 // whose ports are mirror images, too.
-const ModelCase kOtherCases[] = {
+const InvarianceCase kOtherInvarianceCases[] = {
     {"patch8", {.poisson = 0.45, .side = 8}, 1e-8},
     {"patch12_on_cube", {.poisson = 0.45, .side = 12, .body = BodyModel::kCompliance}, 1e-8},
     {"patch16_on_cube", {.poisson = 0.3, .body = BodyModel::kCompliance}, 1e-8},
 };
 
-class InvariantModelTest : public testing::TestWithParam<ModelCase> {};
+class InvariantModelTest : public testing::TestWithParam<InvarianceCase> {};
 class ScaledModelTest : public InvariantModelTest {};
 
 void expect_near(const Wrench& found, const Wrench& expected, double bound) {
@@ -223,13 +223,16 @@ TEST_P(ScaledModelTest, TheSamePathAgainGivesTheSameBits) {
   EXPECT_EQ(after_three_legs(GetParam().scene, 200), after_three_legs(GetParam().scene, 200));
 }
 
-std::string name_of_case(const testing::TestParamInfo<ModelCase>& instance) {
+std::string name_of_case(const testing::TestParamInfo<InvarianceCase>& instance) {
   return instance.param.name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, InvariantModelTest, testing::ValuesIn(kCases), name_of_case);
-INSTANTIATE_TEST_SUITE_P(Others, InvariantModelTest, testing::ValuesIn(kOtherCases), name_of_case);
-INSTANTIATE_TEST_SUITE_P(Models, ScaledModelTest, testing::ValuesIn(kCases), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Models, InvariantModelTest, testing::ValuesIn(kInvarianceCases),
+                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(Others, InvariantModelTest, testing::ValuesIn(kOtherInvarianceCases),
+                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(Models, ScaledModelTest, testing::ValuesIn(kInvarianceCases),
+                         name_of_case);
 
 }  // namespace
 }  // namespace torsion

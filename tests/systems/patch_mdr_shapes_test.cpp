@@ -9,6 +9,7 @@
 #include "systems/frames.hpp"
 #include "tests/reference/exact/flat_punch.hpp"
 #include "tests/reference/exact/hertz_ellipse.hpp"
+#include "tests/support/directions.hpp"
 #include "tests/systems/pressed_ball.hpp"
 
 namespace torsion {
@@ -18,15 +19,14 @@ using test::BallScene;
 using test::Hand;
 using test::kBallDepth;
 using test::kBallFriction;
+using test::kBallModulus;
 using test::kBallShearModulus;
+using test::kUp;
 using test::make_part;
 using test::options_of;
 using test::PressedBall;
 
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
-constexpr double kModulus = 4.0 * kBallShearModulus;  // E* at nu = 0.5, Pa
-
-struct ModelCase {
+struct ShapeCase {
   const char* name;
   BallScene scene;
   // bounds, relative or over the largest load
@@ -38,7 +38,7 @@ struct ModelCase {
   double feet;
 };
 
-void PrintTo(const ModelCase& model, std::ostream* out) {
+void PrintTo(const ShapeCase& model, std::ostream* out) {
   *out << model.name;
 }
 
@@ -46,19 +46,19 @@ void PrintTo(const ModelCase& model, std::ostream* out) {
 // rim, and the cells there are in or out, which moves the radius by up to a half a cell, half of
 // that on average: a / 18, a / 24 and a / 36 of patch; mdr takes the radius from the overlap's
 // area. The couple goes with the square of the radius. mesh: the facets, see there.
-const ModelCase kCases[] = {
+const ShapeCase kShapeCases[] = {
     {"mdr", {.model = ContactModel::kMdr}, 0.003, 0.012, 0.02, 0.05, 0.02, 1e-3},
     {"patch12", {.side = 12}, 0.008, 0.01, 0.06, 0.13, 0.02, 0.03},
     {"patch16", {.side = 16}, 0.008, 0.01, 0.04, 0.07, 0.02, 0.03},
     {"patch24", {.side = 24, .sweeps = 8}, 0.004, 0.01, 0.025, 0.05, 0.02, 0.01},
 };
 
-class ShapeTest : public testing::TestWithParam<ModelCase> {};
+class ShapeTest : public testing::TestWithParam<ShapeCase> {};
 
 /// A tool of this one part over the cube's top face, its lowest point `half_height` under its
 /// frame, pressed `depth` deep and let settle.
-Hand pressed(const BallScene& ball, const PartDescription& part, double half_height, double depth,
-             double turn = 0.0) {
+Hand pressed_and_settled(const BallScene& ball, const PartDescription& part, double half_height,
+                         double depth, double turn = 0.0) {
   SceneDescription scene = make_ball_scene(ball);
   scene.tools[0] = test::make_tool({part});
   Hand hand(scene, options_of(ball));
@@ -109,10 +109,10 @@ TEST_P(ShapeTest, EllipsoidsPressAndSpinAsHertzsEllipse) {
   for (const glm::dvec3& half : {glm::dvec3(0.06, 0.03, 0.04), glm::dvec3(0.08, 0.03, 0.03)}) {
     const double depth = 3e-4;
     const reference::HertzEllipse exact = reference::hertz_ellipse_at_depth(
-        half.x * half.x / half.y, half.z * half.z / half.y, kModulus, depth);
+        half.x * half.x / half.y, half.z * half.z / half.y, kBallModulus, depth);
     for (const double turn : {0.0, 0.6}) {
-      Hand hand =
-          pressed(GetParam().scene, make_part(ShapeKind::kEllipsoid, half), half.y, depth, turn);
+      Hand hand = pressed_and_settled(GetParam().scene, make_part(ShapeKind::kEllipsoid, half),
+                                      half.y, depth, turn);
       EXPECT_NEAR(hand.wrench().force.y / exact.force, 1.0, GetParam().ellipse) << turn;
       if (GetParam().scene.model == ContactModel::kPatch && turn == 0.0) {
         // mdr spreads a round pressure over the cells, for those who draw it. A cell is a seventh
@@ -137,10 +137,10 @@ TEST(EllipseTest, MdrTurnsLongContactsAsCellsDo) {
   for (const glm::dvec3& half : {glm::dvec3(0.06, 0.03, 0.04), glm::dvec3(0.08, 0.03, 0.03)}) {
     const double depth = 3e-4;
     const PartDescription part = make_part(ShapeKind::kEllipsoid, half);
-    Hand fitted = pressed(springs, part, half.y, depth);
-    Hand solved = pressed(cells, part, half.y, depth);
+    Hand fitted = pressed_and_settled(springs, part, half.y, depth);
+    Hand solved = pressed_and_settled(cells, part, half.y, depth);
     const reference::HertzEllipse exact = reference::hertz_ellipse_at_depth(
-        half.x * half.x / half.y, half.z * half.z / half.y, kModulus, depth);
+        half.x * half.x / half.y, half.z * half.z / half.y, kBallModulus, depth);
     const double largest = reference::saturated_torque_ellipse(kBallFriction, exact.force,
                                                                exact.major, exact.parameter);
     for (int step = 0; step < 240; ++step) {
@@ -156,10 +156,10 @@ TEST(EllipseTest, MdrTurnsLongContactsAsCellsDo) {
 TEST_P(ShapeTest, AFlatPunchPressesSticksAndSpinsAsBoussinesqs) {
   const double radius = 0.01;
   const double depth = 2e-4;
-  Hand hand =
-      pressed(GetParam().scene,
-              make_part(ShapeKind::kCylinder, {radius, 0.02, radius}, {}, false, 24), 0.02, depth);
-  const double force = reference::flat_punch_force({radius, kModulus, depth});
+  Hand hand = pressed_and_settled(
+      GetParam().scene, make_part(ShapeKind::kCylinder, {radius, 0.02, radius}, {}, false, 24),
+      0.02, depth);
+  const double force = reference::flat_punch_force({radius, kBallModulus, depth});
   EXPECT_NEAR(hand.wrench().force.y / force, 1.0, GetParam().punch);
   const reference::LubkinContact exact{reference::PressureShape::kFlatPunch, force, kBallFriction,
                                        radius, kBallShearModulus};
@@ -260,7 +260,7 @@ TEST_P(ShapeTest, TwoFarFeetCarryWhatTwoSingleFeetDo) {
   EXPECT_LT(hands[0].wrench().torque.y, -0.5);  // two feet at 0.75 * 10 N and 0.1 m
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, ShapeTest, testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Models, ShapeTest, testing::ValuesIn(kShapeCases),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace

@@ -11,22 +11,24 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/directions.hpp"
+#include "tests/systems/soft_bodies.hpp"
 
 namespace torsion {
 namespace {
 
 using test::Hand;
+using test::kSmallBallRadius;
+using test::kUp;
+using test::kUpright;
 
-const glm::dquat kUpright(1.0, 0.0, 0.0, 0.0);
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
-constexpr double kBall = 0.02;    // m
-constexpr double kDepth = 8e-4;   // m
-constexpr double kHeight = 0.06;  // m: the body's
+constexpr double kBlockDepth = 8e-4;   // m
+constexpr double kBlockHeight = 0.06;  // m: the body's
 
 /// A block on its fixed lower face, wider than high.
 SceneDescription block(const glm::dvec2& half, BodyModel body_model, double poisson) {
   SceneDescription scene;
-  const glm::dvec3 sides(half.x, 0.5 * kHeight, half.y);
+  const glm::dvec3 sides(half.x, 0.5 * kBlockHeight, half.y);
   BodyDescription body = test::make_body(
       {test::make_part(ShapeKind::kBox, sides, {glm::dvec3(0.0, sides.y, 0.0), kUpright})});
   body.fixed.kind = FixedKind::kFace;
@@ -41,7 +43,8 @@ SceneDescription block(const glm::dvec2& half, BodyModel body_model, double pois
 }
 
 PartDescription ball_at(double x, double z) {
-  return test::make_part(ShapeKind::kSphere, glm::dvec3(kBall), {glm::dvec3(x, 0.0, z), kUpright});
+  return test::make_part(ShapeKind::kSphere, glm::dvec3(kSmallBallRadius),
+                         {glm::dvec3(x, 0.0, z), kUpright});
 }
 
 /// Where the hands are at step k: pressing, then slides and turns of partial slip, then rest.
@@ -49,8 +52,9 @@ Pose pose_at(int k) {
   const double pressed = std::min(1.0, k / 100.0);
   const double moved = std::clamp((k - 100) / 100.0, 0.0, 1.0);
   const double turned = std::clamp((k - 200) / 100.0, 0.0, 1.0);
-  return {{2e-4 * moved, kHeight + kBall + 1e-6 - kDepth * pressed, -1e-4 * moved},
-          glm::angleAxis(0.01 * turned, kUp)};
+  return {
+      {2e-4 * moved, kBlockHeight + kSmallBallRadius + 1e-6 - kBlockDepth * pressed, -1e-4 * moved},
+      glm::angleAxis(0.01 * turned, kUp)};
 }
 constexpr int kMoving = 300;
 constexpr int kRest = 60;

@@ -61,7 +61,7 @@ class RollingBall {
   double radius_ = 0.0;
 };
 
-struct Resolution {
+struct RollingCase {
   std::uint32_t side;
   std::uint32_t sweeps;
   // Bounds as of a ball that unloads in place (patch_mdr_ball_test.cpp).
@@ -69,7 +69,7 @@ struct Resolution {
   double friction;  // over the largest force and couple
 };
 
-class PatchRollingTest : public testing::TestWithParam<Resolution> {
+class PatchRollingTest : public testing::TestWithParam<RollingCase> {
  protected:
   [[nodiscard]] static BallScene scene(double friction = kBallFriction) {
     return {.side = GetParam().side,
@@ -162,9 +162,9 @@ TEST_P(PatchRollingTest, WhatASlideHasBuiltUpIsLeftBehindAsOnAFinerGrid) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Resolutions, PatchRollingTest,
-                         testing::Values(Resolution{12, 2, 0.008, 0.02},
-                                         Resolution{16, 2, 0.005, 0.015},
-                                         Resolution{24, 8, 0.005, 0.0065}));
+                         testing::Values(RollingCase{12, 2, 0.008, 0.02},
+                                         RollingCase{16, 2, 0.005, 0.015},
+                                         RollingCase{24, 8, 0.005, 0.0065}));
 
 }  // namespace
 }  // namespace torsion

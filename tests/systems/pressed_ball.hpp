@@ -10,9 +10,10 @@
 
 namespace torsion::test {
 
-inline constexpr double kBallRadius = 0.05;          // m
-inline constexpr double kBallShearModulus = 1e6;     // Pa
-inline constexpr double kBallDepth = 4.12740906e-4;  // m: 10 N at nu = 0.5, a = 4.54 mm
+inline constexpr double kBallRadius = 0.05;                      // m
+inline constexpr double kBallShearModulus = 1e6;                 // Pa
+inline constexpr double kBallModulus = 4.0 * kBallShearModulus;  // E* at nu = 0.5, Pa
+inline constexpr double kBallDepth = 4.12740906e-4;              // m: 10 N at nu = 0.5, a = 4.54 mm
 inline constexpr double kBallFriction = 0.75;
 
 /// What varies between the tests of a ball on the paper's cube. Without a body model the body is a

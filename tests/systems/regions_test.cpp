@@ -5,14 +5,14 @@
 #include "systems/fault.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/directions.hpp"
 
 namespace torsion {
 namespace {
 
 using test::Hand;
-
-const glm::dquat kUpright(1.0, 0.0, 0.0, 0.0);
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
+using test::kUp;
+using test::kUpright;
 
 /// A slab whose top is y = 0.
 BodyDescription slab() {

@@ -23,8 +23,8 @@ using test::kBallRadius;
 using test::make_ball_scene;
 using test::options_of;
 
-constexpr int kCoarse = 100;
-constexpr int kFine = 10000;
+constexpr int kCoarseSteps = 100;
+constexpr int kFineSteps = 10000;
 constexpr double kDuration = 10.0;  // s: what a region's beginning fades in is over in 10 ms
 
 struct StepCase {
@@ -37,7 +37,7 @@ void PrintTo(const StepCase& each, std::ostream* out) {
   *out << each.name;
 }
 
-const StepCase kCases[] = {
+const StepCase kStepCases[] = {
     {"MdrRubber", {.model = ContactModel::kMdr}},
     {"MdrCompressible", {.model = ContactModel::kMdr, .poisson = 0.3}},
     {"PatchRubber", {}},
@@ -118,7 +118,7 @@ Curve curve(const StepCase& each, int steps) {
   Curve found;
   for (int step = 1; step <= steps; ++step) {
     hand.step_to({pose_at(step, steps)});
-    if (step % (steps / kCoarse) == 0) {
+    if (step % (steps / kCoarseSteps) == 0) {
       found.wrenches.push_back(hand.wrench());
     }
   }
@@ -173,8 +173,8 @@ class StepSizeTest : public testing::TestWithParam<StepCase> {};
 // of compliance C that is behind by C k (1 + C K) / (1 + C k) of what a step adds to the force: by
 // C K at most.
 TEST_P(StepSizeTest, AHundredStepsAndTenThousandGiveTheSameCurves) {
-  const Curve coarse = curve(GetParam(), kCoarse);
-  const Curve fine = curve(GetParam(), kFine);
+  const Curve coarse = curve(GetParam(), kCoarseSteps);
+  const Curve fine = curve(GetParam(), kFineSteps);
   ASSERT_EQ(coarse.wrenches.size(), fine.wrenches.size());
   const bool is_behind = GetParam().scene.model == ContactModel::kMdr;
   const double behind = is_behind ? fine.softness : 0.0;
@@ -197,7 +197,7 @@ TEST_P(StepSizeTest, AHundredStepsAndTenThousandGiveTheSameCurves) {
   EXPECT_LT(std::abs(fine.wrenches.back().torque.y), 0.5 * std::abs(fine.wrenches[49].torque.y));
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, StepSizeTest, testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Cases, StepSizeTest, testing::ValuesIn(kStepCases),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace

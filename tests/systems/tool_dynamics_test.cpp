@@ -1,20 +1,22 @@
 #include "systems/held_tool/tool_dynamics.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "systems/held_tool/tool_equilibrium.hpp"
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/directions.hpp"
+#include "tests/systems/held_tool.hpp"
 
 namespace torsion {
 namespace {
 
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+using test::kUnlimited;
+using test::kUpright;
+
 constexpr double kFree = 0.2;  // m: a height at which the ball touches nothing
-const glm::dquat kUpright(1.0, 0.0, 0.0, 0.0);
 
 PrepareOptions half_space(double rate = 1000.0) {
   PrepareOptions options;

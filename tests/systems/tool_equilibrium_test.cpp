@@ -1,17 +1,16 @@
 #include "systems/held_tool/tool_equilibrium.hpp"
 
-#include <limits>
-
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "systems/rotation_vector.hpp"
 #include "tests/support/contact_scenes.hpp"
+#include "tests/systems/held_tool.hpp"
 
 namespace torsion {
 namespace {
 
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+using test::kUnlimited;
 
 PrepareOptions half_space(ContactModel model) {
   PrepareOptions options;

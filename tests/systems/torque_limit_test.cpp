@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/reference/exact/torque_limits.hpp"
+#include "tests/support/directions.hpp"
 #include "tests/systems/pressed_ball.hpp"
 
 namespace torsion {
@@ -18,8 +19,8 @@ namespace {
 using reference::PressureShape;
 using test::BallScene;
 using test::Hand;
+using test::kUp;
 
-const glm::dvec3 kUp(0.0, 1.0, 0.0);
 constexpr double kPunch = 0.01;       // m: radius of the flat end
 constexpr double kPunchDepth = 2e-4;  // m
 
@@ -36,7 +37,7 @@ void PrintTo(const LimitCase& each, std::ostream* out) {
 
 // A model's own radius of contact: Hertz' for springs and cells, the overlap's for paper, which
 // spreads its force evenly over that by its own account.
-const LimitCase kCases[] = {
+const LimitCase kLimitCases[] = {
     {"BallMdr", {.model = ContactModel::kMdr}, false, PressureShape::kHertz},
     {"BallMdrCompressible",
      {.model = ContactModel::kMdr, .poisson = 0.3},
@@ -88,7 +89,7 @@ TEST_P(TorqueLimitTest, LargestTorqueIsThatOfTheRightPressureAndOfNoOther) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, TorqueLimitTest, testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Models, TorqueLimitTest, testing::ValuesIn(kLimitCases),
                          [](const auto& at) { return std::string(at.param.name); });
 
 }  // namespace

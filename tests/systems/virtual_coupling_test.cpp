@@ -1,21 +1,21 @@
 #include "systems/held_tool/virtual_coupling.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "systems/rotation_vector.hpp"
+#include "tests/systems/held_tool.hpp"
 
 namespace torsion {
 namespace {
 
 using std::numbers::pi;
+using test::kUnlimited;
 
 VirtualCoupling springs() {
-  constexpr double kUnlimited = std::numeric_limits<double>::infinity();
   return {1000.0, 0.0, 2.0, 0.0, kUnlimited, kUnlimited};
 }
 

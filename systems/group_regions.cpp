@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "systems/cell_finder.hpp"
+#include "systems/contact_models/patch_energy.hpp"
 #include "systems/fault.hpp"
 #include "systems/frames.hpp"
 #include "systems/region_grid.hpp"
@@ -54,6 +55,7 @@ void end_region(World& world, std::uint32_t region, std::uint32_t heir) {
     wrench.on_tool.force += ended.on_tool.force;
     wrench.on_tool.torque += ended.on_tool.torque;
     wrench.event_now = kTakesOver;
+    join_energies(world.regions.at<PatchEnergy>(region), world.regions.at<PatchEnergy>(heir));
   }
 }
 

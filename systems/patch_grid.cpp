@@ -307,7 +307,9 @@ void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints
     const glm::dvec3 way = grid.frame.origin - origin;
     carrier.translation += glm::angleAxis(turn, carrier.rotation / turn) * way - way;
   }
-  context.world.regions.at<PatchState>(region).moved = 1;
+  PatchState& state = context.world.regions.at<PatchState>(region);
+  state.moved = 1;
+  state.resized = move.scale != glm::dvec2(1.0) ? 1 : 0;
 }
 
 }  // namespace torsion

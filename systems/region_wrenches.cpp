@@ -51,8 +51,9 @@ Wrench computed_wrench(const World& world, std::uint32_t region) {
 }
 
 /// Lets out what an event changed little by little.
-/// @param faded  share that goes in this step
-void fade_event(RegionWrench& wrench, const Wrench& computed, double faded) {
+/// @param foretold  of the last step's change, what this step's motion goes on by
+/// @param faded     share that goes in this step
+void fade_event(RegionWrench& wrench, const Wrench& computed, double foretold, double faded) {
   const Wrench before = wrench.on_tool;
   const auto event = static_cast<RegionEvent>(wrench.event_now);
   if (event == RegionEvent::kBegins || event == RegionEvent::kTakesOver ||
@@ -60,9 +61,10 @@ void fade_event(RegionWrench& wrench, const Wrench& computed, double faded) {
     wrench.event_change = before - computed;
     wrench.event_share = 1.0;
   } else if (event == RegionEvent::kGridLaidAnew && wrench.event_share == 0.0) {
-    // All that the last step does not foretell is the grid's. Of grids that follow upon each other
+    // All that the last step does not foretell is the grid's; where the motion turns back, so does
+    // what it foretells. Of grids that follow upon each other
     // within the fade, while a tool is pressed in fast, only the first: the force must not wait.
-    wrench.event_change = before + wrench.event_change - computed;
+    wrench.event_change = before + wrench.event_change * foretold - computed;
     wrench.event_share = 1.0;
   } else {
     wrench.event_share = std::max(0.0, wrench.event_share - faded);
@@ -108,7 +110,8 @@ void region_wrenches(StepContext& context) {
   const double dt = world.clock.at<Clock>(0).dt;
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
     RegionWrench& wrench = world.regions.at<RegionWrench>(region);
-    fade_event(wrench, computed_wrench(world, region), dt / kEventFade);
+    fade_event(wrench, computed_wrench(world, region),
+               world.regions.at<PatchState>(region).along_last, dt / kEventFade);
   }
 }
 

@@ -117,23 +117,29 @@ struct PatchState {
   glm::dvec2 slide{0.0};      // m, grid: motion of the last step, as in RegionMotion
   double spin = 0.0;          // rad, likewise
   double deepened = 0.0;      // m: change of the largest depth in the last step
+  double along_last = 0.0;    // share of the motion before it by which it went on: -1 to 1
   double depth = 0.0;         // m: the largest depth
   double residual = 0.0;      // of the pressures and tractions, relative to the mean pressure
   std::uint32_t sweeps = 0;   // in the last step
   std::uint32_t started = 0;  // 0: no solution yet
   std::uint32_t moved = 0;    // 1: the grid has moved, displacements must be found anew
-  std::uint32_t padding = 0;
+  std::uint32_t resized = 0;  // 1: and its cells have another size
 };
 
 /// What a region with contact model `patch` holds of the work done on it, and the forces of the
 /// last step that its work is reckoned by. Written by: patch_forces.
 struct PatchEnergy {
-  double held = 0.0;       // J
+  double held = 0.0;       // J, with what the body as a whole holds of its load
   double owed = 0.0;       // J: lacking work that is still to be charged
+  double lent = 0.0;       // J: what grids that were laid anew held more than those before them
+  double taken = 0.0;      // N, off the normal force: takes that back while the tool lifts off
   double depth = 0.0;      // m: the largest
-  glm::dvec3 force{0.0};   // N, body, on the tool
+  glm::dvec3 force{0.0};   // N, body, on the tool; with what is taken
   glm::dvec3 couple{0.0};  // N m, body, about `point`
   glm::dvec3 point{0.0};   // m, body
+  // How far the body's other regions had moved the material here, as in RegionSupport.
+  glm::dvec3 translation_by_others{0.0};  // m, body, of `point`
+  glm::dvec3 rotation_by_others{0.0};     // rad
 };
 
 /// Where smooth exact shapes lie deepest in each other in a region with contact model `mdr`.

@@ -107,8 +107,9 @@ bool has_support(const Patch& patch) {
   return patch.problem.support.response != nullptr;
 }
 
-/// On a body that gives way as a whole: the motion of this step along that of the last one.
-double motion_share(const Patch& patch, double deepened) {
+/// The motion of this step along that of the last one, as a share of it: 1 in steady motion, -1
+/// where it turns back.
+double share_of_last(const Patch& patch, double deepened) {
   const double radius = patch.world.regions.at<RegionGeometry>(patch.region).radius;
   const PatchState& last = patch.state;
   const double spin = last.spin * radius;
@@ -116,33 +117,38 @@ double motion_share(const Patch& patch, double deepened) {
       glm::dot(last.slide, last.slide) + spin * spin + last.deepened * last.deepened;
   const double along = glm::dot(last.slide, patch.motion.slide) +
                        spin * patch.motion.spin * radius + last.deepened * deepened;
-  return square > 0.0 ? std::clamp(along / square, 0.0, kMostForesight) : 0.0;
+  return square > 0.0 ? std::clamp(along / square, -1.0, 1.0) : 0.0;
 }
 
 /// How much of the last step's change to expect again.
-ForeseenShares foreseen_shares(const Patch& patch, double deepened) {
+ForeseenShares foreseen_shares(const Patch& patch) {
   if (has_support(patch)) {
-    const double share = motion_share(patch, deepened);
+    const double share = std::clamp(patch.state.along_last, 0.0, kMostForesight);
     return {share, share};
   }
   return best_shares(patch.rows, patch.columns, patch.problem.coupled, kMostForesight);
 }
 
-/// The body's own motion at every cell beyond what the tool's overlap has of it already.
-/// @pre it gives way by more than a half-space does
-void find_support(const Patch& patch) {
+/// The body's own motion at every cell beyond what the tool's overlap has of it already; zero where
+/// it gives way as a half-space does.
+/// @return the energy that it holds of its own motion, J
+double find_support(const Patch& patch) {
   const PatchColumns& columns = patch.columns;
   const PatchField moved{patch.support.x, patch.support.y, patch.support.z};
   for (const std::span<double>& each : {moved.x, moved.y, moved.z}) {
     std::ranges::fill(each, 0.0);
   }
-  SupportPolynomials polynomials =
+  if (!has_support(patch)) {
+    return 0.0;
+  }
+  SupportMotion motion =
       support_by(patch.problem.support, {columns.traction_x, columns.traction_y, columns.pressure});
   const SupportPolynomials known = known_support(patch.world, patch.region);
   for (std::size_t k = 0; k < known.size(); ++k) {
-    polynomials[k] -= known[k];
+    motion.polynomials[k] -= known[k];
   }
-  add_polynomials(patch.problem.support, polynomials, moved);
+  add_polynomials(patch.problem.support, motion.polynomials, moved);
+  return motion.energy;
 }
 
 /// Adds it, `sign` times, to the half-space's displacements.
@@ -275,6 +281,16 @@ bool is_anew(const PatchState& state) {
   return state.started == 0 || state.moved != 0;
 }
 
+SolutionStart start_of(const Patch& patch) {
+  if (patch.state.started == 0) {
+    return SolutionStart::kNone;
+  }
+  if (patch.state.resized != 0 || patch.problem.support.laid_anew) {
+    return SolutionStart::kOtherGrid;
+  }
+  return patch.state.moved != 0 ? SolutionStart::kMovedGrid : SolutionStart::kLastStep;
+}
+
 /// @param sweeps_anew  at most, of one that is
 void solve_region(StepContext& context, std::uint32_t region, std::uint32_t sweeps_anew) {
   Patch patch = patch_of(context, region);
@@ -283,13 +299,14 @@ void solve_region(StepContext& context, std::uint32_t region, std::uint32_t swee
   load_cells(patch.rows, patch.world.bodies.at<Friction>(body), patch.columns, patch.places);
   const double depth = largest(whole_lanes(patch.columns.depth.size()), patch.columns.depth.data());
   const double deepened = depth - patch.state.depth;
+  patch.state.along_last = share_of_last(patch, deepened);
   if (anew) {
     foresee_cells(patch.rows, {}, patch.columns, patch.problem);
     start_anew(patch, sweeps_anew);
     set_targets(patch.motion, patch.places, patch.columns);
   } else {
     set_targets(patch.motion, patch.places, patch.columns);
-    foresee_cells(patch.rows, foreseen_shares(patch, deepened), patch.columns, patch.problem);
+    foresee_cells(patch.rows, foreseen_shares(patch), patch.columns, patch.problem);
     let_go_cells(patch.problem, patch.columns, patch.work, kNoContact);
   }
   if (has_support(patch)) {
@@ -299,17 +316,17 @@ void solve_region(StepContext& context, std::uint32_t region, std::uint32_t swee
   }
   patch.problem.reference = reference_pressure(patch, depth);
   const PatchOutcome outcome = solve_patch(patch.problem, patch.columns, patch.work);
+  const double held_by_body = find_support(patch);
   if (has_support(patch)) {
-    find_support(patch);
     add_motion_of_body(patch, -1.0);
   }
-  const bool started = patch.state.started != 0;
+  const SolutionStart start = start_of(patch);
   const PatchSums sums = sum_cells(patch.columns, patch.places, cell_area(patch.frame, patch.side));
   update_kinetic_shares(patch, sums.force);
   const std::span<const double> none;
   store_cells(patch.columns, has_support(patch) ? patch.support.x : none,
               has_support(patch) ? patch.support.y : none, patch.rows);
-  if (!started) {
+  if (start == SolutionStart::kNone) {
     const PatchChange& change = patch.rows.change;
     for (const std::span<double>& each : {change.traction_x, change.traction_y, change.pressure,
                                           change.moved_x, change.moved_y, change.depression}) {
@@ -319,6 +336,7 @@ void solve_region(StepContext& context, std::uint32_t region, std::uint32_t swee
   patch.state = {patch.motion.slide,
                  patch.motion.spin,
                  deepened,
+                 patch.state.along_last,
                  depth,
                  outcome.residual,
                  outcome.sweeps,
@@ -326,12 +344,8 @@ void solve_region(StepContext& context, std::uint32_t region, std::uint32_t swee
                  0,
                  0};
   summarize(patch, sums);
-  if (has_support(patch)) {
-    // On a body that gives way as a whole what a region holds is not known cell by cell.
-    patch.world.regions.at<PatchEnergy>(region) = PatchEnergy{};
-  } else {
-    settle_energy(patch.world, region, patch.problem, patch.columns, patch.work, anew);
-  }
+  settle_energy(patch.world, region,
+                {patch.problem, patch.columns, patch.support.z, held_by_body, patch.work}, start);
 }
 
 /// How many sweeps each of the regions that are anew gets in this step.

@@ -202,6 +202,7 @@ PatchSupport patch_support(World& world, std::uint32_t region, const PatchCenter
   FootingResponse& response = world.footings.at<FootingResponse>(block);
   if (response.serial != footing.serial) {
     find_response(ports_of(world, identity.body), footing, response);
+    support.laid_anew = true;
   }
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
   const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
@@ -220,7 +221,7 @@ PatchSupport patch_support(World& world, std::uint32_t region, const PatchCenter
   return support;
 }
 
-SupportPolynomials support_by(const PatchSupport& support, const PatchField& tractions) {
+SupportMotion support_by(const PatchSupport& support, const PatchField& tractions) {
   SupportPolynomials moments{};
   for (int axis = 0; axis < 3; ++axis) {
     const std::span<double>& along =
@@ -237,15 +238,18 @@ SupportPolynomials support_by(const PatchSupport& support, const PatchField& tra
       moments[2 * kColumn + k] += way.z * sums[k];
     }
   }
-  SupportPolynomials polynomials{};
-  respond(support.response->terms.data(), moments.data(), polynomials.data());
-  return polynomials;
+  SupportMotion motion;
+  respond(support.response->terms.data(), moments.data(), motion.polynomials.data());
+  for (std::size_t k = 0; k < moments.size(); ++k) {
+    motion.energy += 0.5 * moments[k] * motion.polynomials[k];
+  }
+  return motion;
 }
 
 void add_support(const PatchSupport& support, const PatchField& tractions,
                  const PatchField& displacements) {
   if (support.response != nullptr) {
-    add_polynomials(support, support_by(support, tractions), displacements);
+    add_polynomials(support, support_by(support, tractions).polynomials, displacements);
   }
 }
 

@@ -21,6 +21,7 @@ struct PatchSupport {
   glm::dmat3 to_body{1.0};                    // from x, y, z of the columns
   double area = 0.0;                          // m^2, of a cell
   bool soft = false;                          // gives way by much beside the contact itself
+  bool laid_anew = false;                     // the response is not that of the last step
   std::size_t cells = 0;    // rows of a term: those of the cells and zeros up to whole lanes, which
                             // all columns that tractions come from or displacements go to have, too
   std::span<double> terms;  // (kSupportTerms x cells)
@@ -45,13 +46,18 @@ struct PatchField {
 /// The polynomials of the three axes, kSupportColumn each, body axes.
 using SupportPolynomials = std::array<double, std::size_t{3} * kSupportColumn>;
 
+/// What tractions move, and the energy that the body holds of it.
+struct SupportMotion {
+  SupportPolynomials polynomials{};  // m
+  double energy = 0.0;               // J
+};
+
 /// The region's, or none. Finds the footing's response anew when it has been laid anew.
 /// @param terms  (kSupportTerms x whole lanes of cells) out
 PatchSupport patch_support(World& world, std::uint32_t region, const PatchCenters& centers,
                            std::span<double> terms);
 
-/// What tractions move, m.
-SupportPolynomials support_by(const PatchSupport& support, const PatchField& tractions);
+SupportMotion support_by(const PatchSupport& support, const PatchField& tractions);
 
 /// The motion that the region's RegionSupport has of it already.
 SupportPolynomials known_support(const World& world, std::uint32_t region);

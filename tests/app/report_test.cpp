@@ -53,9 +53,10 @@ struct Bounds {
 // What the quick report measures, and a third more: enough for a change of rounding or of the
 // steps' order, not for one of a model. What limits each: mdr its layers of springs (torque) and
 // the sphere that is no paraboloid (0.1 % of the force); patch the size of its cells, 8, 12 or 16
-// over the contact; on the cubes also the reference's own error (the report states it) and, at
-// nu = 0.3, the coupling of pressure and friction, which mdr leaves out (2.8 % of the force);
-// without a body model that the body has an end; large_strain that all of them are linear.
+// over the contact, and on the way up what its grids have lent (0.2 % of the force); on the cubes
+// also the reference's own error (the report states it) and, at nu = 0.3, the coupling of pressure
+// and friction, which mdr leaves out (2.8 % of the force); without a body model that the body has
+// an end; large_strain that all of them are linear.
 constexpr Bounds kBounds[] = {
     {"sphere_twist mdr none 256", 0.00012, 0.00092, 0.017},
     {"sphere_twist patch none 64", 0.0098, 0.057, 0.033},
@@ -71,14 +72,14 @@ constexpr Bounds kBounds[] = {
     {"sphere_slide_and_spin patch none 256", 0.0046, 0.0056, -1.0},
     {"half_space mdr none 256", 0.0019, 0.0040, 0.0084},
     {"half_space patch none 64", 0.0089, 0.037, 0.063},
-    {"half_space patch none 144", 0.0015, 0.014, 0.039},
+    {"half_space patch none 144", 0.0024, 0.014, 0.039},
     {"half_space patch none 256", 0.00067, 0.0076, 0.018},
     {"ball_on_cube_nu30 mdr none 256", 0.037, 0.037, 0.014},
     {"ball_on_cube_nu30 mdr compliance 256", 0.026, 0.046, 0.0066},
     {"ball_on_cube_nu30 patch none 64", 0.0067, 0.051, 0.050},
     {"ball_on_cube_nu30 patch none 144", 0.015, 0.020, 0.037},
     {"ball_on_cube_nu30 patch none 256", 0.015, 0.016, 0.021},
-    {"ball_on_cube_nu30 patch compliance 144", 0.0029, 0.016, 0.029},
+    {"ball_on_cube_nu30 patch compliance 144", 0.0048, 0.016, 0.029},
     {"ball_on_cube_nu30 patch compliance 256", 0.0025, 0.0069, 0.011},
     {"ball_on_cube_nu49 mdr none 256", 0.0016, 0.0049, 0.015},
     {"ball_on_cube_nu49 mdr compliance 256", 0.0015, 0.0034, 0.0050},

@@ -65,7 +65,9 @@ inline Path random_path(std::mt19937& random, double least, double most) {
 /// mean of the wrenches before and after each step.
 class WorkedBall {
  public:
-  explicit WorkedBall(const BallScene& scene) : hand_(make_ball_scene(scene), options(scene)) {
+  explicit WorkedBall(const BallScene& scene) : WorkedBall(scene, make_ball_scene(scene)) {}
+  /// @param scene  another tool, that of make_ball_scene(ball) with more parts
+  WorkedBall(const BallScene& ball, const SceneDescription& scene) : hand_(scene, options(ball)) {
     lift_off();
     forget();
   }
@@ -94,14 +96,27 @@ class WorkedBall {
     work = 0.0;
     throughput = 0.0;
   }
+  /// To and fro along x as a wheel rolls, in steps of `step` [m], `steps` each way.
+  void roll(double step, int steps) {
+    for (int k = 0; k < 2 * steps; ++k) {
+      const double way = k < steps ? step : -step;
+      const Wrench before = hand_.wrench();
+      const double from = hand_.poses[0].position.x;
+      hand_.move({way, 0.0, 0.0}, {0.0, 0.0, 1.0}, -way / kBallRadius, 1);
+      const Wrench& after = hand_.wrench();
+      const double gone = hand_.poses[0].position.x - from;
+      work += 0.5 * (before.torque.z + after.torque.z) * way / kBallRadius -
+              0.5 * (before.force.x + after.force.x) * gone;
+    }
+  }
   /// All steps of a path.
   void go(const Path& path) {
     for (const Place& place : path) {
       go(place);
     }
   }
-  /// Of the work, what a region of patch holds, less what is still to be charged, J.
-  [[nodiscard]] double held() const { return energy().held - energy().owed; }
+  /// Of the work, what the region of patch holds, less what is still to be charged, J.
+  [[nodiscard]] double held() const { return energy().held - energy().owed - energy().lent; }
   [[nodiscard]] double owed() const { return energy().owed; }
   [[nodiscard]] const Hand& hand() const { return hand_; }
 

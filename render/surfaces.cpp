@@ -32,20 +32,21 @@ Image2d make_color_maps(const Gpu& gpu) {
 
 void fit_surfaces(const Gpu& gpu, vk::Extent2D extent, vk::Format color_format,
                   vk::SampleCountFlagBits samples, Surfaces& surfaces) {
-  using Usage = vk::ImageUsageFlagBits;
+  using ImageUsage = vk::ImageUsageFlagBits;
   if (samples != vk::SampleCountFlagBits::e1) {
     surfaces.color = make_image(gpu, extent, color_format, samples,
-                                Usage::eColorAttachment | Usage::eTransientAttachment);
+                                ImageUsage::eColorAttachment | ImageUsage::eTransientAttachment);
   }
-  surfaces.depth = make_image(gpu, extent, kDepthFormat, samples, Usage::eDepthStencilAttachment);
+  surfaces.depth =
+      make_image(gpu, extent, kDepthFormat, samples, ImageUsage::eDepthStencilAttachment);
 }
 
 Surfaces make_surfaces(const Gpu& gpu, std::uint32_t shadow_size, const OverlayAtlas* glyphs) {
-  using Usage = vk::ImageUsageFlagBits;
+  using ImageUsage = vk::ImageUsageFlagBits;
   Surfaces surfaces;
   surfaces.shadow_map =
       make_image(gpu, {2 * shadow_size, shadow_size}, kDepthFormat, vk::SampleCountFlagBits::e1,
-                 Usage::eDepthStencilAttachment | Usage::eSampled);
+                 ImageUsage::eDepthStencilAttachment | ImageUsage::eSampled);
   surfaces.color_maps = make_color_maps(gpu);
   if (glyphs != nullptr) {
     surfaces.glyphs =

@@ -148,6 +148,7 @@ struct SmoothContact {
   double share = 0.0;        // 1: known from the shapes; 0: not, what the cells show counts
   double depth = 0.0;        // m, along the common normal
   glm::dvec2 place{0.0};     // m, grid
+  glm::dvec2 extent{0.0};    // m: half the overlap's, along the grid's axes
   double curvature_1 = 0.0;  // 1/m, principal, of both surfaces together
   double curvature_2 = 0.0;  // 1/m, the larger
   double beyond = 0.0;  // how far the surfaces part at the edge beyond their paraboloid, relative

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/body_models/support_field.hpp"
+#include "systems/contact_models/smooth_contact.hpp"
 #include "systems/frames.hpp"
 #include "systems/patch_grid.hpp"
 #include "systems/widest.hpp"
@@ -47,7 +48,8 @@ void for_loaded(const LoadedCells& cells, const Each& each) {
 ContactEllipse disc_of(const World& world, std::uint32_t region) {
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
   const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-  const double least = 1e-3 * std::max(frame.half_size.x, frame.half_size.y);
+  const glm::dvec2 extent = overlap_extent(world, region);
+  const double least = 1e-3 * std::max(extent.x, extent.y);
   ContactEllipse disc;
   disc.center = geometry.rest_point;
   disc.normal = frame.normal;

@@ -12,6 +12,7 @@
 #include "systems/distance_shapes.hpp"
 #include "systems/frames.hpp"
 #include "systems/grid_cells.hpp"
+#include "systems/grid_place.hpp"
 #include "systems/smooth_step.hpp"
 #include "systems/surface_piece.hpp"
 
@@ -252,6 +253,7 @@ SmoothContact find_contact(const Grid& grid, const RegionGeometry& geometry,
   if (contact.share <= 0.0) {
     return contact;
   }
+  contact.extent = glm::sqrt(2.0 * contact.depth * glm::dvec2(inverse[0][0], inverse[1][1]));
   contact.curvature_1 = bend.small;
   contact.curvature_2 = bend.large;
   contact.beyond = beyond_paraboloid(tool, body, *at, bend,
@@ -262,7 +264,8 @@ SmoothContact find_contact(const Grid& grid, const RegionGeometry& geometry,
   return contact;
 }
 
-/// The frame's normal, and the geometry's points, go to what the shapes say as far as it is known.
+/// The frame's normal, and the geometry's points and depth, go to what the shapes say as far as it
+/// is known.
 /// @return the deepest place on the body, m, grid
 glm::dvec2 move_region_to(const CommonNormal& at, double share, RegionFrame& frame,
                           RegionGeometry& geometry) {
@@ -271,12 +274,22 @@ glm::dvec2 move_region_to(const CommonNormal& at, double share, RegionFrame& fra
   const glm::dvec3 normal = grid_to_body(frame, at.normal) - frame.origin;
   turn_normal_to(frame, glm::normalize(glm::mix(frame.normal, normal, share)));
   geometry.mean_normal = frame.normal;
+  geometry.largest_depth = std::lerp(geometry.largest_depth, at.depth, share);
   geometry.equivalent_point = glm::mix(geometry.equivalent_point, tool_point, share);
   geometry.rest_point = glm::mix(geometry.rest_point, body_point, share);
   return glm::dvec2(body_to_grid(frame, body_point));
 }
 
 }  // namespace
+
+glm::dvec2 overlap_extent(const World& world, std::uint32_t region) {
+  const glm::dvec2 of_grid = world.regions.at<RegionFrame>(region).half_size / kGridMargin;
+  const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
+  const SmoothContact& contact = world.regions.at<SmoothContact>(region);
+  const bool known =
+      world.bodies.at<BodyModels>(body).contact == ContactModel::kMdr && contact.depth > 0.0;
+  return known ? glm::mix(of_grid, contact.extent, contact.share) : of_grid;
+}
 
 void mdr_contacts(StepContext& context) {
   World& world = context.world;

@@ -5,13 +5,19 @@
 // and a depth whose change is the motion along the common normal, so that a force of it alone does
 // no work around a closed path.
 
+#include <cstdint>
+
 #include "systems/step.hpp"
 
 namespace torsion {
 
 /// Finds SmoothContact of every region of a body with contact model `mdr`. Where it is known it
-/// also turns RegionFrame to the common normal and moves RegionGeometry's points to the deepest
-/// place.
+/// also turns RegionFrame to the common normal and moves RegionGeometry's points and its largest
+/// depth to the deepest place.
 void mdr_contacts(StepContext& context);
+
+/// Half of the overlap's extent along the grid's axes, m: that of the shapes as far as
+/// SmoothContact is known, else the grid's own.
+glm::dvec2 overlap_extent(const World& world, std::uint32_t region);
 
 }  // namespace torsion

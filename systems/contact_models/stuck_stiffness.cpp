@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/contact_models/elliptic_contact.hpp"
-#include "systems/grid_place.hpp"
+#include "systems/contact_models/smooth_contact.hpp"
 #include "systems/patch_grid.hpp"
 
 namespace torsion {
@@ -36,7 +36,7 @@ StuckStiffness stuck_stiffness(const World& world, std::uint32_t region, double 
   const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
   const double g = elasticity.shear_modulus();
   const double nu = elasticity.poisson_ratio;
-  const glm::dvec2 half = world.regions.at<RegionFrame>(region).half_size / kGridMargin;
+  const glm::dvec2 half = overlap_extent(world, region);
   const double axes = axes_of(half, radius, !has_patch(world, identity));
   const double cube = cube_of(radius);
   const double share = ellipse_shares(axes).force;

@@ -55,6 +55,9 @@ const InvarianceCase kInvarianceCases[] = {
 // A grid so coarse that its place tells in how many steps it has come there; and the paper's cube,
 // whose ports are mirror images, too.
 const InvarianceCase kOtherInvarianceCases[] = {
+    {"mdr_on_cube",
+     {.model = ContactModel::kMdr, .poisson = 0.45, .body = BodyModel::kCompliance},
+     1e-8},
     {"patch8", {.poisson = 0.45, .side = 8}, 1e-8},
     {"patch12_on_cube", {.poisson = 0.45, .side = 12, .body = BodyModel::kCompliance}, 1e-8},
     {"patch16_on_cube", {.poisson = 0.3, .body = BodyModel::kCompliance}, 1e-8},

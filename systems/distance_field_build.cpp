@@ -60,7 +60,7 @@ class RowWalk {
   std::uint32_t hint_ = kNoRow;
 };
 
-/// Box, spacing and counts of the coarse grid.
+/// Box, spacing and counts of the coarse grid; no cells where the mesh has no extent.
 DistanceField coarse_grid(const SurfaceMesh& mesh, const FieldOptions& options) {
   glm::dvec3 lowest = mesh.positions[mesh.triangles[0].x];
   glm::dvec3 highest = lowest;
@@ -75,6 +75,9 @@ DistanceField coarse_grid(const SurfaceMesh& mesh, const FieldOptions& options) 
   header.subdivision = options.subdivision;
   header.spacing =
       std::max({extent.x, extent.y, extent.z}) / (options.coarse_cells - 2.0 * kMargin);
+  if (!(header.spacing > 0.0) || !std::isfinite(header.spacing)) {
+    return header;
+  }
   header.cells = glm::uvec3(glm::ceil(extent / header.spacing + 2.0 * kMargin - 1e-9));
   header.origin = 0.5 * (lowest + highest) - 0.5 * header.spacing * glm::dvec3(header.cells);
   return header;
@@ -203,7 +206,7 @@ Result<BuiltField> build_distance_field(const SurfaceMesh& mesh, const FieldOpti
   }
   BuiltField field;
   field.header = coarse_grid(mesh, options);
-  if (!(field.header.spacing > 0.0) || !std::isfinite(field.header.spacing)) {
+  if (field.header.cells == glm::uvec3(0)) {
     return Error{"the mesh has no extent, so it encloses no volume to measure distances to"};
   }
   fill_coarse_nodes(distance.value(), options.threads, field);

@@ -87,8 +87,8 @@ void foresee(std::size_t count, double share, const double* __restrict change,
   Wide total{};
   std::size_t cell = 0;
   for (; cell + kPatchLanes <= count; cell += kPatchLanes) {
-    const Wide by = lanes_at(change + cell);
-    lanes_at(to + cell) += share * by;
+    const Wide by = lanes_at(change + cell).all;
+    lanes_at(to + cell).all += share * by;
     total += by < 0.0 ? -by : by;
   }
   for (std::size_t lane = 0; cell < count; ++cell, ++lane) {
@@ -112,10 +112,10 @@ void add_slope(std::size_t count, const double* __restrict target, const double*
   Wide stiffness{};
   std::size_t cell = 0;
   for (; cell + kPatchLanes <= count; cell += kPatchLanes) {
-    const Wide to = lanes_at(target + cell);
-    const Wide by = lanes_at(change + cell);
-    slope += by * (to > kNoContact ? to - lanes_at(moved + cell) : Wide{});
-    stiffness += by * lanes_at(moves + cell);
+    const Wide to = lanes_at(target + cell).all;
+    const Wide by = lanes_at(change + cell).all;
+    slope += by * (to > kNoContact ? to - lanes_at(moved + cell).all : Wide{});
+    stiffness += by * lanes_at(moves + cell).all;
   }
   for (std::size_t lane = 0; cell < count; ++cell, ++lane) {
     slope[lane] += change[cell] * (target[cell] > kNoContact ? target[cell] - moved[cell] : 0.0);
@@ -170,21 +170,21 @@ void add_up(std::size_t count, const PatchColumns& columns, const PatchPlaces& p
   const Wide none{};
   std::array<Wide, kSums> sums{};
   for (std::size_t cell = 0; cell < count; cell += kPatchLanes) {
-    const Wide pressure = lanes_at(&columns.pressure[cell]);
-    const Wide x = lanes_at(&places.x[cell]);
-    const Wide y = lanes_at(&places.y[cell]);
-    const Wide moved_x = lanes_at(&columns.moved_x[cell]);
-    const Wide moved_y = lanes_at(&columns.moved_y[cell]);
-    const Wide traction_x = lanes_at(&columns.traction_x[cell]);
-    const Wide traction_y = lanes_at(&columns.traction_y[cell]);
+    const Wide pressure = lanes_at(&columns.pressure[cell]).all;
+    const Wide x = lanes_at(&places.x[cell]).all;
+    const Wide y = lanes_at(&places.y[cell]).all;
+    const Wide moved_x = lanes_at(&columns.moved_x[cell]).all;
+    const Wide moved_y = lanes_at(&columns.moved_y[cell]).all;
+    const Wide traction_x = lanes_at(&columns.traction_x[cell]).all;
+    const Wide traction_y = lanes_at(&columns.traction_y[cell]).all;
     const Wide by_x = pressure * x;
     const Wide by_y = pressure * y;
     const Wide loaded = pressure > 0.0 ? one : none;
     sums[kPressure] += pressure;
     sums[kPlaceX] += by_x;
     sums[kPlaceY] += by_y;
-    sums[kHeight] += pressure * lanes_at(&places.height[cell]);
-    sums[kDepth] += pressure * lanes_at(&columns.depth[cell]);
+    sums[kHeight] += pressure * lanes_at(&places.height[cell]).all;
+    sums[kDepth] += pressure * lanes_at(&columns.depth[cell]).all;
     sums[kMovedX] += pressure * moved_x;
     sums[kMovedY] += pressure * moved_y;
     sums[kMoment] += by_x * moved_y - by_y * moved_x;
@@ -193,7 +193,7 @@ void add_up(std::size_t count, const PatchColumns& columns, const PatchPlaces& p
     sums[kTractionY] += loaded * traction_y;
     sums[kCouple] += x * traction_y - y * traction_x;
     sums[kLoaded] += loaded;
-    sums[kStuck] += loaded * (one - lanes_at(&columns.slips[cell]));
+    sums[kStuck] += loaded * (one - lanes_at(&columns.slips[cell]).all);
   }
   totals = sums;
 }
@@ -205,7 +205,7 @@ void add_up(std::size_t count, const double* __restrict pressures, Wide& __restr
   Wide sums{};
   Wide counts{};
   for (std::size_t cell = 0; cell < count; cell += kPatchLanes) {
-    const Wide pressure = lanes_at(pressures + cell);
+    const Wide pressure = lanes_at(pressures + cell).all;
     sums += pressure;
     counts += pressure > 0.0 ? Wide{} + 1.0 : Wide{};
   }

@@ -39,25 +39,25 @@ void add_up(std::size_t count, const PatchColumns& columns, const double* __rest
   const Wide none{};
   const Wide one = none + 1.0;
   for (std::size_t cell = 0; cell < count; cell += kPatchLanes) {
-    const Wide pressure = lanes_at(&columns.pressure[cell]);
-    const Wide traction_x = lanes_at(&columns.traction_x[cell]);
-    const Wide traction_y = lanes_at(&columns.traction_y[cell]);
-    const Wide down = lanes_at(&columns.depression[cell]);
-    const Wide moved_x = lanes_at(&columns.moved_x[cell]);
-    const Wide moved_y = lanes_at(&columns.moved_y[cell]);
-    const Wide sticks = one - lanes_at(&columns.slips[cell]);
-    const Wide gap = down + lanes_at(sunk + cell) - lanes_at(&columns.depth[cell]);
+    const Wide pressure = lanes_at(&columns.pressure[cell]).all;
+    const Wide traction_x = lanes_at(&columns.traction_x[cell]).all;
+    const Wide traction_y = lanes_at(&columns.traction_y[cell]).all;
+    const Wide down = lanes_at(&columns.depression[cell]).all;
+    const Wide moved_x = lanes_at(&columns.moved_x[cell]).all;
+    const Wide moved_y = lanes_at(&columns.moved_y[cell]).all;
+    const Wide sticks = one - lanes_at(&columns.slips[cell]).all;
+    const Wide gap = down + lanes_at(sunk + cell).all - lanes_at(&columns.depth[cell]).all;
     // No choice within a choice, which the compiler makes cell by cell.
     const Wide overlap = gap < 0.0 ? gap : none;
     const Wide apart = pressure > 0.0 ? gap - overlap : none;
     const Wide z = overlap + apart;
-    const Wide x = sticks * (moved_x - lanes_at(&columns.target_x[cell]));
-    const Wide y = sticks * (moved_y - lanes_at(&columns.target_y[cell]));
+    const Wide x = sticks * (moved_x - lanes_at(&columns.target_x[cell]).all);
+    const Wide y = sticks * (moved_y - lanes_at(&columns.target_y[cell]).all);
     total.stored += pressure * down + traction_x * moved_x + traction_y * moved_y;
     total.left += pressure * z + traction_x * x + traction_y * y;
-    lanes_at(left_x + cell) = x;
-    lanes_at(left_y + cell) = y;
-    lanes_at(left_z + cell) = z;
+    lanes_at(left_x + cell).all = x;
+    lanes_at(left_y + cell).all = y;
+    lanes_at(left_z + cell).all = z;
   }
   sums = total;
 }

@@ -16,9 +16,9 @@ struct AskedOfRow {
 
 /// @param wanted  at the first of the cells
 TORSION_LANES AskedOfRow ask_row(const LocalInverse& inverse, const double* wanted) {
-  const Wide middle = lanes_at(wanted);
+  const Wide middle = lanes_at(wanted).all;
   // Sums in pairs, so that a mirror image has the same bits.
-  const Wide sides = lanes_at(wanted - 1) + lanes_at(wanted + 1);
+  const Wide sides = lanes_at(wanted - 1).all + lanes_at(wanted + 1).all;
   return {inverse.here * middle + inverse.along_x * sides,
           inverse.along_y * middle + inverse.corner * sides};
 }
@@ -31,7 +31,7 @@ TORSION_LANES void ask_columns(const LocalInverse& inverse, std::uint32_t side,
   AskedOfRow middle = ask_row(inverse, wanted);
   for (std::size_t row = 0; row < side; ++row) {
     const AskedOfRow high = ask_row(inverse, wanted + (row + 1) * width);
-    lanes_at(asked + row * side) = middle.here + (low.beside + high.beside);
+    lanes_at(asked + row * side).all = middle.here + (low.beside + high.beside);
     low = middle;
     middle = high;
   }
@@ -48,7 +48,7 @@ TORSION_WIDEST
 double dot(std::size_t count, const double* a, const double* b) {
   Wide sums{};
   for (std::size_t k = 0; k < count; k += kPatchLanes) {
-    sums += lanes_at(a + k) * lanes_at(b + k);
+    sums += lanes_at(a + k).all * lanes_at(b + k).all;
   }
   return sum_of(sums);
 }
@@ -58,7 +58,8 @@ double dot(std::size_t count, const double* a_x, const double* a_y, const double
            const double* b_y) {
   Wide sums{};
   for (std::size_t k = 0; k < count; k += kPatchLanes) {
-    sums += lanes_at(a_x + k) * lanes_at(b_x + k) + lanes_at(a_y + k) * lanes_at(b_y + k);
+    sums += lanes_at(a_x + k).all * lanes_at(b_x + k).all +
+            lanes_at(a_y + k).all * lanes_at(b_y + k).all;
   }
   return sum_of(sums);
 }
@@ -67,7 +68,7 @@ TORSION_WIDEST
 double largest(std::size_t count, const double* values) {
   Wide most{};
   for (std::size_t k = 0; k < count; k += kPatchLanes) {
-    const Wide value = lanes_at(values + k);
+    const Wide value = lanes_at(values + k).all;
     most = value > most ? value : most;
   }
   return largest_of(most);
@@ -96,7 +97,7 @@ void to_border(std::uint32_t side, const double* __restrict cells, double* __res
     for (std::size_t i = 0; i < side; i += kPatchLanes) {
       // The last eight end with the row: some are copied twice.
       const std::size_t at = i + kPatchLanes <= side ? i : side - kPatchLanes;
-      lanes_at(to + at) = lanes_at(from + at);
+      lanes_at(to + at).all = lanes_at(from + at).all;
     }
   }
 }
@@ -107,13 +108,14 @@ void apply_local_inverse(const LocalInverse& inverse, double scale, std::uint32_
   const std::size_t width = std::size_t{side} + 2;
   const LocalInverse by = scaled(inverse, scale);
   for (std::size_t row = 0; side < kPatchLanes && row < side; ++row) {
-    const double* const from = wanted + (row + 1) * width + 1;
+    const double* const low = wanted + row * width;
+    const double* const middle = low + width;
+    const double* const high = middle + width;
     double* const to = asked + row * side;
     for (std::size_t i = 0; i < side; ++i) {
-      to[i] = by.here * from[i] + by.along_x * (from[i - 1] + from[i + 1]) +
-              by.along_y * (from[i - width] + from[i + width]) +
-              by.corner * ((from[i - width - 1] + from[i + width + 1]) +
-                           (from[i - width + 1] + from[i + width - 1]));
+      to[i] = by.here * middle[i + 1] + by.along_x * (middle[i] + middle[i + 2]) +
+              by.along_y * (low[i + 1] + high[i + 1]) +
+              by.corner * ((low[i] + high[i + 2]) + (low[i + 2] + high[i]));
     }
   }
   for (std::size_t i = 0; side >= kPatchLanes && i < side; i += kPatchLanes) {
@@ -137,9 +139,10 @@ double wanted_by_asked(const LocalInverse& inverse, double scale, std::uint32_t 
   Wide sums{};
   for (std::size_t k = 0; k < count; k += kPatchLanes) {
     const double* const at = wanted + width + k;
-    sums += lanes_at(at) *
-            (here * lanes_at(at) + along_x * lanes_at(at + 1) + along_y * lanes_at(at + width) +
-             corner * (lanes_at(at + width - 1) + lanes_at(at + width + 1)));
+    sums +=
+        lanes_at(at).all * (here * lanes_at(at).all + along_x * lanes_at(at + 1).all +
+                            along_y * lanes_at(at + width).all +
+                            corner * (lanes_at(at + width - 1).all + lanes_at(at + width + 1).all));
   }
   return 2.0 * scale * sum_of(sums);
 }
@@ -159,10 +162,10 @@ double keep_asked(std::size_t count, const double* __restrict residual, double* 
   Wide sums{};
   const Wide none{};
   for (std::size_t k = 0; k < count; k += kPatchLanes) {
-    const Wide left = lanes_at(residual + k);
-    const Wide all = lanes_at(asked + k);
+    const Wide left = lanes_at(residual + k).all;
+    const Wide all = lanes_at(asked + k).all;
     const Wide kept = left != 0.0 ? all : none;
-    lanes_at(asked + k) = kept;
+    lanes_at(asked + k).all = kept;
     sums += left * kept;
   }
   return sum_of(sums);
@@ -174,11 +177,11 @@ double mix_pressures(std::size_t count, const double* __restrict residual,
   Wide sums{};
   const Wide none{};
   for (std::size_t k = 0; k < count; k += kPatchLanes) {
-    const Wide wants = lanes_at(asked + k);
-    const Wide mixed = wants + kept * lanes_at(step + k);
+    const Wide wants = lanes_at(asked + k).all;
+    const Wide mixed = wants + kept * lanes_at(step + k).all;
     const Wide way = wants != 0.0 ? mixed : none;
-    lanes_at(step + k) = way;
-    sums += lanes_at(residual + k) * way;
+    lanes_at(step + k).all = way;
+    sums += lanes_at(residual + k).all * way;
   }
   return sum_of(sums);
 }
@@ -191,11 +194,11 @@ SweepChange change_pressures(std::size_t count, double length, const double* __r
   Wide sums{};
   Wide least{};
   for (std::size_t k = 0; k < count; k += kPatchLanes) {
-    const Wide way = length * lanes_at(step + k);
-    const Wide to = lanes_at(pressure + k) + way;
-    lanes_at(step + k) = way;
-    lanes_at(pressure + k) = to;
-    lanes_at(depression + k) += length * lanes_at(moves + k);
+    const Wide way = length * lanes_at(step + k).all;
+    const Wide to = lanes_at(pressure + k).all + way;
+    lanes_at(step + k).all = way;
+    lanes_at(pressure + k).all = to;
+    lanes_at(depression + k).all += length * lanes_at(moves + k).all;
     const Wide size = way < 0.0 ? -way : way;
     most = size > most ? size : most;
     sums += size;
@@ -220,17 +223,17 @@ bool lose_cells(std::size_t count, double least_depth, const double* __restrict 
   const Wide none{};
   Wide lost{};
   for (std::size_t k = 0; k < count; k += kPatchLanes) {
-    const Wide has = lanes_at(pressure + k);
-    const Wide has_x = lanes_at(traction_x + k);
-    const Wide has_y = lanes_at(traction_y + k);
-    const Wide deep = lanes_at(depth + k) > least_depth ? has : none;
+    const Wide has = lanes_at(pressure + k).all;
+    const Wide has_x = lanes_at(traction_x + k).all;
+    const Wide has_y = lanes_at(traction_y + k).all;
+    const Wide deep = lanes_at(depth + k).all > least_depth ? has : none;
     const Wide keeps = deep > 0.0 ? none + 1.0 : none;
-    lanes_at(pressure + k) = has * keeps;
-    lanes_at(traction_x + k) = has_x * keeps;
-    lanes_at(traction_y + k) = has_y * keeps;
-    lanes_at(change_pressure + k) = has * (keeps - 1.0);
-    lanes_at(change_x + k) = has_x * (keeps - 1.0);
-    lanes_at(change_y + k) = has_y * (keeps - 1.0);
+    lanes_at(pressure + k).all = has * keeps;
+    lanes_at(traction_x + k).all = has_x * keeps;
+    lanes_at(traction_y + k).all = has_y * keeps;
+    lanes_at(change_pressure + k).all = has * (keeps - 1.0);
+    lanes_at(change_x + k).all = has_x * (keeps - 1.0);
+    lanes_at(change_y + k).all = has_y * (keeps - 1.0);
     lost += (1.0 - keeps) * (has * has + has_x * has_x + has_y * has_y);
   }
   return sum_of(lost) > 0.0;

@@ -98,13 +98,13 @@ void add_up_step(const TractionColumns& cells, TractionStep& __restrict step) {
   Wide clipped{};
   const Wide none{};
   for (std::size_t k = 0; k < cells.count; k += kPatchLanes) {
-    const Wide left_x = lanes_at(cells.target_x + k) - lanes_at(cells.moved_x + k);
-    const Wide left_y = lanes_at(cells.target_y + k) - lanes_at(cells.moved_y + k);
-    const Wide slips = lanes_at(cells.slips + k);
-    const Wide clips = lanes_at(cells.clips + k);
+    const Wide left_x = lanes_at(cells.target_x + k).all - lanes_at(cells.moved_x + k).all;
+    const Wide left_y = lanes_at(cells.target_y + k).all - lanes_at(cells.moved_y + k).all;
+    const Wide slips = lanes_at(cells.slips + k).all;
+    const Wide clips = lanes_at(cells.clips + k).all;
     const Wide ends = slips > clips ? slips : clips;
-    slope += left_x * lanes_at(cells.step_x + k) + left_y * lanes_at(cells.step_y + k);
-    slipped += lanes_at(cells.limit + k) > 0.0 ? ends : none;
+    slope += left_x * lanes_at(cells.step_x + k).all + left_y * lanes_at(cells.step_y + k).all;
+    slipped += lanes_at(cells.limit + k).all > 0.0 ? ends : none;
     clipped += (1.0 - slips) * clips;
   }
   step = {sum_of(slope), sum_of(slipped), sum_of(clipped)};
@@ -117,11 +117,11 @@ double limits(std::size_t count, const double* __restrict pressure,
               const double* __restrict traction_y, double* __restrict limit) {
   Wide most{};
   for (std::size_t k = 0; k < count; k += kPatchLanes) {
-    const Wide x = lanes_at(traction_x + k);
-    const Wide y = lanes_at(traction_y + k);
-    const Wide radius = lanes_at(friction + k) * lanes_at(pressure + k);
+    const Wide x = lanes_at(traction_x + k).all;
+    const Wide y = lanes_at(traction_y + k).all;
+    const Wide radius = lanes_at(friction + k).all * lanes_at(pressure + k).all;
     const Wide over = (x * x + y * y) - kInside * radius * radius;
-    lanes_at(limit + k) = radius;
+    lanes_at(limit + k).all = radius;
     most = over > most ? over : most;
   }
   return largest_of(most);
@@ -132,9 +132,9 @@ void change_both(const TractionColumns& cells, double length, SweepChange& __res
   Wide most{};
   Wide sums{};
   const auto go = [&most, &sums, length](double* step, double* to) {
-    const Wide way = length * lanes_at(step);
-    lanes_at(step) = way;
-    lanes_at(to) += way;
+    const Wide way = length * lanes_at(step).all;
+    lanes_at(step).all = way;
+    lanes_at(to).all += way;
     const Wide size = way < 0.0 ? -way : way;
     most = size > most ? size : most;
     sums += size;

@@ -18,16 +18,18 @@ using Wide = double __attribute__((vector_size(sizeof(double) * kPatchLanes)));
 
 #define TORSION_LANES static inline __attribute__((always_inline))
 
-/// The eight numbers from one on, to be read or written.
-using LooseWide = double
-    __attribute__((vector_size(sizeof(double) * kPatchLanes), aligned(sizeof(double)), may_alias));
+/// The eight numbers from one on, to be read or written. A vector type of less alignment is not
+/// enough: clang forgets that where it is referred to, and takes the address for a multiple of 64.
+struct __attribute__((packed, aligned(alignof(double)), may_alias)) LooseLanes {
+  Wide all;
+};
 
-TORSION_LANES const LooseWide& lanes_at(const double* first) {
-  return *reinterpret_cast<const LooseWide*>(first);
+TORSION_LANES const LooseLanes& lanes_at(const double* first) {
+  return *reinterpret_cast<const LooseLanes*>(first);
 }
 
-TORSION_LANES LooseWide& lanes_at(double* first) {
-  return *reinterpret_cast<LooseWide*>(first);
+TORSION_LANES LooseLanes& lanes_at(double* first) {
+  return *reinterpret_cast<LooseLanes*>(first);
 }
 
 TORSION_LANES double sum_of(const Wide& lanes) {

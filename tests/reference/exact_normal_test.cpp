@@ -214,7 +214,7 @@ TEST(HertzEllipseTest, DisplacementOutsideIsThatOfItsPressure) {
     double sum = 0.0;
     for (int i = 0; i < kDirections; ++i) {
       const double direction = 2.0 * pi * i / kDirections;
-      sum += integrate(radial, [&](double angle) {
+      sum += integrate(radial, [&, x = x, y = y](double angle) {
         const double t = std::sin(angle);
         const double distance =
             std::hypot(x - a * t * std::cos(direction), y - b * t * std::sin(direction));

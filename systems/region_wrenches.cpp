@@ -62,8 +62,8 @@ void fade_event(RegionWrench& wrench, const Wrench& computed, double foretold, d
     wrench.event_share = 1.0;
   } else if (event == RegionEvent::kGridLaidAnew && wrench.event_share == 0.0) {
     // All that the last step does not foretell is the grid's; where the motion turns back, so does
-    // what it foretells. Of grids that follow upon each other
-    // within the fade, while a tool is pressed in fast, only the first: the force must not wait.
+    // what it foretells. Of grids that follow upon each other within the fade, while a tool is
+    // pressed in fast, only the first: the force must not wait.
     wrench.event_change = before + wrench.event_change * foretold - computed;
     wrench.event_share = 1.0;
   } else {

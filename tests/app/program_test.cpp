@@ -232,6 +232,21 @@ TEST(CheckTest, SaysWhatRunsAndWhatStaysOff) {
   EXPECT_NE(ran.out.find("body model none (the command line says so)"), std::string::npos);
 }
 
+TEST(CheckTest, AndTheSummarySayWhatAutoTakesAndWhy) {
+  const std::string round = "contact model mdr (auto: one round contact, error of mdr ";
+  const std::string soft = "body model compliance (auto: the body is not endless";
+  const Ran check = run_torsion({"check", scene("ball_on_cube")});
+  EXPECT_NE(check.out.find(round), std::string::npos) << check.out;
+  EXPECT_NE(check.out.find(soft), std::string::npos) << check.out;
+  const Ran simulate = run_torsion({"simulate", scene("ball_on_cube"), "--seconds", "0.01"});
+  EXPECT_NE(simulate.out.find(round), std::string::npos) << simulate.out;
+  EXPECT_NE(simulate.out.find(soft), std::string::npos) << simulate.out;
+  const Ran mesh = run_torsion({"check", scene("compass_on_ellipsoid")});
+  EXPECT_NE(mesh.out.find("contact model patch (auto: a contact with edges or of a mesh"),
+            std::string::npos)
+      << mesh.out;
+}
+
 TEST(CheckTest, JsonNamesBodiesToolsAndSystems) {
   const Ran ran = run_torsion({"check", scene("two_bodies"), "--json"});
   ASSERT_EQ(ran.exit_code, 0) << ran.err;

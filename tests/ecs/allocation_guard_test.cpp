@@ -41,7 +41,7 @@ TEST(AllocationGuardTest, CountsTheCFamily) {
   EXPECT_EQ(guard.releases(), 3U);
 }
 
-#ifndef __SANITIZE_THREAD__  // ThreadSanitizer tells its listeners nothing of aligned_alloc
+#ifndef TORSION_SANITIZED_THREADS  // ThreadSanitizer tells its listeners nothing of aligned_alloc
 TEST(AllocationGuardTest, CountsAlignedAlloc) {
   const AllocationGuard guard;
   kept = std::aligned_alloc(64, 64);

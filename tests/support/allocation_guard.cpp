@@ -3,14 +3,6 @@
 #include <cerrno>
 #include <cstddef>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define TORSION_SANITIZER_HEAP 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define TORSION_SANITIZER_HEAP 1
-#endif
-#endif
-
 namespace {
 
 // Plain thread-local integers: touching them never allocates, so the counting cannot count itself.
@@ -23,7 +15,7 @@ void count_release(const volatile void* block) {
 
 }  // namespace
 
-#ifdef TORSION_SANITIZER_HEAP
+#ifdef TORSION_SANITIZED
 
 // A sanitizer owns malloc, but lets us listen.
 extern "C" int

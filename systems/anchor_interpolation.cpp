@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 #include <glm/geometric.hpp>
 
+#include "systems/widest.hpp"
+
 namespace torsion {
 
 std::vector<InterpolationRow> invert_interpolation(std::span<const glm::dvec3> centers) {
@@ -68,6 +70,7 @@ glm::dvec3 interpolate(const InterpolationWeights& weights, const glm::dvec3& po
   return value;
 }
 
+TORSION_WIDEST
 void interpolate_block(const InterpolationWeights& weights, const BlockVectors& points,
                        BlockVectors& field, std::span<const ScalarColumn> columns) {
   const glm::vec3 constant(weights.constant);

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include "ecs/frame_world.hpp"
@@ -75,11 +76,17 @@ double freedom(const BodyField& field, const glm::dvec3& point);
 
 /// How a turn's contact has a point.
 struct ContactShare {
-  double share = 0.0;  // 1 within the contact, 0 from two radii on: there anchors alone have it
+  double share = 0.0;  // 1 within the contact, 0 from two radii on
   double angle = 0.0;  // rad: by which the body turns it
   double left = 0.0;   // rad: that the interpolated displacements go round, which is in it
 };
 ContactShare share_of_contact(const BodyTurn& turn, const glm::dvec3& point);
+
+/// Whether it has any of it. From two radii on anchors alone have a point, which is most of them.
+inline bool is_under_contact(const BodyTurn& turn, const glm::dvec3& point) {
+  const glm::dvec3 away = point - turn.point;
+  return glm::dot(away, away) < 4.0 * turn.radius * turn.radius;
+}
 
 /// Displacement of the axes about which the body turns, at the height of a point [m, body].
 glm::dvec3 middle_at(const BodyField& field, const glm::dvec3& point);

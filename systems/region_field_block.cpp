@@ -1,12 +1,16 @@
 // The fields of systems/region_field.hpp for blocks of points, in float. Most points of a body are
 // far from a region, where one force and one couple are all there is to it.
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include <glm/geometric.hpp>
 
 #include "systems/region_field.hpp"
+#include "systems/smooth_step.hpp"
+#include "systems/widest.hpp"
 
 namespace torsion {
 namespace {
@@ -37,6 +41,7 @@ SpreadForce spread_force(const PressedSurface& pressed, const PressedSurface::Fo
 }
 
 /// Source: Johnson, Contact Mechanics (1985), eq. 3.18 and 3.75, as in displacement_by_force().
+TORSION_WIDEST
 void add_displacements_by(const SpreadForce& by, const BlockVectors& points, std::size_t used,
                           BlockVectors& sum) {
   const glm::vec3 n = by.normal;
@@ -66,29 +71,112 @@ void add_displacements_by(const SpreadForce& by, const BlockVectors& points, std
   }
 }
 
-}  // namespace
+/// Where points are about discs' common centre.
+struct PlacesAboutDiscs {
+  BlockColumn height;  // m
+  BlockColumn square;  // m^2: of the distance
+};
 
-void TurnedDiscs::angles(const BlockVectors& points, std::size_t used, BlockColumn& angles) const {
-  const glm::vec3 c(center);
-  const glm::vec3 up(normal);
-  const auto far_3 = static_cast<float>(turn_3);
-  const auto far_5 = static_cast<float>(turn_5);
-  BlockColumn square;
+TORSION_WIDEST
+void find_places(const TurnedDiscs& discs, const BlockVectors& points, PlacesAboutDiscs& places) {
+  const glm::vec3 c(discs.center);
+  const glm::vec3 up(discs.normal);
   for (std::size_t i = 0; i < kPointBlock; ++i) {
     const float dx = points.x[i] - c.x;
     const float dy = points.y[i] - c.y;
     const float dz = points.z[i] - c.z;
-    square[i] = dx * dx + dy * dy + dz * dz;
-    const float height = dx * up.x + dy * up.y + dz * up.z;
-    const float inverse = 1.0F / square[i];
-    angles[i] = (far_3 + far_5 * inverse * (1.0F - 5.0F * height * height * inverse)) * inverse /
-                std::sqrt(square[i]);
+    places.square[i] = dx * dx + dy * dy + dz * dz;
+    places.height[i] = dx * up.x + dy * up.y + dz * up.z;
   }
-  const auto near = static_cast<float>(kNearRadii * kNearRadii * radius * radius);
-  for (std::size_t i = 0; i < used; ++i) {
-    if (square[i] < near) {
-      angles[i] = static_cast<float>(angle(points.at(i)));
+}
+
+/// TurnedDiscs::far_angle().
+TORSION_WIDEST
+void far_angles(const TurnedDiscs& discs, const PlacesAboutDiscs& places, BlockColumn& angles) {
+  const auto far_3 = static_cast<float>(discs.turn_3);
+  const auto far_5 = static_cast<float>(discs.turn_5);
+  for (std::size_t i = 0; i < kPointBlock; ++i) {
+    const float height = places.height[i];
+    const float inverse = 1.0F / places.square[i];
+    angles[i] = (far_3 + far_5 * inverse * (1.0F - 5.0F * height * height * inverse)) * inverse /
+                std::sqrt(places.square[i]);
+  }
+}
+
+/// Angle of a point at oblate spheroidal height zeta over a disc that turns by 1: 2 / pi times
+/// acot(zeta) - zeta / (1 + zeta^2). The arctangent up to 1 to 2e-8 by Abramowitz & Stegun,
+/// Handbook of Mathematical Functions (1964), 4.4.49.
+inline float angle_over_disc(float zeta) {
+  constexpr float kHalfPi = 0.5F * std::numbers::pi_v<float>;
+  const bool below = zeta < 1.0F;
+  const float x = below ? zeta : 1.0F / zeta;
+  const float z = x * x;
+  const float arctangent =
+      x +
+      x * z *
+          (-0.3333314528F +
+           z * (0.1999355085F +
+                z * (-0.1420889944F +
+                     z * (0.1065626393F +
+                          z * (-0.0752896400F +
+                               z * (0.0429096138F + z * (-0.0161657367F + z * 0.0028662257F)))))));
+  const float arccotangent = below ? kHalfPi - arctangent : arctangent;
+  return (arccotangent - zeta / (1.0F + zeta * zeta)) / kHalfPi;
+}
+
+/// The sum over the discs of TurnedDiscs::angle(). Where a point is inside a disc's cylinder the
+/// root of zeta's equation is taken in the form that keeps its digits.
+/// @param angles  out
+TORSION_WIDEST
+void near_angles(const TurnedDiscs& discs, const PlacesAboutDiscs& places, std::size_t used,
+                 BlockColumn& angles) {
+  std::fill(angles.begin(), angles.end(), 0.0F);
+  for (std::size_t j = 0; j < kFieldDiscs; ++j) {
+    const auto turn = static_cast<float>(discs.turn[j]);
+    const auto per_radius =
+        static_cast<float>(kFieldDiscs / (discs.radius * static_cast<double>(j + 1)));
+    for (std::size_t i = 0; i < used; ++i) {
+      const float z = places.height[i] * per_radius;
+      const float excess = places.square[i] * per_radius * per_radius - 1.0F;
+      const float root = std::sqrt(excess * excess + 4.0F * z * z);
+      const float both = root + std::abs(excess);
+      const float inside = both > 0.0F ? 2.0F * z * z / both : 0.0F;
+      const float zeta = std::sqrt(excess < 0.0F ? inside : 0.5F * both);
+      angles[i] += turn * angle_over_disc(zeta);
     }
+  }
+}
+
+}  // namespace
+
+void TurnedDiscs::angles(const BlockVectors& points, std::size_t used, BlockColumn& angles) const {
+  PlacesAboutDiscs places;
+  find_places(*this, points, places);
+  far_angles(*this, places, angles);
+  // Near points, packed together, and what they get instead.
+  std::array<std::size_t, kPointBlock> rows;
+  PlacesAboutDiscs near;
+  std::size_t found = 0;
+  const auto reach = static_cast<float>(kNearRadii * kNearRadii * radius * radius);
+  for (std::size_t i = 0; i < used; ++i) {
+    if (places.square[i] < reach) {
+      near.height[found] = places.height[i];
+      near.square[found] = places.square[i];
+      rows[found++] = i;
+    }
+  }
+  if (found == 0) {
+    return;
+  }
+  BlockColumn sums;
+  near_angles(*this, near, found, sums);
+  const auto per_radius = static_cast<float>(1.0 / radius);
+  for (std::size_t k = 0; k < found; ++k) {
+    const double distance = std::sqrt(near.square[k]) * per_radius;
+    const auto share = static_cast<float>(1.0 - smooth_step(distance - 3.0));
+    float& angle = angles[rows[k]];
+    // The far field has no end at the centre.
+    angle = share < 1.0F ? share * sums[k] + (1.0F - share) * angle : sums[k];
   }
 }
 

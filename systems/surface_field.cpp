@@ -167,14 +167,14 @@ void interpolate_block(const BodyField& field, VertexBlock& block) {
     const BodyTurn& turn = field.slots[slot].turn;
     for (std::size_t i = 0; i < (turn.share > 0.0 ? block.count : 0); ++i) {
       const glm::dvec3 rest = block.rest.at(i);
-      const ContactShare under = share_of_contact(turn, rest);
       float& angle = block.turn[slot][i];
-      angle += static_cast<float>(under.share * (under.angle - static_cast<double>(angle)));
-      angle *= static_cast<float>(block.free[i]);
-      if (under.share > 0.0) {
+      if (is_under_contact(turn, rest)) {
+        const ContactShare under = share_of_contact(turn, rest);
+        angle += static_cast<float>(under.share * (under.angle - static_cast<double>(angle)));
         block.smooth.set(i, block.smooth.at(i) - under.share * under.left *
                                                      glm::cross(turn.direction, rest - turn.point));
       }
+      angle *= static_cast<float>(block.free[i]);
     }
   }
 }

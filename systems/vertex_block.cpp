@@ -5,9 +5,11 @@
 #include <numbers>
 
 #include "systems/turn_vertex.hpp"
+#include "systems/widest.hpp"
 
 namespace torsion {
 
+TORSION_WIDEST
 void turn_block(const TwistAxis& axis, const BlockColumn& angles, BlockVectors& points) {
   float largest = 0.0F;
   for (const float angle : angles) {

@@ -191,6 +191,24 @@ TEST(HalfSpaceDrawingTest, BlocksOfPointsGetWhatSinglePointsGet) {
   }
 }
 
+// On the surface the root of zeta's equation is nothing under a disc and as the root of the
+// distance beside it: there a float could lose half its digits.
+TEST(HalfSpaceDrawingTest, BlocksOnTheSurfaceGetWhatSinglePointsGet) {
+  std::array<double, kFieldDiscs> turn{};
+  turn.fill(0.02);
+  const TurnedDiscs discs = discs_with(turn);
+  BlockVectors points{};
+  for (std::size_t i = 0; i < kPointBlock; ++i) {
+    const double reach = kRadius * 5.0 * (static_cast<double>(i) + 0.5) / kPointBlock;
+    points.set(i, reach * glm::dvec3(0.8, 0.6, 0.0));
+  }
+  BlockColumn angles{};
+  discs.angles(points, kPointBlock, angles);
+  for (std::size_t i = 0; i < kPointBlock; ++i) {
+    EXPECT_NEAR(static_cast<double>(angles[i]), discs.angle(points.at(i)), 2e-6 * 0.2) << i;
+  }
+}
+
 TEST(HalfSpaceDrawingTest, ABlockTurnsToTheBitsOfSingleVertices) {
   const TwistAxis axis{glm::vec4(0.001F, -0.02F, 0.003F, 0.0F),
                        glm::vec4(glm::normalize(glm::vec3(0.3F, 1.0F, -0.2F)), 0.0F)};

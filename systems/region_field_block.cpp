@@ -170,9 +170,8 @@ void TurnedDiscs::angles(const BlockVectors& points, std::size_t used, BlockColu
   }
   BlockColumn sums;
   near_angles(*this, near, found, sums);
-  const auto per_radius = static_cast<float>(1.0 / radius);
   for (std::size_t k = 0; k < found; ++k) {
-    const double distance = std::sqrt(near.square[k]) * per_radius;
+    const double distance = std::sqrt(static_cast<double>(near.square[k])) / radius;
     const auto share = static_cast<float>(1.0 - smooth_step(distance - 3.0));
     float& angle = angles[rows[k]];
     // The far field has no end at the centre.

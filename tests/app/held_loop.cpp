@@ -25,7 +25,10 @@ Session open(const HeldScene& scene, double rate = 1.0 / kPeriod) {
   options.rate = rate;
   options.contact_model = scene.contact_model;
   options.body_model = scene.body_model;
-  auto opened = open_session(shipped_scene(scene.name), options, true);
+  const bool is_path = scene.name.find('.') != std::string::npos;
+  auto opened =
+      open_session(is_path ? source_folder() + "/scenes/" + scene.name : shipped_scene(scene.name),
+                   options, true);
   EXPECT_TRUE(opened) << opened.error().text;
   return std::move(opened).value();
 }
@@ -71,7 +74,8 @@ double hardest(const HeldScene& scene) {
   return time;
 }
 
-LoopOutcome hold(const HeldScene& scene, const HandTraits& traits, double until, double seconds) {
+LoopOutcome hold(const HeldScene& scene, const HandTraits& traits, double until, double seconds,
+                 const std::function<void(const World&)>& after_step) {
   Session session = open(scene);
   const auto& tools = session.scene.tools;
   World& world = session.simulation.world;
@@ -107,6 +111,9 @@ LoopOutcome hold(const HeldScene& scene, const HandTraits& traits, double until,
                                          : world.tools.at<ToolPose>(0).now;
     }
     step(session.simulation, session.tool_poses);
+    if (after_step) {
+      after_step(world);
+    }
     const std::uint32_t faults = world.clock.at<Clock>(0).faults;
     result = {world.tools.at<ToolPose>(0).now, now, faults != 0, true};
     outcome.faults |= faults;

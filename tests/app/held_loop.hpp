@@ -4,9 +4,10 @@
 // and the hand, one after the other.
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
-#include "ecs/components.hpp"
+#include "ecs/world.hpp"
 #include "tests/systems/emulated_hand.hpp"
 
 namespace torsion::test {
@@ -24,7 +25,7 @@ struct LoopOutcome {
 
 /// What is held, and with which models instead of those that the scene asks for.
 struct HeldScene {
-  std::string name;  // of a file in scenes/
+  std::string name;  // path in scenes/, or the name of a .gltf there
   ContactModel contact_model = ContactModel::kAuto;
   BodyModel body_model = BodyModel::kAuto;
 };
@@ -34,6 +35,8 @@ double hardest(const HeldScene& scene);
 
 /// The person follows the first tool's animation until the time `until`, and holds it there for
 /// `seconds`.
-LoopOutcome hold(const HeldScene& scene, const HandTraits& traits, double until, double seconds);
+/// @param after_step  is shown the world after every step, if set
+LoopOutcome hold(const HeldScene& scene, const HandTraits& traits, double until, double seconds,
+                 const std::function<void(const World&)>& after_step = {});
 
 }  // namespace torsion::test

@@ -1,0 +1,47 @@
+// Every shipped scene with every pair of models comes to the bits that it came to when
+// tests/app/pinned_results.txt was last renewed. A change of layout or speed must keep them; a
+// change of results renews the file by `./dev pin` and says in its commit why.
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/app/run_digest.hpp"
+
+namespace torsion::test {
+namespace {
+
+std::vector<std::string> pinned_lines() {
+  std::ifstream file(pinned_file());
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) {
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+class PinnedResultTest : public testing::TestWithParam<PinnedRun> {};
+
+TEST_P(PinnedResultTest, IsTheSameToTheBit) {
+  const std::string line = pinned_line(GetParam(), digest_of(GetParam()));
+  const std::vector<std::string> lines = pinned_lines();
+  EXPECT_TRUE(std::ranges::find(lines, line) != lines.end())
+      << "not in " << pinned_file() << ":\n"
+      << line << "\nIf the result was meant to change, or this machine's instruction set is new "
+      << "there, run ./dev pin and say in the commit why.";
+}
+
+std::string test_name(const testing::TestParamInfo<PinnedRun>& run) {
+  std::string name = name_of(run.param);
+  std::ranges::replace_if(
+      name, [](unsigned char letter) { return std::isalnum(letter) == 0; }, '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, PinnedResultTest, testing::ValuesIn(pinned_runs()), test_name);
+
+}  // namespace
+}  // namespace torsion::test

@@ -67,8 +67,8 @@ using BodyTable =
 using ToolTable =
     Table<Entity, ToolPose, ToolMotion, MassProperties, ToolWrench, OwnedRows, Bounds>;
 using RegionTable =
-    Table<RegionIdentity, RegionFrame, RegionCarrier, RegionSupport, SupportField, TractionFrame,
-          RegionGeometry, RegionMotion, RegionNormal, RegionFriction, PatchState, PatchEnergy,
+    Table<RegionIdentity, RegionFrame, RegionCarrier, RegionSupport, RegionReaction, SupportField,
+          TractionFrame, RegionGeometry, RegionMotion, RegionNormal, RegionFriction, PatchState, PatchEnergy,
           LayerGrid, SmoothContact, MdrState, RegionField, AnchorTurns, RegionWrench>;
 using CellTable = Table<CellGeometry, CellTraction>;
 using PatchCellTable = Table<PatchMovedX, PatchMovedY, PatchDepression, PatchHeldX, PatchHeldY,

@@ -49,6 +49,8 @@ void Scratch::reserve(const World& world) {
   if (!world.footings.empty()) {
     constexpr std::size_t kRows = std::size_t{6} * kMaxRegionsPerBody;
     compliance_matrix.resize(kRows * kRows);
+    compliance_copy.resize(kRows * kRows);
+    compliance_inverse.resize(kRows * kRows);
     compliance_residuals.resize(kRows);
   }
   if (!world.mdr_layers.empty()) {
@@ -66,6 +68,7 @@ void Scratch::reserve(const World& world) {
     }
     if (!world.footings.empty()) {
       patch_support.assign(kSupportTerms * stride, 0.0);
+      disc_stiffness = make_disc_stiffness();
     }
     ring_profiles = make_ring_profiles();
     patch_work.reserve(side);

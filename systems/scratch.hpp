@@ -12,6 +12,7 @@
 #include "ecs/components.hpp"
 #include "ecs/world.hpp"
 #include "systems/body_models/main_beam.hpp"
+#include "systems/contact_models/definite_response.hpp"
 #include "systems/contact_models/mdr_layers.hpp"
 #include "systems/contact_models/patch_cells.hpp"
 #include "systems/contact_models/patch_solver.hpp"
@@ -129,7 +130,12 @@ struct Scratch {
 
   // compliance
   std::vector<double> compliance_matrix;     // (6 kMaxRegionsPerBody)^2, row-major
+  std::vector<double> compliance_copy;       // likewise
+  std::vector<double> compliance_inverse;    // likewise
   std::vector<double> compliance_residuals;  // (6 kMaxRegionsPerBody)
+
+  // patch_forces
+  DiscStiffness disc_stiffness;  // constant; empty without patch and compliance
 
   // mdr_forces
   MdrTables mdr_tables;  // constant; empty without contact model mdr

@@ -43,6 +43,7 @@ struct Footing {
   double reach = 0.0;          // m: of the ports, and unit of the coordinates; 0: never laid
   glm::dvec3 center{0.0};      // m, body: of the contact for which it was laid
   double radius = 0.0;         // m: of that contact
+  double extent = 0.0;         // m: its longer half axis
   double share = 1.0;          // of the displacements that is let through (below)
   std::uint64_t serial = 0;    // no two that were laid have the same
   std::uint32_t on_layer = 0;  // 1: not the ports but `own` moves it, all of it

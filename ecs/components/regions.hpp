@@ -55,6 +55,17 @@ struct RegionSupport {
   glm::dvec3 rotation_by_others{0.0};     // rad
 };
 
+/// How the body's other regions answer to a change of this one's load, where the body gives way by
+/// much: by it they move this one, as a rigid body, by minus `motion` times the change. Without it
+/// each of two tools that pinch a soft body would feel it move away by far, and the other's answer
+/// a step later. Written by: compliance; zero where the body gives way by little.
+struct RegionReaction {
+  std::array<double, 36> motion{};  // 6 x 6, body axes, about RegionSupport::about
+  std::array<double, 6> wrench{};   // on the material, about it, that the others have answered to
+  std::uint32_t active = 0;
+  std::uint32_t padding = 0;
+};
+
 inline constexpr std::uint32_t kSupportTerms = 15;
 
 /// How the whole body's deformation moves the material under the region beyond RegionSupport: a

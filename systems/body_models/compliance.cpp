@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <glm/geometric.hpp>
 
 #include "systems/body_models/region_stands.hpp"
@@ -31,6 +32,15 @@ Vector6 support_at(const RegionSupport& support, const glm::dvec3& point) {
   return motion;
 }
 
+/// The part of its last step that is the others' answer (take_answers).
+Vector6 answer_at(const RegionSupport& support, const glm::dvec3& point) {
+  Vector6 motion;
+  motion << eigen(support.translation_step +
+                  glm::cross(support.rotation_step, point - support.about)),
+      eigen(support.rotation_step);
+  return motion;
+}
+
 /// The part of it that other regions have to do with.
 Vector6 support_by_others(const RegionSupport& support, const glm::dvec3& point) {
   Vector6 motion;
@@ -50,7 +60,8 @@ Vector6 support_now(const CompliantBody& body, const Stand& stand) {
 }
 
 /// Of such a region Newton's change is that by the others less what its own load gives way by it:
-/// the former is its own part of the equations, (I + C K) du.
+/// the former is its own part of the equations, (I + C K) du, less what the others' answer to its
+/// own change will be (RegionReaction).
 /// @param scaled  y of fill_equations
 /// @return where its support is to be
 Vector6 move_by_others(const CompliantBody& body, const Stand& stand, const StiffnessRoot& root,
@@ -60,6 +71,10 @@ Vector6 move_by_others(const CompliantBody& body, const Stand& stand, const Stif
   Vector6 by_others = support_by_others(support, footing.center) + root.inverse * scaled;
   if (footing.on_layer == 0) {
     by_others += Eigen::Map<const Matrix6>(footing.own.data()) * (root.root * scaled);
+  }
+  const RegionReaction& reaction = body.world.regions.at<RegionReaction>(stand.region);
+  if (reaction.active != 0) {
+    by_others -= Eigen::Map<const Matrix6>(reaction.motion.data()) * (root.root * scaled);
   }
   support.translation_by_others = {by_others[0], by_others[1], by_others[2]};
   support.rotation_by_others = {by_others[3], by_others[4], by_others[5]};
@@ -76,7 +91,7 @@ void move_supports(const CompliantBody& body, const Eigen::Map<Eigen::VectorXd>&
     const Vector6 scaled = change.segment<6>(static_cast<Eigen::Index>(6 * i));
     const Vector6 after = stand.solved ? move_by_others(body, stand, roots[i], scaled)
                                        : Vector6(before + roots[i].inverse * scaled);
-    const Vector6 step = after - before;
+    const Vector6 step = after - before + answer_at(support, center);
     support.about = center;
     support.translation = {after[0], after[1], after[2]};
     support.rotation = {after[3], after[4], after[5]};
@@ -117,7 +132,89 @@ void fill_equations(const CompliantBody& body,
   }
 }
 
+/// Whether the body gives way under two regions at least by so much, beside the contacts, that the
+/// one feels within a step how the other answers.
+bool answers_within_a_step(const CompliantBody& body,
+                           const std::array<StiffnessRoot, kMaxRegionsPerBody>& roots) {
+  constexpr double kMuch = 0.5;  // of the contact's own compliance
+  std::size_t soft = 0;
+  for (std::size_t i = 0; i < body.count; ++i) {
+    const Footing& footing = footing_of(body, body.stands[i]);
+    const Eigen::Map<const Matrix6> own(footing.own.data());
+    const double share = (roots[i].root * own * roots[i].root).trace();
+    soft += body.stands[i].solved && footing.on_layer == 0 && share > kMuch ? 1U : 0U;
+  }
+  return soft >= 2;
+}
+
+/// What each region feels of its own load when the others have answered is the Schur complement of
+/// its block in Newton's matrix, the inverse of that block of the inverse: K^-1 + C_ii - D with D
+/// the answer. (Golub and Van Loan, Matrix Computations, 3.2.11)
+/// @param matrix  of fill_equations, the part right of the diagonal; overwritten
+void find_reactions(const CompliantBody& body,
+                    const std::array<StiffnessRoot, kMaxRegionsPerBody>& roots,
+                    Eigen::Map<RowMatrix>& matrix, Eigen::Map<RowMatrix>& inverse) {
+  inverse.setIdentity();
+  const auto size = static_cast<std::size_t>(matrix.rows());
+  solve_symmetric(size, size, matrix.data(), size, inverse.data(), kLeastPivot);
+  for (std::size_t i = 0; i < body.count; ++i) {
+    const Stand& stand = body.stands[i];
+    const Footing& footing = footing_of(body, stand);
+    RegionReaction& reaction = body.world.regions.at<RegionReaction>(stand.region);
+    if (!stand.solved || footing.on_layer != 0) {
+      continue;
+    }
+    const auto at = static_cast<Eigen::Index>(6 * i);
+    const Matrix6 block = inverse.block<6, 6>(at, at);
+    Matrix6 answered = Matrix6::Zero();  // S - I, S the Schur complement
+    Eigen::SelfAdjointEigenSolver<Matrix6> solver(0.5 * (block + block.transpose()));
+    // The others take away at most what there is.
+    const Vector6 left = (solver.eigenvalues().cwiseMax(1e-12).cwiseInverse().array() - 1.0)
+                             .cwiseMax(0.0)
+                             .matrix();
+    answered = solver.eigenvectors() * left.asDiagonal() * solver.eigenvectors().transpose();
+    const Eigen::Map<const Matrix6> own(footing.own.data());
+    const Matrix6 motion = own - roots[i].inverse * answered * roots[i].inverse;
+    if (motion.allFinite()) {
+      Eigen::Map<Matrix6>(reaction.motion.data()) = 0.5 * (motion + motion.transpose());
+      Eigen::Map<Vector6>(reaction.wrench.data()) = stand.load.wrench;
+      reaction.active = 1;
+    }
+  }
+}
+
+/// Where a region's equations have reckoned with the others' answer, that has moved it by now.
+void take_answers(World& world, std::uint32_t row) {
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    RegionReaction& reaction = world.regions.at<RegionReaction>(region);
+    RegionSupport& support = world.regions.at<RegionSupport>(region);
+    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+    if (identity.body != row) {
+      continue;
+    }
+    support.translation_step = glm::dvec3(0.0);
+    support.rotation_step = glm::dvec3(0.0);
+    if (reaction.active == 0) {
+      continue;
+    }
+    const Footing& footing = world.footings.at<Footing>(block_of(identity));
+    const Vector6 more = contact_load(world, region, footing).wrench -
+                         Eigen::Map<const Vector6>(reaction.wrench.data());
+    const Vector6 moved = -(Eigen::Map<const Matrix6>(reaction.motion.data()) * more);
+    const glm::dvec3 translation(moved[0], moved[1], moved[2]);
+    const glm::dvec3 rotation(moved[3], moved[4], moved[5]);
+    support.translation_step = translation;
+    support.rotation_step = rotation;
+    support.translation += translation;
+    support.rotation += rotation;
+    support.translation_by_others += translation;
+    support.rotation_by_others += rotation;
+    reaction = RegionReaction{};
+  }
+}
+
 void deform_body(StepContext& context, std::uint32_t row) {
+  take_answers(context.world, row);
   CompliantBody body{context.world, row, ports_of(context.world, row)};
   find_stands(body);
   find_couplings(body);
@@ -131,6 +228,12 @@ void deform_body(StepContext& context, std::uint32_t row) {
   Eigen::Map<Eigen::VectorXd> change(context.scratch.compliance_residuals.data(), rows);
   change.setZero();
   fill_equations(body, roots, matrix, change);
+  if (answers_within_a_step(body, roots)) {
+    Eigen::Map<RowMatrix> copy(context.scratch.compliance_copy.data(), rows, rows);
+    Eigen::Map<RowMatrix> inverse(context.scratch.compliance_inverse.data(), rows, rows);
+    copy = matrix;
+    find_reactions(body, roots, copy, inverse);
+  }
   solve_symmetric(size, size, matrix.data(), 1, change.data(), kLeastPivot);
   if (!change.allFinite()) {
     raise(context.world.clock.at<Clock>(0), Fault::kResultNotFinite);

@@ -197,6 +197,7 @@ void lay_footing(const PortCompliance& body, const ContactEllipse& contact, Foot
   footing.tangent_x = glm::normalize(glm::cross(contact.normal, other));
   footing.tangent_y = glm::cross(contact.normal, footing.tangent_x);
   const double longer = std::max(glm::length(contact.axis_1), glm::length(contact.axis_2));
+  footing.extent = longer;
   footing.reach = std::max(distance_to_enough(body, contact), kBeyond * longer);
   std::array<double, kFootingPorts> weights{};
   const double size = std::max(kBeyond * longer / footing.reach, 0.05);

@@ -81,7 +81,8 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
   const PatchPlaces& places = context.scratch.patch_places;
   cell_centers(frame, settings.grid_side, places.x, places.y);
   problem.support =
-      patch_support(world, region, {places.x, places.y}, context.scratch.patch_support);
+      patch_support(world, region, context.scratch.disc_stiffness, {places.x, places.y},
+                    context.scratch.patch_support);
   problem.sweeps = settings.sweeps;
   if (problem.support.soft) {
     problem.sweeps *= kSweepsOnSoftBody;
@@ -142,7 +143,8 @@ double find_support(const Patch& patch) {
     return 0.0;
   }
   SupportMotion motion =
-      support_by(patch.problem.support, {columns.traction_x, columns.traction_y, columns.pressure});
+      support_by(patch.problem.support,
+                 {columns.traction_x, columns.traction_y, columns.pressure}, false);
   const SupportPolynomials known = known_support(patch.world, patch.region);
   for (std::size_t k = 0; k < known.size(); ++k) {
     motion.polynomials[k] -= known[k];

@@ -155,8 +155,49 @@ glm::dmat3 between(const std::array<double, 36>& compliance, const Wrenches& wre
   return motions;
 }
 
+/// 6 x 6: what of a body yields under a region when the others have answered.
+std::array<double, 36> yielding_of(const Footing& footing, const RegionReaction& reaction) {
+  std::array<double, 36> motion = footing.own;
+  for (std::size_t k = 0; reaction.active != 0 && k < motion.size(); ++k) {
+    motion[k] -= reaction.motion[k];
+  }
+  return motion;
+}
+
+/// Adds how the other regions answer to the tractions' wrench: as a rigid motion.
+/// @param change  the tractions are a change of those that they have answered to
+void add_answer(const PatchSupport& support, const SupportPolynomials& moments, bool change,
+                SupportPolynomials& polynomials) {
+  const Footing& footing = *support.footing;
+  const RegionReaction& reaction = *support.reaction;
+  const auto moment = [&moments](std::size_t k) {
+    return glm::dvec3(moments[k], moments[kColumn + k], moments[2 * kColumn + k]);
+  };
+  const glm::dvec3 arm_x = footing.reach * footing.tangent_x;
+  const glm::dvec3 arm_y = footing.reach * footing.tangent_y;
+  const glm::dvec3 force = moment(0);
+  const glm::dvec3 couple = glm::cross(arm_x, moment(1)) + glm::cross(arm_y, moment(2));
+  const std::array<double, 6> wrench{force.x, force.y, force.z, couple.x, couple.y, couple.z};
+  std::array<double, 6> moved{};
+  for (std::size_t column = 0; column < 6; ++column) {
+    const double more = wrench[column] - (change ? 0.0 : reaction.wrench[column]);
+    for (std::size_t row = 0; row < 6; ++row) {
+      moved[row] -= reaction.motion[column * 6 + row] * more;
+    }
+  }
+  const glm::dvec3 rotation(moved[3], moved[4], moved[5]);
+  const std::array<glm::dvec3, 3> terms{glm::dvec3(moved[0], moved[1], moved[2]),
+                                        glm::cross(rotation, arm_x), glm::cross(rotation, arm_y)};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      polynomials[axis * kColumn + k] += terms[k][static_cast<int>(axis)];
+    }
+  }
+}
+
 /// Whether the body gives way by so much, beside its contact, that the solver has to know.
-bool yields_much(const World& world, const RegionIdentity& region, const Footing& footing) {
+bool yields_much(const World& world, const RegionIdentity& region, const Footing& footing,
+                 const std::array<double, 36>& yielding) {
   constexpr double kMuch = 0.5;
   const Elasticity& elasticity = world.bodies.at<Elasticity>(region.body);
   const double a = footing.radius;
@@ -166,29 +207,30 @@ bool yields_much(const World& world, const RegionIdentity& region, const Footing
   const double couple = 4.0 / 3.0 * elasticity.contact_modulus() * a * a * a;
   double sum = 0.0;
   for (std::size_t k = 0; k < 6; ++k) {
-    sum += footing.own[7 * k] * (k < 3 ? force : couple);
+    sum += yielding[7 * k] * (k < 3 ? force : couple);
   }
   return sum > kMuch;
 }
 
-void find_yielding(const Footing& footing, const RegionFrame& frame, PatchSupport& support) {
+void find_yielding(const Footing& footing, const std::array<double, 36>& yielding,
+                   const RegionFrame& frame, PatchSupport& support) {
   const glm::dvec3 arm = frame.origin - footing.center;
   const glm::dvec3& x = support.to_body[0];
   const glm::dvec3& y = support.to_body[1];
   const glm::dvec3& z = support.to_body[2];
   const glm::dvec3 none(0.0);
   support.sinks = between(
-      footing.own, {{{z, glm::cross(arm, z)}, {none, glm::cross(x, z)}, {none, glm::cross(y, z)}}},
+      yielding, {{{z, glm::cross(arm, z)}, {none, glm::cross(x, z)}, {none, glm::cross(y, z)}}},
       support.area);
   support.slides = between(
-      footing.own, {{{x, glm::cross(arm, x)}, {y, glm::cross(arm, y)}, {none, glm::cross(x, y)}}},
+      yielding, {{{x, glm::cross(arm, x)}, {y, glm::cross(arm, y)}, {none, glm::cross(x, y)}}},
       support.area);
 }
 
 }  // namespace
 
-PatchSupport patch_support(World& world, std::uint32_t region, const PatchCenters& centers,
-                           std::span<double> terms) {
+PatchSupport patch_support(World& world, std::uint32_t region, const DiscStiffness& disc,
+                           const PatchCenters& centers, std::span<double> terms) {
   PatchSupport support;
   const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
   if (world.footings.empty()) {
@@ -202,6 +244,7 @@ PatchSupport patch_support(World& world, std::uint32_t region, const PatchCenter
   FootingResponse& response = world.footings.at<FootingResponse>(block);
   if (response.serial != footing.serial) {
     find_response(ports_of(world, identity.body), footing, response);
+    make_definite(disc, world.bodies.at<Elasticity>(identity.body), footing, response);
     support.laid_anew = true;
   }
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
@@ -210,18 +253,22 @@ PatchSupport patch_support(World& world, std::uint32_t region, const PatchCenter
   support.to_body = {frame.tangent_x, frame.tangent_y, -frame.normal};
   support.area = cell_area(frame, side);
   support.cells = whole_lanes(centers.x.size());
-  support.soft = yields_much(world, identity, footing);
+  support.footing = &footing;
+  const RegionReaction& reaction = world.regions.at<RegionReaction>(region);
+  support.reaction = reaction.active != 0 ? &reaction : nullptr;
+  const std::array<double, 36> yielding = yielding_of(footing, reaction);
+  support.soft = yields_much(world, identity, footing, yielding);
   support.terms = terms.first(kSupportTerms * support.cells);
   support.place_x = centers.x;
   support.place_y = centers.y;
   find_columns(footing, frame, centers.x.size(), support);
   if (support.soft) {
-    find_yielding(footing, frame, support);
+    find_yielding(footing, yielding, frame, support);
   }
   return support;
 }
 
-SupportMotion support_by(const PatchSupport& support, const PatchField& tractions) {
+SupportMotion support_by(const PatchSupport& support, const PatchField& tractions, bool change) {
   SupportPolynomials moments{};
   for (int axis = 0; axis < 3; ++axis) {
     const std::span<double>& along =
@@ -243,13 +290,16 @@ SupportMotion support_by(const PatchSupport& support, const PatchField& traction
   for (std::size_t k = 0; k < moments.size(); ++k) {
     motion.energy += 0.5 * moments[k] * motion.polynomials[k];
   }
+  if (support.reaction != nullptr) {
+    add_answer(support, moments, change, motion.polynomials);
+  }
   return motion;
 }
 
 void add_support(const PatchSupport& support, const PatchField& tractions,
                  const PatchField& displacements) {
   if (support.response != nullptr) {
-    add_polynomials(support, support_by(support, tractions).polynomials, displacements);
+    add_polynomials(support, support_by(support, tractions, true).polynomials, displacements);
   }
 }
 

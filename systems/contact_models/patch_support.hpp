@@ -10,6 +10,7 @@
 #include <glm/mat3x3.hpp>
 
 #include "ecs/world.hpp"
+#include "systems/contact_models/definite_response.hpp"
 
 namespace torsion {
 
@@ -18,6 +19,8 @@ namespace torsion {
 /// response. Tractions and displacements are those of PatchColumns: on the body, z into it.
 struct PatchSupport {
   const FootingResponse* response = nullptr;  // null: the body gives way as a half-space does
+  const Footing* footing = nullptr;
+  const RegionReaction* reaction = nullptr;  // null: other regions do not answer within the step
   glm::dmat3 to_body{1.0};                    // from x, y, z of the columns
   double area = 0.0;                          // m^2, of a cell
   bool soft = false;                          // gives way by much beside the contact itself
@@ -54,10 +57,11 @@ struct SupportMotion {
 
 /// The region's, or none. Finds the footing's response anew when it has been laid anew.
 /// @param terms  (kSupportTerms x whole lanes of cells) out
-PatchSupport patch_support(World& world, std::uint32_t region, const PatchCenters& centers,
-                           std::span<double> terms);
+PatchSupport patch_support(World& world, std::uint32_t region, const DiscStiffness& disc,
+                           const PatchCenters& centers, std::span<double> terms);
 
-SupportMotion support_by(const PatchSupport& support, const PatchField& tractions);
+/// @param change  tractions are a change: of the other regions' answer only that to them
+SupportMotion support_by(const PatchSupport& support, const PatchField& tractions, bool change);
 
 /// The motion that the region's RegionSupport has of it already.
 SupportPolynomials known_support(const World& world, std::uint32_t region);

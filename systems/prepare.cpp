@@ -12,6 +12,7 @@
 #include "systems/prepare_anchors.hpp"
 #include "systems/prepare_compliance.hpp"
 #include "systems/sample_surface.hpp"
+#include "systems/unite_meshes.hpp"
 #include "systems/scratch.hpp"
 #include "systems/step.hpp"
 
@@ -350,7 +351,37 @@ Result<Done> append_choices(Simulation& simulation, const SceneDescription& scen
 
 }  // namespace
 
-Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options) {
+namespace {
+
+/// The scene with one solid in place of meshes that overlap.
+/// @param united  out: nodes of those meshes
+Result<SceneDescription> with_unions(const SceneDescription& scene,
+                                     std::vector<std::string>& united) {
+  SceneDescription solid = scene;
+  const auto unite = [&united](std::vector<PartDescription>& parts) -> Result<Done> {
+    Result<std::vector<std::string>> nodes = unite_parts(parts);
+    if (!nodes) {
+      return nodes.error();
+    }
+    united.insert(united.end(), nodes.value().begin(), nodes.value().end());
+    return Done{};
+  };
+  for (BodyDescription& body : solid.bodies) {
+    if (const Result<Done> done = unite(body.parts); !done) {
+      return done.error();
+    }
+  }
+  for (ToolDescription& tool : solid.tools) {
+    if (const Result<Done> done = unite(tool.parts); !done) {
+      return done.error();
+    }
+  }
+  return solid;
+}
+
+}  // namespace
+
+Result<Simulation> prepare(const SceneDescription& described, const PrepareOptions& options) {
   if (!(options.rate > 0.0 && options.rate <= kHighestRate)) {
     return Error{"the rate must be above 0 and at most 1e6 Hz, it is " +
                  std::to_string(options.rate)};
@@ -359,11 +390,16 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
     return Error{"the grid must have 1 to " + std::to_string(kMaxGridSide) +
                  " cells along a side, it has " + std::to_string(options.settings.grid_side)};
   }
+  Simulation simulation;
+  const Result<SceneDescription> united = with_unions(described, simulation.united_nodes);
+  if (!united) {
+    return united.error();
+  }
+  const SceneDescription& scene = united.value();
   const Result<Built> built = build(scene, options);
   if (!built) {
     return built.error();
   }
-  Simulation simulation;
   World& world = simulation.world;
   const Capacities capacities = capacities_of(scene, built.value());
   world.reserve(capacities, Settings{1, 0});

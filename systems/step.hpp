@@ -46,6 +46,7 @@ struct Simulation {
   std::unique_ptr<Scratch> scratch;
   Schedule<StepContext> schedule;
   std::vector<ModelChoice> choices;  // (bodies)
+  std::vector<std::string> united_nodes;  // whose meshes overlap and count as one solid
 };
 
 /// What may be chosen for a run besides what the scene says; kAuto: as the scene says.

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <glm/geometric.hpp>
 
 #include "systems/body_models/region_stands.hpp"
@@ -132,6 +133,32 @@ void fill_equations(const CompliantBody& body,
   }
 }
 
+/// Of a region with contact model patch: where it is to be seen next by its own load. As the
+/// material goes aside the tool stands elsewhere on it, and its load has another couple about the
+/// footing: a body that sways by couples much would go to and fro, for that shows only in the next
+/// step. By one Newton step, with w the load and C the compliance: u + du = C w(u + du), where the
+/// couple is w's own and force x du more. Never farther than C w itself.
+void sway(const CompliantBody& body, Stand& stand) {
+  const Footing& footing = footing_of(body, stand);
+  if (!stand.solved || footing.on_layer != 0) {
+    return;
+  }
+  const RegionSupport& support = body.world.regions.at<RegionSupport>(stand.region);
+  const Vector6 now =
+      support_at(support, footing.center) - support_by_others(support, footing.center);
+  const Vector6 plain = stand.motion - now;
+  const Eigen::Map<const Matrix6> own(footing.own.data());
+  const Eigen::Vector3d force = stand.load.wrench.head<3>();
+  Eigen::Matrix3d couple;  // force x du
+  couple << 0.0, -force.z(), force.y(), force.z(), 0.0, -force.x(), -force.y(), force.x(), 0.0;
+  Matrix6 newton = Matrix6::Identity();
+  newton.leftCols<3>() -= own.rightCols<3>() * couple;
+  const Vector6 step = newton.partialPivLu().solve(plain);
+  if (step.allFinite() && step.head<3>().norm() <= plain.head<3>().norm()) {
+    stand.motion = now + step;
+  }
+}
+
 /// Whether the body gives way under two regions at least by so much, beside the contacts, that the
 /// one feels within a step how the other answers.
 bool answers_within_a_step(const CompliantBody& body,
@@ -169,9 +196,8 @@ void find_reactions(const CompliantBody& body,
     Matrix6 answered = Matrix6::Zero();  // S - I, S the Schur complement
     Eigen::SelfAdjointEigenSolver<Matrix6> solver(0.5 * (block + block.transpose()));
     // The others take away at most what there is.
-    const Vector6 left = (solver.eigenvalues().cwiseMax(1e-12).cwiseInverse().array() - 1.0)
-                             .cwiseMax(0.0)
-                             .matrix();
+    const Vector6 left =
+        (solver.eigenvalues().cwiseMax(1e-12).cwiseInverse().array() - 1.0).cwiseMax(0.0).matrix();
     answered = solver.eigenvectors() * left.asDiagonal() * solver.eigenvectors().transpose();
     const Eigen::Map<const Matrix6> own(footing.own.data());
     const Matrix6 motion = own - roots[i].inverse * answered * roots[i].inverse;
@@ -217,6 +243,9 @@ void deform_body(StepContext& context, std::uint32_t row) {
   take_answers(context.world, row);
   CompliantBody body{context.world, row, ports_of(context.world, row)};
   find_stands(body);
+  for (std::size_t i = 0; i < body.count; ++i) {
+    sway(body, body.stands[i]);
+  }
   find_couplings(body);
   std::array<StiffnessRoot, kMaxRegionsPerBody> roots;
   for (std::size_t i = 0; i < body.count; ++i) {

@@ -34,6 +34,7 @@ constexpr double kMostForesight = 1.0;
 // A body that gives way takes more sweeps: its motions have compliances of their own, beside those
 // that the local inverse knows.
 constexpr std::uint32_t kSweepsOnSoftBody = 4;  // times the settings'
+constexpr std::uint32_t kRoundsOnSoftBody = 3;  // at most: pressing moves it sideways, too
 // Where the body as a whole gives way, what a step leaves undone builds up, under a hand that is
 // not steady the more so: by ends as early as elsewhere, played-back recordings went 7 % astray.
 constexpr double kSettledOnBody = 0.01;  // PatchProblem::settled
@@ -80,12 +81,12 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
   problem.coupled = influences.coupled;
   const PatchPlaces& places = context.scratch.patch_places;
   cell_centers(frame, settings.grid_side, places.x, places.y);
-  problem.support =
-      patch_support(world, region, context.scratch.disc_stiffness, {places.x, places.y},
-                    context.scratch.patch_support);
+  problem.support = patch_support(world, region, context.scratch.disc_stiffness,
+                                  {places.x, places.y}, context.scratch.patch_support);
   problem.sweeps = settings.sweeps;
   if (problem.support.soft) {
     problem.sweeps *= kSweepsOnSoftBody;
+    problem.rounds = kRoundsOnSoftBody;
   }
   if (problem.support.response != nullptr) {
     problem.settled = kSettledOnBody;
@@ -142,9 +143,8 @@ double find_support(const Patch& patch) {
   if (!has_support(patch)) {
     return 0.0;
   }
-  SupportMotion motion =
-      support_by(patch.problem.support,
-                 {columns.traction_x, columns.traction_y, columns.pressure}, false);
+  SupportMotion motion = support_by(
+      patch.problem.support, {columns.traction_x, columns.traction_y, columns.pressure}, false);
   const SupportPolynomials known = known_support(patch.world, patch.region);
   for (std::size_t k = 0; k < known.size(); ++k) {
     motion.polynomials[k] -= known[k];

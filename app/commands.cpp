@@ -53,7 +53,7 @@ void SceneOptions::add_to(CLI::App& subcommand) {
   subcommand
       .add_option("--sweeps", sweeps,
                   "Sweeps a step of contact model patch over its cells, 2 unless said")
-      ->check(CLI::Range(1U, 100U));
+      ->check(CLI::Range(1U, kMostSweeps));
 }
 
 PrepareOptions SceneOptions::prepare_options() const {

@@ -25,6 +25,13 @@ std::string said_by_system(int code) {
   return std::error_code(code, std::generic_category()).message();
 }
 
+bool is_below(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  std::error_code failed;
+  const std::filesystem::path whole = std::filesystem::absolute(path, failed).lexically_normal();
+  return !failed && *whole.lexically_relative(folder).begin() != ".." &&
+         whole.lexically_relative(folder) != ".";
+}
+
 }  // namespace
 
 Result<Done> make_parent_folder(const std::filesystem::path& path) {
@@ -39,13 +46,46 @@ Result<Done> make_parent_folder(const std::filesystem::path& path) {
   return Done{};
 }
 
-Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
-  const Result<Done> folder = make_parent_folder(path);
+Result<OutputFile> OutputFile::open_as_it_is(const std::filesystem::path& path) {
+  // A pipe that nobody reads is an error and not a wait.
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (descriptor < 0) {
+    return cannot_write(path, errno == ENXIO ? "nobody reads from it" : said_by_system(errno));
+  }
+  ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
+  std::FILE* file = ::fdopen(descriptor, "wb");
+  if (file == nullptr) {
+    const int code = errno;
+    ::close(descriptor);
+    return cannot_write(path, said_by_system(code));
+  }
+  OutputFile output(path, {}, file);
+  output.as_it_is_ = true;
+  return output;
+}
+
+Result<OutputFile> OutputFile::create(const std::filesystem::path& wanted) {
+  const Result<Done> folder = make_parent_folder(wanted);
   if (!folder) {
     return folder.error();
   }
-  if (std::filesystem::is_directory(path)) {
-    return cannot_write(path, "it is a folder");
+  if (std::filesystem::is_directory(wanted)) {
+    return cannot_write(wanted, "it is a folder");
+  }
+  std::error_code failed;
+  // Names of this process's own descriptors lead to plain files, too, which are open already.
+  const bool is_descriptor = is_below(wanted, "/dev") || is_below(wanted, "/proc");
+  const std::filesystem::file_status status = std::filesystem::status(wanted, failed);
+  if (std::filesystem::exists(status) &&
+      (is_descriptor || !std::filesystem::is_regular_file(status))) {
+    return open_as_it_is(wanted);
+  }
+  std::filesystem::path path = wanted;
+  if (std::filesystem::is_symlink(wanted, failed)) {
+    path = std::filesystem::weakly_canonical(wanted, failed);
+    if (failed) {
+      return cannot_write(wanted, failed.message());
+    }
   }
   // Its own, even beside one that is being written to the same place.
   std::filesystem::path temporary;
@@ -86,6 +126,7 @@ OutputFile::OutputFile(OutputFile&& other) noexcept
     : path_(std::move(other.path_)),
       temporary_(std::move(other.temporary_)),
       file_(std::exchange(other.file_, nullptr)),
+      as_it_is_(other.as_it_is_),
       failed_(other.failed_),
       why_(other.why_) {}
 
@@ -93,6 +134,7 @@ OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
   std::swap(path_, other.path_);
   std::swap(temporary_, other.temporary_);
   std::swap(file_, other.file_);
+  std::swap(as_it_is_, other.as_it_is_);
   std::swap(failed_, other.failed_);
   std::swap(why_, other.why_);
   return *this;
@@ -149,9 +191,12 @@ Result<Done> OutputFile::copy_to(OutputFile& to) {
 }
 
 Result<Done> OutputFile::commit() {
-  TORSION_ASSERT(!temporary_.empty());
+  TORSION_ASSERT(!temporary_.empty() || as_it_is_);
   flush();
   failed_ = std::fclose(std::exchange(file_, nullptr)) != 0 || failed_;
+  if (as_it_is_) {
+    return failed_ ? Result<Done>(Error{problem()}) : Result<Done>(Done{});
+  }
   std::error_code renaming;
   if (!failed_) {
     std::filesystem::rename(temporary_, path_, renaming);

@@ -11,7 +11,9 @@
 namespace torsion {
 
 /// A file that is there whole or not at all: written under another name beside its place and
-/// renamed by commit(). What was there before stays until then.
+/// renamed by commit(). What was there before stays until then. What is no plain file (a device, a
+/// pipe, a socket) is never replaced: it is written to as it is. A link stays, its target is
+/// replaced.
 class OutputFile {
  public:
   static Result<OutputFile> create(const std::filesystem::path& path);
@@ -42,10 +44,13 @@ class OutputFile {
 
  private:
   OutputFile(std::filesystem::path path, std::filesystem::path temporary, std::FILE* file);
+  /// To a place that holds something else than a plain file.
+  static Result<OutputFile> open_as_it_is(const std::filesystem::path& path);
   void flush();
   std::filesystem::path path_;
-  std::filesystem::path temporary_;  // empty: it has no name
+  std::filesystem::path temporary_;  // empty: it has no name, or is written to as it is
   std::FILE* file_ = nullptr;
+  bool as_it_is_ = false;
   bool failed_ = false;
   int why_ = 0;  // of errno, when it failed
 };

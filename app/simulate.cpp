@@ -65,14 +65,12 @@ Result<RunStatistics> run(const SimulateOptions& options, Session& session, std:
     Progress progress("simulating", options.quiet);
     if (options.realtime) {
       RealtimeMode mode;
-      const Interrupt interrupt;  // before any thread
       const Result<SceneDevice> opened = open_device(options.device, session.scene);
       if (!opened) {
         return opened.error();
       }
       DeviceLink* const link = opened.value().link.get();
-      const RunDevice device{link, link != nullptr ? &interrupt : nullptr, opened.value().tool,
-                             options.device.hold};
+      const RunDevice device{link, opened.value().tool, options.device.hold};
       statistics = run_realtime(session, steps, files, device, progress, mode);
       facts.mode = describe(mode);
       if (device.link != nullptr) {
@@ -106,6 +104,8 @@ Result<RunStatistics> run(const SimulateOptions& options, Session& session, std:
 }
 
 int simulate(const SimulateOptions& options) {
+  // Before any thread, and until all is written: who ends the run early keeps what there is of it.
+  const Interrupt interrupt;
   std::optional<Recording> replayed;
   if (!options.replay.empty()) {
     Result<Recording> loaded = load_recording(options.replay);
@@ -137,14 +137,15 @@ int simulate(const SimulateOptions& options) {
     record = std::move(created).value();
   }
   Replay replay{replayed ? &*replayed : nullptr, 0};
-  const RunFiles files{trace ? &*trace : nullptr, record ? &*record : nullptr,
+  const RunFiles files{&interrupt, trace ? &*trace : nullptr, record ? &*record : nullptr,
                        replayed ? &replay : nullptr, options.quiet || options.json};
   RunFacts facts;
-  const Result<RunStatistics> ran =
-      run(options, session, steps_of_run(options, session, replay.recording), files, facts);
+  const std::uint64_t steps = steps_of_run(options, session, replay.recording);
+  const Result<RunStatistics> ran = run(options, session, steps, files, facts);
   if (!ran) {
     return fail(ran.error().text);
   }
+  facts.steps_left = steps - std::min(steps, ran.value().steps);
   if (options.json) {
     fmt::print("{}", summary_json(session, ran.value(), facts));
   } else if (!options.quiet) {

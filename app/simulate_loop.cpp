@@ -87,6 +87,9 @@ Result<RunStatistics> run_fast(Session& session, std::uint64_t steps, const RunF
     }
     if (i % 256 == 0) {
       progress.show(static_cast<double>(i) / static_cast<double>(steps));
+      if (files.interrupt != nullptr && files.interrupt->within(0)) {
+        break;
+      }
     }
   }
   statistics.wall_time = 1e-6 * microseconds_since(start);
@@ -110,9 +113,9 @@ RunStatistics run_realtime(Session& session, std::uint64_t steps, const RunFiles
   std::thread physics(run_live, std::ref(loop));
   while (!loop.over.load(std::memory_order_acquire)) {
     constexpr long kPause = 5;  // ms
-    if (device.interrupt == nullptr) {
+    if (files.interrupt == nullptr) {
       std::this_thread::sleep_for(std::chrono::milliseconds(kPause));
-    } else if (device.interrupt->within(kPause)) {
+    } else if (files.interrupt->within(kPause)) {
       loop.stop.store(true, std::memory_order_release);
     }
     drain(loop, files, rows);

@@ -13,16 +13,16 @@ namespace torsion {
 
 /// What a run without a window reads and writes; each may be null.
 struct RunFiles {
+  const Interrupt* interrupt = nullptr;  // ends the run early; what was written so far stays
   TraceWriter* trace = nullptr;
   RecordingWriter* record = nullptr;
   Replay* replay = nullptr;  // where poses come from instead of the scene's animations
   bool quiet = false;
 };
 
-/// Devices that hold a tool in a run on the clock; both null without.
+/// Devices that hold a tool in a run on the clock; null without.
 struct RunDevice {
   DeviceLink* link = nullptr;
-  const Interrupt* interrupt = nullptr;  // ends the run early
   std::uint32_t tool = 0;
   ToolHold hold = ToolHold::kMassless;
 };

@@ -94,6 +94,9 @@ std::string summary_text(const Session& session, const RunStatistics& statistics
   if (facts.device) {
     text += device_summary(*facts.device);
   }
+  if (facts.steps_left > 0) {
+    text += fmt::format("ended    by a signal, {} steps early\n", facts.steps_left);
+  }
   text += fmt::format("world    hash {:016x}\n", hash(world));
   if (!facts.trace.empty()) {
     text += fmt::format("trace    {}\n", facts.trace);
@@ -147,6 +150,9 @@ std::string summary_json(const Session& session, const RunStatistics& statistics
   }
   if (facts.device) {
     json["device"] = device_json(*facts.device);
+  }
+  if (facts.steps_left > 0) {
+    json["steps_left"] = facts.steps_left;
   }
   if (!facts.trace.empty()) {
     json["trace"] = facts.trace;

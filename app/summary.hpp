@@ -17,6 +17,7 @@ struct RunFacts {
   std::string recording;             // likewise
   std::string problem;               // why there is no recording though one was asked for
   std::optional<DeviceView> device;  // of what held the tool at the end
+  std::uint64_t steps_left = 0;      // that a signal has kept the run from
   std::string mode;  // what the system granted a run on the clock; empty: it was not on it
 };
 

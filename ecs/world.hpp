@@ -54,11 +54,14 @@ struct Clock {
 /// Most cells along one side of a region's grid: one row of them fits the bits of a machine word.
 inline constexpr std::uint32_t kMaxGridSide = 64;
 
+inline constexpr std::uint32_t kMostSweeps = 100;
+
 /// One row: what the user may set. Written by: load.
 struct Settings {
   std::uint32_t grid_side = 16;  // cells along one side of a region's grid, 1 to kMaxGridSide; 16
                                  // gives about 200 in a round contact
-  std::uint32_t sweeps = 2;      // over the cells of a region with contact model patch in one step
+  std::uint32_t sweeps = 2;      // over the cells of a region with contact model patch in one step,
+                                 // 1 to kMostSweeps
 };
 
 // Parallel columns of each table. What a column means is said at its struct in ecs/components.hpp.
@@ -68,8 +71,8 @@ using ToolTable =
     Table<Entity, ToolPose, ToolMotion, MassProperties, ToolWrench, OwnedRows, Bounds>;
 using RegionTable =
     Table<RegionIdentity, RegionFrame, RegionCarrier, RegionSupport, RegionReaction, SupportField,
-          TractionFrame, RegionGeometry, RegionMotion, RegionNormal, RegionFriction, PatchState, PatchEnergy,
-          LayerGrid, SmoothContact, MdrState, RegionField, AnchorTurns, RegionWrench>;
+          TractionFrame, RegionGeometry, RegionMotion, RegionNormal, RegionFriction, PatchState,
+          PatchEnergy, LayerGrid, SmoothContact, MdrState, RegionField, AnchorTurns, RegionWrench>;
 using CellTable = Table<CellGeometry, CellTraction>;
 using PatchCellTable = Table<PatchMovedX, PatchMovedY, PatchDepression, PatchHeldX, PatchHeldY,
                              PatchKnown, PatchChangeX, PatchChangeY, PatchChangePressure,

@@ -113,6 +113,18 @@ const SceneKey* find_key(std::string_view name) {
   return found == kSceneKeys.end() ? nullptr : &*found;
 }
 
+/// Keys in which the unknown one is a word: "friction" is in two of them.
+std::string keys_with(std::string_view unknown, const std::vector<std::string_view>& known) {
+  constexpr std::size_t kShortest = 4;  // letters of a word that says something
+  std::string text;
+  for (const std::string_view key : known) {
+    if (unknown.size() >= kShortest && key.find(unknown) != std::string_view::npos) {
+      text += (text.empty() ? "" : " or ") + std::string(kPrefix) + std::string(key);
+    }
+  }
+  return text;
+}
+
 void add_unknown(const std::string& name, const tinygltf::Value& value, const std::string& where,
                  const ProblemList& problems) {
   // What all keys begin with makes none of them nearer.
@@ -121,10 +133,12 @@ void add_unknown(const std::string& name, const tinygltf::Value& value, const st
   for (const SceneKey& key : kSceneKeys) {
     known.push_back(key.name.substr(kPrefix.size()));
   }
-  const auto meant = did_you_mean(std::string_view(name).substr(kPrefix.size()), known);
+  const std::string_view unknown = std::string_view(name).substr(kPrefix.size());
+  const auto meant = did_you_mean(unknown, known);
+  const std::string listed = meant ? std::string(kPrefix) + *meant : keys_with(unknown, known);
   problems.add(where, name, value_text(value), "there is no such key",
-               meant ? "did you mean " + std::string(kPrefix) + *meant + "?"
-                     : "take it out; docs/scenes.md lists the keys that there are");
+               listed.empty() ? "take it out; docs/scenes.md lists the keys that there are"
+                              : "did you mean " + listed + "?");
 }
 
 std::string_view name_of(Role role) {

@@ -9,6 +9,8 @@
 namespace torsion {
 namespace {
 
+constexpr const char* kQuantization = "KHR_mesh_quantization";
+
 constexpr double kFarthest = 1e4;  // m: beyond it something is in other units
 
 const tinygltf::Accessor& accessor_at(const tinygltf::Model& model, int accessor) {
@@ -48,6 +50,26 @@ struct PrimitiveCheck {
   const ProblemList& problems;
 };
 
+/// Positions and normals are floats, unless the file says that it has the extension for shorter
+/// numbers (glTF 2.0, 3.7.2.1; KHR_mesh_quantization).
+void check_component(const PrimitiveCheck& check, const std::string& name,
+                     const tinygltf::Accessor& accessor) {
+  const auto& used = check.model.extensionsUsed;
+  const auto& required = check.model.extensionsRequired;
+  const bool quantized = std::ranges::find(used, kQuantization) != used.end() ||
+                         std::ranges::find(required, kQuantization) != required.end();
+  const int type = accessor.componentType;
+  const bool is_short =
+      type == TINYGLTF_COMPONENT_TYPE_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+      type == TINYGLTF_COMPONENT_TYPE_SHORT || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
+  if (type != TINYGLTF_COMPONENT_TYPE_FLOAT && !(quantized && is_short)) {
+    check.problems.add(check.where, name, "component type " + std::to_string(type),
+                       "expected 5126 (float)",
+                       "export floats, or list KHR_mesh_quantization in extensionsRequired if the "
+                       "file has it");
+  }
+}
+
 void check_positions(const PrimitiveCheck& check) {
   const int row = check.primitive.attributes.at("POSITION");
   const tinygltf::Accessor& accessor = accessor_at(check.model, row);
@@ -55,6 +77,7 @@ void check_positions(const PrimitiveCheck& check) {
     check.problems.add(check.where, "POSITION", "", "expected VEC3");
     return;
   }
+  check_component(check, "POSITION", accessor);
   const std::vector<double> numbers = read_numbers(check.model, row);
   const std::size_t bad = first_bad(numbers, kFarthest);
   if (bad < numbers.size()) {
@@ -70,6 +93,8 @@ void check_positions(const PrimitiveCheck& check) {
     }
     if (name == "NORMAL" && other.type != TINYGLTF_TYPE_VEC3) {
       check.problems.add(check.where, name, "", "expected VEC3");
+    } else if (name == "NORMAL") {
+      check_component(check, name, other);
     }
   }
 }

@@ -309,6 +309,22 @@ void check_trees(const json& document, const ProblemList& problems) {
       known = known ? known : node;
     });
   }
+  // "All listed nodes must be root nodes", each once (glTF 2.0, 3.5.1): one that is listed again,
+  // or below another, would be there twice.
+  visit_json(document, "scenes/[]", [&](const json& scene, const std::string& at) {
+    std::set<std::size_t> listed;
+    visit_json(scene, "nodes/[]", [&](const json& value, const std::string& place) {
+      const auto node = value.get<std::size_t>();
+      if (!listed.insert(node).second) {
+        problems.add("", at + "." + place, shown(value), "is listed twice", "list every node once");
+      } else if (parent[node]) {
+        problems.add("", at + "." + place, shown(value),
+                     "is a child of nodes[" + std::to_string(*parent[node]) +
+                         "], and a scene lists only nodes without a parent",
+                     "take it out of the scene's nodes, or out of that node's children");
+      }
+    });
+  });
   // A node that is still not at a root after as many steps up as there are nodes goes in a circle.
   std::vector<char> clear(count, 0);
   for (std::size_t start = 0; start < count; ++start) {

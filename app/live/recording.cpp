@@ -58,7 +58,11 @@ Recording begin_recording(const Session& session, const PrepareOptions& options)
 }
 
 std::uint64_t steps_in(const Recording& recording) {
-  return recording.entries.empty() ? 0 : recording.entries.back().step + 1;
+  // What was chosen last may have had no step: the person left before it.
+  const auto pose =
+      std::find_if(recording.entries.rbegin(), recording.entries.rend(),
+                   [](const InputEntry& entry) { return entry.kind == InputKind::kPose; });
+  return pose == recording.entries.rend() ? 0 : pose->step + 1;
 }
 
 Result<Session> open_recorded(const std::filesystem::path& scene, const Recording& recording,

@@ -1,6 +1,7 @@
 #include "app/live/recording_file.hpp"
 
 #define XXH_INLINE_ALL
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <fstream>
@@ -112,6 +113,19 @@ Result<FileHeader> read_header(const std::string& bytes, const std::filesystem::
     return bad(path, "the recording is damaged: its checksum does not fit its content");
   }
   return header;
+}
+
+/// Whether materials, models and settings are such as a session can have.
+bool head_is_valid(const Recording& recording) {
+  const auto bodies = static_cast<std::uint32_t>(recording.picks.size());
+  const auto is_valid = [bodies](const BodyPick& pick) {
+    return valid(body_entry(0, 0, pick), 0, bodies);
+  };
+  const Settings& settings = recording.settings;
+  return recording.picks.size() == recording.scene_picks.size() &&
+         std::ranges::all_of(recording.picks, is_valid) &&
+         std::ranges::all_of(recording.scene_picks, is_valid) && settings.sweeps >= 1 &&
+         settings.sweeps <= kMostSweeps && settings.grid_side <= kMaxGridSide;
 }
 
 /// Entries must be in the order of steps, with a pose for every tool in every step.
@@ -233,7 +247,12 @@ Result<Recording> load_recording(const std::filesystem::path& path) {
   const char* const end = bytes.data() + bytes.size() - sizeof(std::uint64_t);
   recording.entries.resize(static_cast<std::size_t>(end - entries) / sizeof(InputEntry));
   std::memcpy(recording.entries.data(), entries, recording.entries.size() * sizeof(InputEntry));
-  if (recording.picks.size() != recording.scene_picks.size() || !in_order(recording)) {
+  if (!head_is_valid(recording)) {
+    return bad(path,
+               "the recording is damaged: it names materials, models or settings that no "
+               "session can have");
+  }
+  if (!in_order(recording)) {
     return bad(path, "the recording is damaged: its entries are not in order");
   }
   return recording;

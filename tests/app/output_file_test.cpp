@@ -1,6 +1,11 @@
 #include "app/output_file.hpp"
 
+#include <array>
+
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "tests/app/program.hpp"
 #include "tests/app/small_disk.hpp"
@@ -42,6 +47,54 @@ TEST(OutputFileTest, RefusesTheNameOfAFolder) {
   const Result<OutputFile> file = OutputFile::create(folder.path());
   ASSERT_FALSE(file.ok());
   EXPECT_NE(file.error().text.find("it is a folder"), std::string::npos);
+}
+
+TEST(OutputFileTest, WritesToADeviceAndReplacesItNot) {
+  const Folder folder;
+  std::filesystem::create_symlink("/dev/null", folder / "null");
+  for (const std::string& path : {std::string("/dev/null"), folder / "null"}) {
+    Result<OutputFile> file = OutputFile::create(path);
+    ASSERT_TRUE(file.ok()) << file.error().text;
+    file.value().write("x");
+    EXPECT_TRUE(file.value().commit().ok());
+    EXPECT_TRUE(std::filesystem::is_character_file(path)) << path;
+  }
+  Result<OutputFile> full = OutputFile::create("/dev/full");
+  ASSERT_TRUE(full.ok()) << full.error().text;
+  full.value().write("x");
+  EXPECT_FALSE(full.value().commit().ok());
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST(OutputFileTest, WritesToAPipeIfSomebodyReadsIt) {
+  const Folder folder;
+  const std::string path = folder / "pipe";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  const Result<OutputFile> unread = OutputFile::create(path);
+  ASSERT_FALSE(unread.ok());
+  EXPECT_NE(unread.error().text.find("nobody reads"), std::string::npos) << unread.error().text;
+  const int reader = ::open(path.c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  Result<OutputFile> file = OutputFile::create(path);
+  ASSERT_TRUE(file.ok()) << file.error().text;
+  file.value().write("through");
+  EXPECT_TRUE(file.value().commit().ok());
+  std::array<char, 16> read{};
+  EXPECT_EQ(::read(reader, read.data(), read.size()), 7);
+  ::close(reader);
+  EXPECT_TRUE(std::filesystem::is_fifo(path));
+}
+
+TEST(OutputFileTest, ReplacesWhatALinkLeadsToAndNotTheLink) {
+  const Folder folder;
+  write_text(folder / "file.txt", "old");
+  std::filesystem::create_symlink(folder / "file.txt", folder / "link");
+  Result<OutputFile> file = OutputFile::create(folder / "link");
+  ASSERT_TRUE(file.ok()) << file.error().text;
+  file.value().write("new");
+  EXPECT_TRUE(file.value().commit().ok());
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  EXPECT_EQ(read_text(folder / "file.txt"), "new");
 }
 
 TEST(OutputFileTest, RefusesAFolderBelowAFile) {

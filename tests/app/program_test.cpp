@@ -1,7 +1,11 @@
 #include "tests/app/program.hpp"
 
+#include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <sstream>
+#include <thread>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -173,6 +177,32 @@ TEST(SimulateTest, AReplayGivesTheBitsOfTheRunOnTheClock) {
   const std::string trace = without_last_column(read_text(folder / "a.csv"));
   EXPECT_EQ(lines_of(trace).size(), 1601U);
   EXPECT_EQ(trace, without_last_column(read_text(folder / "b.csv")));
+}
+
+TEST(SimulateTest, ASignalEndsARunOnTheClockAndKeepsWhatThereIs) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const Folder folder;
+    const auto begun = std::chrono::steady_clock::now();
+    test::Process run(test::torsion({"simulate", scene("ball_on_cube"), "--contact-model", "mdr",
+                         "--body-model", "none", "--realtime", "--seconds", "1000", "--trace",
+                         folder / "t.csv", "--record", folder / "r.rec", "--json"}));
+    std::this_thread::sleep_for(std::chrono::milliseconds(800));
+    run.send(signal);
+    const Ran ran = run.wait();
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(20));
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    const auto summary = nlohmann::json::parse(ran.out);
+    const std::uint64_t steps = summary.at("steps");
+    EXPECT_GT(steps, 0U);
+    EXPECT_EQ(summary.at("steps_left"), 1'000'000 - steps);
+    const std::string trace = read_text(folder / "t.csv");
+    EXPECT_EQ(std::ranges::count(trace, '\n'), static_cast<std::ptrdiff_t>(steps + 1));
+    const Ran again =
+        run_torsion({"simulate", scene("ball_on_cube"), "--replay", folder / "r.rec", "--json"});
+    ASSERT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_EQ(nlohmann::json::parse(again.out).at("world_hash"), summary.at("world_hash"));
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2);
+  }
 }
 
 TEST(SimulateTest, ARunGoesOnWhenTheDiskIsFullAndSaysWhyThereIsNoRecording) {

@@ -64,6 +64,39 @@ TEST(RecordingTest, ComesBackFromAFileBitForBit) {
   }
 }
 
+TEST(RecordingTest, WhatWasChosenAfterTheLastStepEndsNoReplay) {
+  // Leaving the window right after switching a model recorded the switch without a step.
+  Recording recording = some_recording();
+  BodyPick pick = recording.picks[0];
+  pick.contact = ContactModel::kPatch;
+  recording.entries.push_back(body_entry(6, 0, pick));
+  recording.entries.push_back({InputKind::kRebuild, 0, 6, {}});
+  EXPECT_EQ(steps_in(recording), 6U);
+  recording.entries.erase(recording.entries.begin(), recording.entries.end() - 2);
+  EXPECT_EQ(steps_in(recording), 0U);
+}
+
+TEST(RecordingTest, MaterialsAndSettingsThatNoSessionCanHaveAreRefused) {
+  const Folder folder;
+  const std::string path = folder / "a.rec";
+  const auto refused = [&path](const Recording& recording) {
+    EXPECT_TRUE(save_recording(recording, path).ok());
+    const Result<Recording> loaded = load_recording(path);
+    return !loaded && loaded.error().text.find("damaged") != std::string::npos;
+  };
+  Recording recording = some_recording();
+  recording.picks[0].elasticity.poisson_ratio = 0.9;
+  EXPECT_TRUE(refused(recording));
+  recording = some_recording();
+  recording.scene_picks[0].elasticity.youngs_modulus = -1.0;
+  EXPECT_TRUE(refused(recording));
+  for (const Settings settings : {Settings{65, 2}, Settings{16, 0}, Settings{16, 101}}) {
+    recording = some_recording();
+    recording.settings = settings;
+    EXPECT_TRUE(refused(recording)) << settings.grid_side << " " << settings.sweeps;
+  }
+}
+
 TEST(RecordingTest, EveryDamagedByteIsFound) {
   const Folder folder;
   const std::string whole = read_text(saved(folder));

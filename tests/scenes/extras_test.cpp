@@ -112,6 +112,8 @@ TEST(ExtrasTest, NearWordsAreOfferedAndFarOnesAreNot) {
 TEST(ExtrasTest, TheBeginningOfAllKeysMakesNoneNearer) {
   for (const auto& [name, advice] :
        {std::pair("torsion_cells", "docs/scenes.md"), std::pair("torsion_", "docs/scenes.md"),
+        std::pair("torsion_friction",
+                  "did you mean torsion_static_friction or torsion_dynamic_friction?"),
         std::pair("torsion_rol", "did you mean torsion_role?"),
         std::pair("torsion_densty", "did you mean torsion_density?")}) {
     Keys read;

@@ -145,6 +145,12 @@ TEST(GltfAccessorsTest, QuantisedPositionsReachTheBody) {
   for (const glm::dvec3& position : loaded.scene->bodies[0].parts[0].surface.positions) {
     EXPECT_NEAR(std::abs(position.x), 0.05, 1e-12);
   }
+  // Without the extension's name they are not glTF: who wrote them may mean something else.
+  scene.document.erase("extensionsRequired");
+  scene.document.erase("extensionsUsed");
+  const LoadedScene refused = load_text(scene.text());
+  ASSERT_FALSE(refused.scene.has_value());
+  EXPECT_NE(to_text(refused.problems).find("KHR_mesh_quantization"), std::string::npos);
 }
 
 }  // namespace

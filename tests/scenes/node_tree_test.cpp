@@ -6,6 +6,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/scenes/gltf_builder.hpp"
 
 namespace torsion::test {
 namespace {
@@ -106,6 +109,25 @@ TEST(NodeTreeTest, OnlyTheSceneThatIsShownIsListed) {
   const std::vector<SceneNode> nodes = list_scene_nodes(model);
   ASSERT_EQ(nodes.size(), 1U);
   EXPECT_EQ(nodes[0].row, 4U);
+}
+
+TEST(NodeTreeTest, ASceneListsRootNodesOnceAndNothingElse) {
+  // Each would make a body twice, or one away from its parent's place.
+  const auto problem_of = [](const nlohmann::json& nodes, bool below) {
+    GltfBuilder scene = good_scene();
+    if (below) {
+      const int holder = scene.add_node({{"name", "holder"}});
+      scene.put_below(0, holder);
+    }
+    scene.document["scenes"][0]["nodes"] = nodes;
+    const LoadedScene loaded = load_text(scene.text());
+    return loaded.scene ? std::string() : to_text(loaded.problems);
+  };
+  EXPECT_EQ(problem_of({0, 1}, false), "");
+  EXPECT_EQ(problem_of({2, 1}, true), "");
+  EXPECT_NE(problem_of({0, 1, 0}, false).find("is listed twice"), std::string::npos);
+  EXPECT_NE(problem_of({0, 1, 2}, true).find("is a child of nodes[2]"), std::string::npos);
+  EXPECT_NE(problem_of({0, 1}, true).find("is a child of nodes[2]"), std::string::npos);
 }
 
 TEST(NodeTreeTest, DeepTreesAreNoRecursion) {

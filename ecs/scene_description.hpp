@@ -3,6 +3,7 @@
 // What a scene file says, as plain load-time data: scenes/ writes it, systems/prepare.* and
 // systems/prepare_frame.* turn it into tables. Nothing here is read by a step.
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct PartDescription {
   ShapePart shape;   // kind, pose in the owner's frame, half extents; `field` is not set yet
   SurfaceMesh
       surface;  // m, owner's frame: welded, closed, oriented; always there, also for exact shapes
+  // m, owner's frame: of the solid that the part and others which overlap it make, where they do;
+  // distances inside the body are to this (systems/unite_meshes.hpp).
+  std::shared_ptr<const SurfaceMesh> solid;
 };
 
 /// What is drawn: vertices as the file has them (split at hard edges), in the owner's frame.

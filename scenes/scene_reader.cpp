@@ -58,7 +58,7 @@ void add_exact_part(const SceneReader& reader, std::size_t node, ShapeKind kind,
   }
   const auto shape = fit_shape(kind, low, high, *transform, where, reader.problems);
   if (shape) {
-    parts.push_back({reader.file_node(node).name, *shape, tessellate(*shape)});
+    parts.push_back({reader.file_node(node).name, *shape, tessellate(*shape), nullptr});
   }
 }
 

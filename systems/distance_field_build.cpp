@@ -199,13 +199,13 @@ void fill_bricks(const MeshDistance& mesh, std::uint32_t threads, BuiltField& fi
 
 }  // namespace
 
-Result<BuiltField> build_distance_field(const SurfaceMesh& mesh, const FieldOptions& options) {
-  Result<MeshDistance> distance = MeshDistance::build(mesh);
+Result<BuiltField> build_distance_field(const FieldOfMesh& mesh, const FieldOptions& options) {
+  Result<MeshDistance> distance = MeshDistance::build(mesh.solid);
   if (!distance) {
     return distance.error();
   }
   BuiltField field;
-  field.header = coarse_grid(mesh, options);
+  field.header = coarse_grid(mesh.part, options);
   if (field.header.cells == glm::uvec3(0)) {
     return Error{"the mesh has no extent, so it encloses no volume to measure distances to"};
   }
@@ -265,12 +265,16 @@ std::optional<BuiltField> field_from_bytes(std::span<const std::byte> bytes) {
   return field;
 }
 
-Result<BuiltField> load_or_build_distance_field(const SurfaceMesh& mesh,
+Result<BuiltField> load_or_build_distance_field(const FieldOfMesh& mesh,
                                                 const FieldOptions& options) {
   const std::array<std::uint32_t, 2> resolution{options.coarse_cells, options.subdivision};
-  const std::array<std::span<const std::byte>, 3> content{std::as_bytes(std::span(resolution)),
-                                                          std::as_bytes(std::span(mesh.positions)),
-                                                          std::as_bytes(std::span(mesh.triangles))};
+  std::vector<std::span<const std::byte>> content{std::as_bytes(std::span(resolution)),
+                                                  std::as_bytes(std::span(mesh.part.positions)),
+                                                  std::as_bytes(std::span(mesh.part.triangles))};
+  if (&mesh.solid != &mesh.part) {
+    content.push_back(std::as_bytes(std::span(mesh.solid.positions)));
+    content.push_back(std::as_bytes(std::span(mesh.solid.triangles)));
+  }
   const CacheKey key = cache_key("distance_field", kFieldVersion, content);
   if (const std::optional<std::vector<std::byte>> cached = load_cached(key)) {
     if (std::optional<BuiltField> field = field_from_bytes(*cached)) {

@@ -27,15 +27,24 @@ struct BuiltField {
   std::vector<DistanceBrick> bricks;
 };
 
+/// What a field is of. Closed, oriented meshes.
+struct FieldOfMesh {
+  FieldOfMesh(const SurfaceMesh& mesh) : part(mesh), solid(mesh) {}  // NOLINT(google-explicit-*)
+  FieldOfMesh(const SurfaceMesh& of_part, const SurfaceMesh& of_solid)
+      : part(of_part), solid(of_solid) {}
+  const SurfaceMesh& part;   // whose box the field covers
+  const SurfaceMesh& solid;  // to which it measures: the part, or what it and others make
+};
+
 /// Load time: the distance field of a closed, oriented mesh, in the mesh's frame. Coarse nodes
 /// cover the mesh's box and a margin of 1.5 coarse cells; every coarse cell that the surface comes
 /// near gets a brick of fine nodes. Fails as MeshDistance::build does, and where the mesh has no
 /// extent.
-Result<BuiltField> build_distance_field(const SurfaceMesh& mesh, const FieldOptions& options = {});
+Result<BuiltField> build_distance_field(const FieldOfMesh& mesh, const FieldOptions& options = {});
 
 /// The same, from the user's cache where the same mesh was met before (systems/cache.hpp); stores
 /// it there if not.
-Result<BuiltField> load_or_build_distance_field(const SurfaceMesh& mesh,
+Result<BuiltField> load_or_build_distance_field(const FieldOfMesh& mesh,
                                                 const FieldOptions& options = {});
 
 /// A field as bytes and back; nullopt where the bytes are no such field.

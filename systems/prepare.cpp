@@ -12,9 +12,9 @@
 #include "systems/prepare_anchors.hpp"
 #include "systems/prepare_compliance.hpp"
 #include "systems/sample_surface.hpp"
-#include "systems/unite_meshes.hpp"
 #include "systems/scratch.hpp"
 #include "systems/step.hpp"
+#include "systems/unite_meshes.hpp"
 
 namespace torsion {
 namespace {
@@ -31,8 +31,7 @@ struct Built {
   std::vector<SampledSurface> surfaces;  // one for each tool
 };
 
-SurfaceMesh in_part_frame(const PartDescription& part) {
-  SurfaceMesh mesh = part.surface;
+SurfaceMesh in_part_frame(const PartDescription& part, SurfaceMesh mesh) {
   for (glm::dvec3& position : mesh.positions) {
     position = to_inner(part.shape.pose, position);
   }
@@ -45,9 +44,12 @@ Result<Done> build_fields(std::span<const PartDescription> parts, bool use_cache
     if (part.shape.kind != ShapeKind::kMesh) {
       continue;
     }
-    const SurfaceMesh mesh = in_part_frame(part);
+    const SurfaceMesh mesh = in_part_frame(part, part.surface);
+    const SurfaceMesh solid =
+        part.solid != nullptr ? in_part_frame(part, *part.solid) : SurfaceMesh{};
+    const FieldOfMesh wanted{mesh, part.solid != nullptr ? solid : mesh};
     Result<BuiltField> field =
-        use_cache ? load_or_build_distance_field(mesh) : build_distance_field(mesh);
+        use_cache ? load_or_build_distance_field(wanted) : build_distance_field(wanted);
     if (!field) {
       return Error{"node '" + part.node + "': " + field.error().text};
     }
@@ -358,8 +360,9 @@ namespace {
 Result<SceneDescription> with_unions(const SceneDescription& scene,
                                      std::vector<std::string>& united) {
   SceneDescription solid = scene;
-  const auto unite = [&united](std::vector<PartDescription>& parts) -> Result<Done> {
-    Result<std::vector<std::string>> nodes = unite_parts(parts);
+  const auto unite = [&united](std::vector<PartDescription>& parts,
+                               bool with_others) -> Result<Done> {
+    Result<std::vector<std::string>> nodes = unite_parts(parts, with_others);
     if (!nodes) {
       return nodes.error();
     }
@@ -367,12 +370,12 @@ Result<SceneDescription> with_unions(const SceneDescription& scene,
     return Done{};
   };
   for (BodyDescription& body : solid.bodies) {
-    if (const Result<Done> done = unite(body.parts); !done) {
+    if (const Result<Done> done = unite(body.parts, true); !done) {
       return done.error();
     }
   }
   for (ToolDescription& tool : solid.tools) {
-    if (const Result<Done> done = unite(tool.parts); !done) {
+    if (const Result<Done> done = unite(tool.parts, false); !done) {
       return done.error();
     }
   }

@@ -80,6 +80,9 @@ std::vector<std::byte> identity_of(const BodyDescription& description) {
     if (part.shape.kind == ShapeKind::kMesh) {
       add_bytes(bytes, std::span<const glm::dvec3>(part.surface.positions));
       add_bytes(bytes, std::span<const glm::uvec3>(part.surface.triangles));
+      if (part.solid != nullptr) {
+        add_bytes(bytes, std::span<const glm::dvec3>(part.solid->positions));
+      }
     }
   }
   const FixedRegion& fixed = description.fixed;

@@ -45,7 +45,7 @@ struct Simulation {
   World world;
   std::unique_ptr<Scratch> scratch;
   Schedule<StepContext> schedule;
-  std::vector<ModelChoice> choices;  // (bodies)
+  std::vector<ModelChoice> choices;       // (bodies)
   std::vector<std::string> united_nodes;  // whose meshes overlap and count as one solid
 };
 

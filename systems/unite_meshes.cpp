@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -602,29 +603,46 @@ Result<Union> unite_shells(const SurfaceMesh& mesh) {
   return united;
 }
 
-Result<std::vector<std::string>> unite_parts(std::vector<PartDescription>& parts) {
+Result<std::vector<std::string>> unite_parts(std::vector<PartDescription>& parts,
+                                             bool with_others) {
   std::vector<std::string> nodes;
-  std::vector<bool> gone(parts.size(), false);
+  const auto error_of = [&parts](std::size_t row, const Error& error) {
+    return Error{"node '" + parts[row].node + "': " + error.text};
+  };
+  for (std::size_t row = 0; row < parts.size(); ++row) {
+    if (parts[row].shape.kind != ShapeKind::kMesh) {
+      continue;
+    }
+    Result<Union> united = unite_shells(parts[row].surface);
+    if (!united) {
+      return error_of(row, united.error());
+    }
+    if (united.value().changed) {
+      nodes.push_back(parts[row].node);
+      parts[row].surface = std::move(united).value().surface;
+    }
+  }
   for (const std::vector<std::size_t>& group : groups_of(parts)) {
+    if (!with_others || group.size() < 2) {
+      continue;
+    }
     std::vector<const SurfaceMesh*> meshes;
     for (const std::size_t row : group) {
       meshes.push_back(&parts[row].surface);
     }
     Result<Union> united = unite_shells(joined(meshes));
     if (!united) {
-      return Error{"node '" + parts[group[0]].node + "': " + united.error().text};
+      return error_of(group[0], united.error());
     }
     if (!united.value().changed) {
       continue;
     }
+    const auto solid = std::make_shared<const SurfaceMesh>(std::move(united).value().surface);
     for (const std::size_t row : group) {
       nodes.push_back(parts[row].node);
-      gone[row] = row != group[0];
+      parts[row].solid = solid;
     }
-    parts[group[0]].surface = std::move(united).value().surface;
   }
-  std::size_t row = 0;
-  std::erase_if(parts, [&](const PartDescription&) { return gone[row++]; });
   return nodes;
 }
 

@@ -26,9 +26,11 @@ struct Union {
 /// 125; Jacobson, Kavan and Sorkine-Hornung, ACM Trans. Graph. 32 (2013) 33.
 Result<Union> unite_shells(const SurfaceMesh& mesh);
 
-/// Unites what overlaps of an owner's mesh parts: shells of one part, and parts with parts. Parts
-/// that do not stay as they are. Exact shapes stay, too: the nearest counts.
+/// Unites what overlaps of an owner's mesh parts: the shells of each, whose surface becomes the
+/// union's; and, if asked for, parts with parts, which get their `solid`. Exact shapes stay as they
+/// are: the nearest counts.
+/// @param with_others  how deep a place is in the owner counts, as in a body: not in a tool
 /// @return the nodes whose meshes were united, or the error that names one
-Result<std::vector<std::string>> unite_parts(std::vector<PartDescription>& parts);
+Result<std::vector<std::string>> unite_parts(std::vector<PartDescription>& parts, bool with_others);
 
 }  // namespace torsion

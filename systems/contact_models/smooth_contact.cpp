@@ -21,6 +21,10 @@ namespace {
 
 constexpr int kMostSteps = 12;     // of Newton's method
 constexpr double kCommon = 1e-14;  // between the two normals: rounding
+constexpr double kFlat = 1e-9;     // of the larger curvature: rounding
+constexpr double kOther = 0.5;     // of the cells' largest depth: it is not the deepest place,
+constexpr double kDeepest = 0.9;   // it is: cells lie beside it
+constexpr double kJust = 1e-4;     // of the grid: so deep, cells seem to touch where shapes do not
 constexpr double kKnown = 0.9;     // the smooth piece ends so far out, over the overlap's extent:
 constexpr double kUnknown = 0.75;  // Hertz' ellipse ends at 0.71
 constexpr double kOtherPartFar = 1.0;  // distance of other parts, likewise
@@ -161,7 +165,8 @@ double room(const PlacedPart& part, const SurfacePiece& piece, const CommonNorma
     const glm::dvec3 towards = border.direction * part.turn;
     const glm::dvec2 along(glm::dot(towards, at.across_1), glm::dot(towards, at.across_2));
     const double extent = std::sqrt(2.0 * at.depth * glm::dot(along, inverse * along));
-    least = std::min(least, extent > 0.0 ? border.distance / extent : 1e300);
+    // Written so that NaN is no room.
+    least = std::min(least, extent == 0.0 ? 1e300 : extent > 0.0 ? border.distance / extent : 0.0);
   }
   return least;
 }
@@ -236,12 +241,19 @@ SmoothContact find_contact(const Grid& grid, const RegionGeometry& geometry,
     return contact;
   }
   const Principal bend = principal(at->curvature);
-  if (!(bend.small > 0.0)) {
+  // A cylinder on a plane does not end along its axis, where rounding bends it to either side: its
+  // extent would be anything, and that it ends nowhere.
+  if (!(bend.small > kFlat * bend.large)) {
     return contact;
   }
+  // Along a cylinder the way to the deepest place is anything, too: what it leads to is another
+  // place where the normals are opposite, if the cells lie deeper.
+  const double deepest =
+      rising(at->depth, kOther * geometry.largest_depth, kDeepest * geometry.largest_depth);
   contact.depth = at->depth;
   if (contact.depth <= 0.0) {
-    contact.share = 1.0;  // they do not touch, or just
+    // They do not touch, or just.
+    contact.share = geometry.largest_depth < kJust * size ? 1.0 : 0.0;
     return contact;
   }
   const glm::dmat2 inverse = glm::inverse(at->curvature);
@@ -249,7 +261,8 @@ SmoothContact find_contact(const Grid& grid, const RegionGeometry& geometry,
       std::min(room(tool, at->tool_piece, *at, inverse), room(body, at->body_piece, *at, inverse));
   const double extent = std::sqrt(2.0 * contact.depth / bend.small);
   const double other = std::min(of_tool.other, of_body.other) / extent;
-  contact.share = rising(inside, kUnknown, kKnown) * rising(other, kOtherPartNear, kOtherPartFar);
+  contact.share =
+      rising(inside, kUnknown, kKnown) * rising(other, kOtherPartNear, kOtherPartFar) * deepest;
   if (contact.share <= 0.0) {
     return contact;
   }

@@ -72,7 +72,12 @@ void find_contact(const Grid& grid, const RegionPoints& contact, double start_de
   for (int pass = 0; pass < kMostPasses; ++pass) {
     PlaneBox box = covered_box(grid, find_cells(grid, contact));
     if (box.empty()) {
-      return;
+      if (pass > 0) {
+        return;
+      }
+      // Cells look for the tool where it was; of a thin one that has turned none may find it.
+      restart_heights(grid, start_depth);
+      continue;
     }
     if (reaches_edge(grid, box)) {
       box.lowest -= 0.5 * grid.frame.half_size;

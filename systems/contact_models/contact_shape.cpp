@@ -149,6 +149,17 @@ double apex_share(double bend, double spread, double depth) {
 constexpr double kFlatStamp = 4.0 / 3.0;
 constexpr double kCylinder = 0.8;
 
+/// The apex of a paraboloid of two cells' width lies a quarter deeper than the nearest centres.
+constexpr double kBetweenCells = 1.25;
+
+double largest_depth(std::span<const CellGeometry> cells) {
+  double most = 0.0;
+  for (const CellGeometry& cell : cells) {
+    most = cell.coverage > 0.0 ? std::max(most, cell.depth) : most;
+  }
+  return most;
+}
+
 }  // namespace
 
 ContactShape fit_contact_shape(const RegionFrame& frame, std::uint32_t side,
@@ -173,7 +184,6 @@ ContactShape fit_contact_shape(const RegionFrame& frame, std::uint32_t side,
   const double depth = std::max(fit.at(middle), 1e-300);
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal;
   principal.computeDirect(fit.curvature);
-  const double size = std::max(scale.x, scale.y);
   std::array<PrincipalAxis, 2> axes;
   for (int k = 0; k < 2; ++k) {
     PrincipalAxis& axis = axes[static_cast<std::size_t>(k)];
@@ -182,8 +192,10 @@ ContactShape fit_contact_shape(const RegionFrame& frame, std::uint32_t side,
     const double bend = std::max(principal.eigenvalues()(k), 0.0);
     axis.known = apex_share(bend, spread, depth);
     axis.extent = 2.0 * std::sqrt(std::max(spread, 0.0));
-    axis.top =
-        axis.known > 0.0 ? std::clamp(axis.direction.dot(fit.gradient) / bend, -size, size) : 0.0;
+    const double center = axis.direction.dot(area.center);
+    axis.top = axis.known > 0.0 ? std::clamp(axis.direction.dot(fit.gradient) / bend,
+                                             center - axis.extent, center + axis.extent)
+                                : 0.0;
   }
   Eigen::Vector2d apex = Eigen::Vector2d::Zero();
   Eigen::Vector2d deepest = Eigen::Vector2d::Zero();
@@ -200,7 +212,9 @@ ContactShape fit_contact_shape(const RegionFrame& frame, std::uint32_t side,
   shape.curvature_1 = std::max(principal.eigenvalues()(0), 0.0);
   shape.curvature_2 = std::max(principal.eigenvalues()(1), 0.0);
   shape.apex = {apex.x(), apex.y()};
-  shape.depth = fit.at(deepest);
+  // Where the cells do not say much (a thin contact that lies across them), the paraboloid may go
+  // anywhere beyond them, but no deeper than they lie by what may be between two of them.
+  shape.depth = std::min(fit.at(deepest), kBetweenCells * largest_depth(cells));
   return shape;
 }
 

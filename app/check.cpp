@@ -120,6 +120,9 @@ void print_scene(const SceneDescription& scene, const Simulation& simulation) {
   for (std::uint32_t row = 0; row < scene.tools.size(); ++row) {
     print_tool(scene.tools[row], world.tools.at<OwnedRows>(row).samples.count);
   }
+  for (const std::string& node : simulation.united_nodes) {
+    fmt::print("\"{}\" has meshes that overlap: they count as one solid, their union\n", node);
+  }
   fmt::print("physics tables: {:.1f} MiB\n",
              static_cast<double>(memory_of(world)) / (1024.0 * 1024.0));
 }
@@ -156,6 +159,7 @@ nlohmann::ordered_json scene_json(const SceneDescription& scene, const Simulatio
                              {"device", tool.device},
                              {"surface_samples", world.tools.at<OwnedRows>(row).samples.count}});
   }
+  json["united_nodes"] = simulation.united_nodes;
   for (const auto& row : simulation.schedule.rows()) {
     json["systems"].push_back({{"name", row.system.name},
                                {"on", row.on},

@@ -39,6 +39,7 @@ enum class Fault : std::uint32_t {
   kRegionsFull =
       1U << 3U,  // more than kMaxRegionsPerBody regions on a body, or the regions table is full
   kResultNotFinite = 1U << 4U,  // a wrench came out as NaN or infinity
+  kForceTooLarge = 1U << 5U,    // a region's force is beyond what its overlap can carry
 };
 
 /// One row: the clock and the state of the run. Written by: the step itself.

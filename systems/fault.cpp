@@ -16,6 +16,9 @@ std::string_view fault_text(Fault fault) {
              "torsion_region_threshold";
     case Fault::kResultNotFinite:
       return "a force came out as NaN or infinity; please report the scene";
+    case Fault::kForceTooLarge:
+      return "a contact's force came out beyond what a rigid punch of its size would need to be "
+             "pressed in as deep; please report the scene";
   }
   return "unknown fault";
 }

@@ -18,6 +18,7 @@ inline bool raised(std::uint32_t faults, Fault fault) {
 std::string_view fault_text(Fault fault);
 
 inline constexpr Fault kAllFaults[] = {Fault::kPoseNotFinite, Fault::kPoseJumped, Fault::kTooDeep,
-                                       Fault::kRegionsFull, Fault::kResultNotFinite};
+                                       Fault::kRegionsFull, Fault::kResultNotFinite,
+                                       Fault::kForceTooLarge};
 
 }  // namespace torsion

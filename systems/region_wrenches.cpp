@@ -2,17 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "systems/fault.hpp"
 #include "systems/finite.hpp"
 #include "systems/frames.hpp"
+#include "systems/region_motion.hpp"
+#include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {
 
 constexpr double kEventFade =
     0.01;  // s: shorter is felt as a click, longer drags an old force along
-constexpr double kFaultFall = 0.01;  // s: from the last good wrench to zero
+constexpr double kMostByGrid = 0.05;  // of a force: what a grid laid anew may change of it
+constexpr double kFaultFall = 0.01;   // s: from the last good wrench to zero
 constexpr double kFaultRise =
     0.05;  // s: back again; slower, so that a flickering fault does not rattle the hand
 
@@ -50,14 +54,30 @@ Wrench computed_wrench(const World& world, std::uint32_t region) {
   return {force_in_world, glm::cross(arm, force_in_world) + body.rotation * couple};
 }
 
+/// Of a new region's force, what the tool's way in this step has made of it: all where it came to
+/// the body within the step. What it finds there deeper than that did not come by the motion, but
+/// when the run began or because samples had missed it. By Hertz' law, F ~ d^(3/2).
+double share_by_motion(const World& world, std::uint32_t region) {
+  constexpr double kMore = 1.2;  // times the way: depths are told by cells
+  const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+  const glm::dvec3 shift = shift_at(motion_over_body(world, region), geometry.equivalent_point);
+  const double way = -glm::dot(shift, world.regions.at<RegionFrame>(region).normal);
+  const double share = kMore * way / std::max(geometry.largest_depth, 1e-300);
+  return share < 1.0 ? std::pow(std::max(share, 0.0), 1.5) : 1.0;
+}
+
 /// Lets out what an event changed little by little.
 /// @param foretold  of the last step's change, what this step's motion goes on by
+/// @param came      of a region that begins, the share that the tool's way has made
 /// @param faded     share that goes in this step
-void fade_event(RegionWrench& wrench, const Wrench& computed, double foretold, double faded) {
+void fade_event(RegionWrench& wrench, const Wrench& computed, double foretold, double came,
+                double faded) {
   const Wrench before = wrench.on_tool;
   const auto event = static_cast<RegionEvent>(wrench.event_now);
-  if (event == RegionEvent::kBegins || event == RegionEvent::kTakesOver ||
-      event >= RegionEvent::kBodyFollows) {
+  if (event == RegionEvent::kBegins) {
+    wrench.event_change = (before - computed) * (1.0 - came);
+    wrench.event_share = came < 1.0 ? 1.0 : 0.0;
+  } else if (event == RegionEvent::kTakesOver || event >= RegionEvent::kBodyFollows) {
     wrench.event_change = before - computed;
     wrench.event_share = 1.0;
   } else if (event == RegionEvent::kGridLaidAnew && wrench.event_share == 0.0) {
@@ -65,6 +85,10 @@ void fade_event(RegionWrench& wrench, const Wrench& computed, double foretold, d
     // what it foretells. Of grids that follow upon each other within the fade, while a tool is
     // pressed in fast, only the first: the force must not wait.
     wrench.event_change = before + wrench.event_change * foretold - computed;
+    // A quick tool's force bends away from what the last step foretells by more than any grid does.
+    const double most = kMostByGrid * glm::length(computed.force);
+    const double jump = glm::length(wrench.event_change.force);
+    wrench.event_change = wrench.event_change * (jump > most ? most / jump : 1.0);
     wrench.event_share = 1.0;
   } else {
     wrench.event_share = std::max(0.0, wrench.event_share - faded);
@@ -72,6 +96,81 @@ void fade_event(RegionWrench& wrench, const Wrench& computed, double foretold, d
   wrench.on_tool = computed + wrench.event_change * wrench.event_share;
   if (wrench.event_share == 0.0) {
     wrench.event_change = wrench.on_tool - before;
+  }
+}
+
+/// A region's overlap with the body's rest shape.
+struct RestOverlap {
+  double depth = 0.0;   // m, the largest
+  double radius = 0.0;  // m, of a disc that holds it
+};
+
+constexpr double kDeeper = 3.0;  // than the deepest sample, at most
+
+RestOverlap rest_overlap(const StepContext& context, std::uint32_t region) {
+  const World& world = context.world;
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const RegionPoints& contact = context.scratch.region_points[block_of(identity)];
+  const std::span<const ContactPoint> points(context.scratch.points.data() + contact.points.first,
+                                             contact.points.count);
+  RestOverlap overlap;
+  glm::dvec3 lowest(1e300);
+  glm::dvec3 highest(-1e300);
+  for (const ContactPoint& point : points) {
+    if (point.cluster == contact.cluster) {
+      overlap.depth = std::max(overlap.depth, point.depth);
+      lowest = glm::min(lowest, point.position);
+      highest = glm::max(highest, point.position);
+    }
+  }
+  // Between samples it may be deeper, as cells show it; but where the body as a whole has moved,
+  // how far is what may be wrong.
+  const double of_cells = world.regions.at<RegionGeometry>(region).largest_depth;
+  const bool moves = world.bodies.at<BodyModels>(identity.body).body == BodyModel::kCompliance;
+  overlap.depth =
+      std::max(overlap.depth, moves ? std::min(of_cells, kDeeper * overlap.depth) : of_cells);
+  // Samples lie within the overlap; it ends between them and their neighbours, which are at most as
+  // far away as what makes two points one region.
+  const double threshold = world.bodies.at<BodyModels>(identity.body).region_threshold;
+  overlap.radius = (overlap.depth > 0.0 ? 0.5 * glm::length(highest - lowest) : 0.0) + threshold;
+  return overlap;
+}
+
+/// The last line, whatever the cause: no region carries more than a rigid punch that holds its
+/// overlap would, pressed in as deep as that is and as far as the body's other regions may push it
+/// against this one. A punch of radius a takes 2 E* a d on a half-space and 3 pi G a^4 d / (2 h^3)
+/// on a thin bonded layer without volume change (Johnson, Contact Mechanics, 1985, (3.36), 5.8);
+/// twice their sum is for curved bodies and for cells that are too coarse.
+void bound_forces(StepContext& context) {
+  constexpr double kSafety = 2.0;
+  constexpr double kLayer = 0.6;  // 3 pi / 16
+  World& world = context.world;
+  for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
+    if (world.bodies.at<BodyModels>(body).contact == ContactModel::kPaper) {
+      continue;  // a formula of the depth, which stiffens without bound
+    }
+    double depth = 0.0;  // m, of all regions together
+    double radius = 0.0;
+    double largest = 0.0;  // N
+    for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+      if (world.regions.at<RegionIdentity>(region).body == body) {
+        const RestOverlap overlap = rest_overlap(context, region);
+        depth += overlap.depth;
+        radius = std::max(radius, overlap.radius);
+        largest = std::max(largest, world.regions.at<RegionNormal>(region).force);
+      }
+    }
+    const Bounds& bounds = world.bodies.at<Bounds>(body);
+    const glm::dvec3 extent = bounds.highest - bounds.lowest;
+    const double height = std::min({extent.x, extent.y, extent.z});
+    const double thin = radius / height;
+    const double modulus = world.bodies.at<Elasticity>(body).contact_modulus();
+    const double most =
+        kSafety * 2.0 * modulus * radius * depth * (1.0 + kLayer * thin * thin * thin);
+    // Written so that NaN is left to who looks for that.
+    if (largest > most) {
+      raise(world.clock.at<Clock>(0), Fault::kForceTooLarge);
+    }
   }
 }
 
@@ -110,9 +209,12 @@ void region_wrenches(StepContext& context) {
   const double dt = world.clock.at<Clock>(0).dt;
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
     RegionWrench& wrench = world.regions.at<RegionWrench>(region);
+    const bool begins = wrench.event_now == static_cast<std::uint32_t>(RegionEvent::kBegins);
     fade_event(wrench, computed_wrench(world, region),
-               world.regions.at<PatchState>(region).along_last, dt / kEventFade);
+               world.regions.at<PatchState>(region).along_last,
+               begins ? share_by_motion(world, region) : 0.0, dt / kEventFade);
   }
+  bound_forces(context);
 }
 
 void sum_wrenches(StepContext& context) {

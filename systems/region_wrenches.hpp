@@ -9,7 +9,8 @@ namespace torsion {
 /// What of a region does not change little by little in this step.
 enum class RegionEvent : std::uint32_t {
   kNone,
-  kBegins,        // on_tool is zero: it is new, where there was none
+  kBegins,        // on_tool is zero: it is new, where there was none; what the tool's way in this
+                  // step has made of it is let out at once
   kTakesOver,     // on_tool holds what it goes on from: another's or its own heir, or split off one
   kGridLaidAnew,  // contact model patch, by interpolation
   kBodyFollows    // to kBodyFollows + kFollowingSteps - 1, one after the other: the whole body

@@ -210,16 +210,21 @@ double reference_pressure(const Patch& patch, double depth) {
   return depth / (reach * patch.problem.compliance * static_cast<double>(patch.side)) * reach;
 }
 
+/// That of the disc of the loaded cells' area, m.
+double contact_radius(const Patch& patch, const PatchSums& sums) {
+  return std::sqrt(sums.loaded_cells * cell_area(patch.frame, patch.side) / std::numbers::pi);
+}
+
 /// Static friction gives way to dynamic with the path slipped, and comes back with the elastic
 /// path.
-void update_kinetic_shares(const Patch& patch, double force) {
+/// @param radius  m, of the contact
+void update_kinetic_shares(const Patch& patch, double force, double radius) {
   const RegionIdentity& identity = patch.world.regions.at<RegionIdentity>(patch.region);
   const Friction& friction = patch.world.bodies.at<Friction>(identity.body);
   if (friction.static_friction == friction.dynamic_friction) {
     return;
   }
   const Elasticity& elasticity = patch.world.bodies.at<Elasticity>(identity.body);
-  const double radius = patch.world.regions.at<RegionGeometry>(patch.region).radius;
   // Displacement of a disc at its friction limit: stiffness 8 G a / (2 - nu).
   const double stiffness =
       8.0 * elasticity.shear_modulus() * radius / (2.0 - elasticity.poisson_ratio);
@@ -324,7 +329,7 @@ void solve_region(StepContext& context, std::uint32_t region, std::uint32_t swee
   }
   const SolutionStart start = start_of(patch);
   const PatchSums sums = sum_cells(patch.columns, patch.places, cell_area(patch.frame, patch.side));
-  update_kinetic_shares(patch, sums.force);
+  update_kinetic_shares(patch, sums.force, contact_radius(patch, sums));
   const std::span<const double> none;
   store_cells(patch.columns, has_support(patch) ? patch.support.x : none,
               has_support(patch) ? patch.support.y : none, patch.rows);

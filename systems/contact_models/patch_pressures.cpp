@@ -94,7 +94,8 @@ PatchOutcome relax_pressures(const PatchProblem& problem, const PatchColumns& co
     move_by_pressure(problem, work);
     const double stiffness = dot(count, work.step_x.data(), work.moves_x.data());
     if (stiffness <= 0.0) {
-      outcome.residual = 0.0;
+      // Nothing is left to do; or the equations have no solution, which is no small residual.
+      outcome.residual = square > 0.0 ? 1.0 : 0.0;
       break;
     }
     double pull = 0.0;

@@ -154,7 +154,8 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
     }
     const double stiffness = move(problem, cells, work);
     if (stiffness <= 0.0) {
-      outcome.residual = 0.0;
+      // Nothing is left to do; or the equations have no solution, which is no small residual.
+      outcome.residual = sweep.square > 0.0 ? 1.0 : 0.0;
       break;
     }
     // A first step brings all tractions into their discs, so it goes all the way. Where something

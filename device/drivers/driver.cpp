@@ -79,6 +79,13 @@ void write_last(WriteGate& gate, DriverCall& call, Bytes packet) {
 
 bool take_write(WriteGate& gate, DriverCall& call, const UsbEvent& event) {
   gate.under_way = false;
+  if (event.status == UsbStatus::kStall) {
+    // Until it is cleared nothing gets out, and no packet without force either.
+    call.report.counts.stalls += 1;
+    clear_usb_halt(call.requests, gate.endpoint);
+    gate.let_go_after = false;
+    return true;
+  }
   call.report.counts.failures += event.status == UsbStatus::kCompleted ? 0U : 1U;
   return std::exchange(gate.let_go_after, false) && event.status != UsbStatus::kGone;
 }

@@ -16,9 +16,11 @@ std::array<std::uint8_t, kFalconPacket> packet_of(const FalconDriver& driver,
                                                   const std::array<std::int16_t, 3>& motors) {
   FalconOutput output;
   output.motors = motors;
-  output.homing = driver.phase != FalconPhase::kLive;  // asks for the encoders' zeros
-  output.red = output.homing;
-  output.green = !output.homing;
+  // Asks for the encoders' zeros, and has to be in every packet for them to stay (libnifalcon,
+  // FalconFirmware.h).
+  output.homing = true;
+  output.green = driver.phase == FalconPhase::kLive;
+  output.red = !output.green;
   return encode_falcon(output);
 }
 
@@ -149,7 +151,10 @@ void take_packet(FalconDriver& driver, DriverCall& call, const FalconInput& inpu
   if (const auto place = falcon_forward(falcon_joint_angles(input), driver.place)) {
     driver.place = *place;
   } else {
-    call.report.counts.garbage += 1;  // the last good place stays
+    // Nobody knows where it is: no force there.
+    call.report.counts.garbage += 1;
+    let_go(driver, call);
+    return;
   }
   const Wrench wrench =
       publish_pose(call, {driver.place - kCentre, glm::dquat(1.0, 0.0, 0.0, 0.0)}, input.buttons);

@@ -16,10 +16,18 @@ constexpr int kAxis = 0;
 constexpr std::uint8_t kCdcControl = 2;
 constexpr std::uint8_t kCdcData = 10;
 
-// Torque control with the axis's own watchdog, so that it lets go when it hears nothing.
-constexpr std::array<std::string_view, 5> kSetUp = {
-    "sc\n", "w axis0.config.watchdog_timeout 0.05\n", "w axis0.config.enable_watchdog 1\n",
-    "w axis0.controller.config.control_mode 1\n", "w axis0.requested_state 8\n"};
+// Torque control with the axis's own watchdog, so that it lets go when it hears nothing. "u 0"
+// feeds that: enabled before it was fed, it is an error one control cycle later, which "sc" clears
+// and does not keep from coming back (ODrive firmware 0.5, MotorControl/axis.cpp). No torque of
+// another program is left when it obeys, and a quick turn by hand is no overspeed.
+constexpr std::array<std::string_view, 7> kSetUp = {
+    "w axis0.config.watchdog_timeout 0.05\nu 0\n",
+    "w axis0.config.enable_watchdog 1\nu 0\n",
+    "sc\nc 0 0\n",
+    "w axis0.controller.config.control_mode 1\nu 0\n",
+    "w axis0.controller.config.input_mode 1\nu 0\n",
+    "w axis0.controller.config.enable_overspeed_error 0\nu 0\n",
+    "c 0 0\nw axis0.requested_state 8\n"};
 constexpr std::string_view kIdle = "c 0 0\nw axis0.requested_state 1\n";
 
 Bytes bytes_of(std::string_view text) {

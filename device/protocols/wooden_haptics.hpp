@@ -25,8 +25,9 @@ struct WoodenInput {
 /// @param packet  at least 14 bytes; raw HID pads to 64
 std::optional<WoodenInput> decode_wooden(Bytes packet);
 
-/// Motor currents, mA. Clamped to +-kWoodenLargestCurrent.
-inline constexpr std::int16_t kWoodenLargestCurrent = 2999;
+/// Motor currents, mA. Clamped to +-kWoodenLargestCurrent: its maker caps them there, for the
+/// stages "can't do more than that for 4 s" (haptikfabrikenapi).
+inline constexpr std::int16_t kWoodenLargestCurrent = 2000;
 std::array<std::uint8_t, kWoodenPacket> encode_wooden_currents(
     const std::array<std::int16_t, 3>& milliamperes);
 

@@ -194,6 +194,9 @@ TEST(OdriveDriverTest, TurnsTheTwistAxisAndTakesTorqueUpToItsLimit) {
   bus.run(kStartTime);
   ASSERT_EQ(client.last.state, DeviceState::kLive);
   EXPECT_TRUE(bus.device<EmulatedOdrive>(row).closed_loop);
+  EXPECT_TRUE(bus.device<EmulatedOdrive>(row).watched);
+  EXPECT_EQ(bus.device<EmulatedOdrive>(row).errors, 0U);
+  EXPECT_FALSE(bus.device<EmulatedOdrive>(row).armed_with_torque);
   EXPECT_NEAR(client.last.pose.rotation.y, std::sin(std::numbers::pi / 4.0), 1e-6);
   EXPECT_NEAR(bus.device<EmulatedOdrive>(row).torque, 0.05, 1e-6);
   client.wanted.torque.y = -3.0;
@@ -325,6 +328,24 @@ TEST(DriversTest, AStallLetsGoOfTheForceAtOnce) {
     bus.send(row, {});
     bus.run(1e-3);
     EXPECT_GT(bus.without_force_for(row), 0.0);
+  }
+}
+
+TEST(DriversTest, AnEndpointOutThatStallsIsClearedAndLetsTheForceGo) {
+  for (const bool falcon : {true, false}) {
+    DeviceClient client;
+    FakeBus bus({}, client.sink());
+    const std::size_t row = falcon ? bus.plug(EmulatedFalcon{}) : bus.plug(EmulatedOdrive{});
+    bus.run(kStartTime);
+    ASSERT_EQ(client.last.state, DeviceState::kLive);
+    ASSERT_EQ(bus.without_force_for(row), 0.0);
+    bus.halt_writes(row);
+    bus.silence(row, true);
+    bus.run(0.05);
+    EXPECT_GT(bus.without_force_for(row), 0.0) << falcon;
+    bus.silence(row, false);
+    bus.run(3.0);
+    EXPECT_EQ(client.last.state, DeviceState::kLive) << falcon;
   }
 }
 

@@ -81,6 +81,9 @@ Buffer told(EmulatedFalcon& device, Bytes packet) {
     return {};
   }
   device.packets += 1;
+  // "must be set in each input packet … to stay homed" (libnifalcon, FalconFirmware.h)
+  constexpr std::uint8_t kHomingBit = 1;
+  device.homed = device.homed && (static_cast<std::uint32_t>(packet[13] - 'A') & kHomingBit) != 0;
   for (std::size_t motor = 0; motor < 3; ++motor) {
     device.motors[motor] = nibbles_at(packet, 1 + 4 * motor);
   }
@@ -118,9 +121,23 @@ Buffer told(EmulatedWooden& device, Bytes packet) {
   return answer;
 }
 
+/// As ODrive's firmware 0.5.6 has it: the watchdog's error comes one control cycle after it was
+/// enabled unfed, here with the next line; clearing errors does not feed it; an axis with an error
+/// does not arm; what was asked for as torque survives all of it.
 void obey(EmulatedOdrive& device, const std::string& line, std::string& answer) {
+  constexpr std::uint32_t kWatchdogError = 0x800;
+  if (device.watched && !device.fed) {
+    device.errors |= kWatchdogError;
+    device.closed_loop = false;
+  }
   if (line.rfind("c 0 ", 0) == 0) {
     device.torque = std::stod(line.substr(4));
+    device.found_torque = 0.0;
+    device.fed = true;
+  } else if (line == "u 0") {
+    device.fed = true;
+  } else if (line == "w axis0.config.enable_watchdog 1") {
+    device.watched = true;
   } else if (line == "f 0") {
     answer += std::to_string(device.turns) + " 0.0\r\n";
   } else if (line == "r axis0.error") {
@@ -130,7 +147,9 @@ void obey(EmulatedOdrive& device, const std::string& line, std::string& answer) 
   } else if (line == "sc") {
     device.errors = 0;
   } else if (line.rfind("w axis0.requested_state ", 0) == 0) {
-    device.closed_loop = line.back() == '8' && device.calibrated;
+    device.closed_loop = line.back() == '8' && device.calibrated && device.errors == 0;
+    device.armed_with_torque =
+        device.armed_with_torque || (device.closed_loop && device.found_torque != 0.0);
     device.errors |= line.back() == '8' && !device.calibrated ? 1U : 0U;
   }
 }

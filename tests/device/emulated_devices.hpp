@@ -47,7 +47,11 @@ struct EmulatedOdrive {
   double torque = 0.0;  // N m, as told last
   bool closed_loop = false;
   bool calibrated = true;
-  std::uint32_t errors = 0;  // of its axis, until they are cleared
+  std::uint32_t errors = 0;   // of its axis, until they are cleared
+  double found_torque = 0.3;  // N m, that another program has left; with `torque` once it obeys
+  bool fed = false;           // its watchdog counts since it was
+  bool watched = false;       // its watchdog is on
+  bool armed_with_torque = false;  // it obeyed while a torque was left
   Buffer line;
 };
 

@@ -93,6 +93,11 @@ void FakeBus::execute_one(std::size_t row, const UsbRequest& request) {
       return;
     case UsbJob::kWrite: {
       plugged.writes += 1;
+      if (plugged.halted_out) {
+        due.event.status = UsbStatus::kStall;
+        schedule(row, kSoon, due);
+        return;
+      }
       const bool before = without_force(plugged.device);
       const Buffer answer = told(plugged.device, request.data());
       if (!before || !without_force(plugged.device)) {
@@ -115,6 +120,10 @@ void FakeBus::execute_one(std::size_t row, const UsbRequest& request) {
       schedule(row, kControl, due);
       return;
     }
+    case UsbJob::kClearHalt:
+      plugged.halted_out = plugged.halted_out && (request.endpoint & kUsbIn) != 0;
+      schedule(row, kSoon, due);
+      return;
     case UsbJob::kClaim:
       schedule(row, kControl, due);
       return;

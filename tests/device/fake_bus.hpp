@@ -36,6 +36,8 @@ class FakeBus {
   void send(std::size_t row, const Buffer& packet);
   /// The next read ends like this.
   void fail_next_read(std::size_t row, UsbStatus status) { devices_[row].fault = status; }
+  /// The OUT endpoint stalls until its halt is cleared.
+  void halt_writes(std::size_t row) { devices_[row].halted_out = true; }
   /// The device does not answer any more.
   void silence(std::size_t row, bool silent) { devices_[row].silent = silent; }
   /// Claims end like this from now on.
@@ -59,6 +61,7 @@ class FakeBus {
     std::uint32_t reads = 0;  // waiting
     std::uint8_t read_endpoint = 0;
     std::vector<Buffer> waiting;  // packets that no read has fetched
+    bool halted_out = false;
     std::optional<UsbStatus> fault;
     bool silent = false;
     UsbStatus claim = UsbStatus::kCompleted;

@@ -24,8 +24,8 @@ TEST(WoodenHapticsTest, ReadsSixEncodersAndTheButton) {
 
 TEST(WoodenHapticsTest, SendsCurrentsWithinTheStagesLimit) {
   const auto packet = encode_wooden_currents({5000, -5000, 300});
-  EXPECT_EQ(int16_at(packet, 0), 2999);
-  EXPECT_EQ(int16_at(packet, 2), -2999);
+  EXPECT_EQ(int16_at(packet, 0), 2000);
+  EXPECT_EQ(int16_at(packet, 2), -2000);
   EXPECT_EQ(int16_at(packet, 4), 300);
   EXPECT_EQ(int16_at(packet, 6), 0);
 }

@@ -17,8 +17,8 @@ inline bool raised(std::uint32_t faults, Fault fault) {
 /// What a fault means and what to do about it, one sentence.
 std::string_view fault_text(Fault fault);
 
-inline constexpr Fault kAllFaults[] = {Fault::kPoseNotFinite, Fault::kPoseJumped, Fault::kTooDeep,
-                                       Fault::kRegionsFull, Fault::kResultNotFinite,
-                                       Fault::kForceTooLarge};
+inline constexpr Fault kAllFaults[] = {Fault::kPoseNotFinite,   Fault::kPoseJumped,
+                                       Fault::kTooDeep,         Fault::kRegionsFull,
+                                       Fault::kResultNotFinite, Fault::kForceTooLarge};
 
 }  // namespace torsion

@@ -154,8 +154,10 @@ double pressure_share(double square, double flat_share) {
   return (1.0 - flat_share) * 1.5 * root + flat_share * 0.5 / std::max(root, kRim);
 }
 
-/// Pressure for those who draw it and count cells.
-void set_cells(World& world, std::uint32_t region, const RoundContact& contact, bool sticks) {
+/// Pressure and what sticks for those who draw it and count cells.
+/// @param stick_radius  over the contact's
+void set_cells(World& world, std::uint32_t region, const RoundContact& contact,
+               double stick_radius) {
   const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
   const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
@@ -174,7 +176,7 @@ void set_cells(World& world, std::uint32_t region, const RoundContact& contact, 
       tractions[cell].pressure =
           inside ? pressure * pressure_share(square, contact.pressure.flat_share) : 0.0;
       tractions[cell].coverage = inside ? 1.0 : 0.0;
-      tractions[cell].sticks = inside && sticks ? 1U : 0U;
+      tractions[cell].sticks = inside && square < stick_radius * stick_radius ? 1U : 0U;
     }
   }
 }
@@ -245,7 +247,7 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
   if (round.force <= 0.0) {
     std::ranges::fill(layers, MdrLayer{});
     state = MdrState{};
-    set_cells(world, region, round, false);
+    set_cells(world, region, round, 0.0);
     return;
   }
   const MdrContact contact = layers_contact(world, region, round);
@@ -265,11 +267,11 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
   normal.stiffness = 2.0 * elasticity.contact_modulus() * round.radius * round.slide_stiffness;
   tangential.force = forces.force;
   tangential.couple = forces.couple;
-  tangential.stick_share = forces.stick_share;
-  tangential.stick_radius = round.radius;
+  tangential.stick_share = forces.stick_radius * forces.stick_radius;
+  tangential.stick_radius = forces.stick_radius * round.radius;
   tangential.stick_turn = layers.back().turn;
   set_geometry(world, region, round);
-  set_cells(world, region, round, forces.stick_share > 0.5);
+  set_cells(world, region, round, forces.stick_radius);
 }
 
 }  // namespace

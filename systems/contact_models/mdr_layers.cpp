@@ -95,6 +95,23 @@ void project(const MdrFoundation& before, const MdrFoundation& now, double scale
   deflections = found;
 }
 
+constexpr double kRounding = 1e-9;  // of a layer's largest load: by so much none slips that is held
+
+/// Where slip ends, over the contact's radius: on the edge between the pieces that are at their
+/// limit and those that are not (two layers a piece). Sliding and turning have edges of their own;
+/// where both go on they count by their loads.
+double stick_radius(const MdrPlaces& places, std::size_t slipping, const glm::dvec2& loads) {
+  const std::size_t piece = slipping / 2;
+  const auto edge = [&](const std::array<double, kMdrPieces + 1>& edges) {
+    const double outer = piece < kMdrPieces ? edges[piece] : 0.0;
+    const double inner = piece + 1 < kMdrPieces ? edges[piece + 1] : 0.0;
+    return slipping % 2 == 0 ? outer : 0.5 * (outer + inner);
+  };
+  const double square = glm::dot(loads, loads);
+  const double turning = square > 0.0 ? loads.y * loads.y / square : 0.0;
+  return std::lerp(edge(places.shift.edges), edge(places.turn.edges), turning);
+}
+
 }  // namespace
 
 void resize_layers(const MdrSize& before, const MdrSize& now, std::span<MdrLayer> layers) {
@@ -136,6 +153,8 @@ MdrForces move_layers(const MdrPlaces& places, const LimitCurve& curve, const Md
   const double shift_unit = slide_stiffness / friction;  // 1/m
   const double turn_unit = turn_stiffness / largest_couple;
   std::size_t segment = kLimitCurveSegments / 2;
+  std::size_t slipping = 0;  // layers, from the rim inwards
+  glm::dvec2 loads(0.0);     // sums over the layers, over the largest ones
   for (std::size_t k = 0; k < kMdrLayers; ++k) {
     const double share = places.share[k];
     MdrLayer& layer = layers[k];
@@ -144,7 +163,7 @@ MdrForces move_layers(const MdrPlaces& places, const LimitCurve& curve, const Md
     const double per_shift = shift_unit * places.shift_haste[k];
     const double per_turn = turn_unit * places.turn_haste[k];
     const glm::dvec2 load(per_shift * glm::length(layer.shift), per_turn * std::abs(layer.turn));
-    bool sticks = true;
+    loads += share * load;
     if (glm::dot(load, load) > kSurelyInside) {
       const glm::dvec2 kept =
           nearest_inside(curve, load, {friction * per_turn, largest_couple * per_shift}, segment);
@@ -154,13 +173,13 @@ MdrForces move_layers(const MdrPlaces& places, const LimitCurve& curve, const Md
         layer.turn *= load.y > 0.0 ? kept.y / load.y : 0.0;
         forces.slipped +=
             share * (glm::distance(from.shift, layer.shift) + a * std::abs(from.turn - layer.turn));
-        sticks = false;
+        slipping = glm::distance(kept, load) > kRounding ? k + 1 : slipping;
       }
     }
-    forces.stick_share += sticks ? share : 0.0;
     forces.force -= slide_stiffness * places.shift.stiffness[k] * layer.shift;
     forces.couple -= turn_stiffness * places.turn.stiffness[k] * layer.turn;
   }
+  forces.stick_radius = stick_radius(places, slipping, loads);
   return forces;
 }
 

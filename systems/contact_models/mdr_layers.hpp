@@ -28,10 +28,10 @@ struct MdrContact {
 };
 
 struct MdrForces {
-  glm::dvec2 force{0.0};     // N, on the tool
-  double couple = 0.0;       // N m, on the tool
-  double stick_share = 0.0;  // of the layers
-  double slipped = 0.0;      // m: mean plastic slide, with a times the plastic spin
+  glm::dvec2 force{0.0};      // N, on the tool
+  double couple = 0.0;        // N m, on the tool
+  double stick_radius = 0.0;  // over a: within it no layer slips in this step
+  double slipped = 0.0;       // m: mean plastic slide, with a times the plastic spin
 };
 
 /// Where springs sat in the last step or sit in this one.

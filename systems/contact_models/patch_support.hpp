@@ -21,10 +21,10 @@ struct PatchSupport {
   const FootingResponse* response = nullptr;  // null: the body gives way as a half-space does
   const Footing* footing = nullptr;
   const RegionReaction* reaction = nullptr;  // null: other regions do not answer within the step
-  glm::dmat3 to_body{1.0};                    // from x, y, z of the columns
-  double area = 0.0;                          // m^2, of a cell
-  bool soft = false;                          // gives way by much beside the contact itself
-  bool laid_anew = false;                     // the response is not that of the last step
+  glm::dmat3 to_body{1.0};                   // from x, y, z of the columns
+  double area = 0.0;                         // m^2, of a cell
+  bool soft = false;                         // gives way by much beside the contact itself
+  bool laid_anew = false;                    // the response is not that of the last step
   std::size_t cells = 0;    // rows of a term: those of the cells and zeros up to whole lanes, which
                             // all columns that tractions come from or displacements go to have, too
   std::span<double> terms;  // (kSupportTerms x cells)

@@ -183,9 +183,10 @@ TEST(SimulateTest, ASignalEndsARunOnTheClockAndKeepsWhatThereIs) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const Folder folder;
     const auto begun = std::chrono::steady_clock::now();
-    test::Process run(test::torsion({"simulate", scene("ball_on_cube"), "--contact-model", "mdr",
-                         "--body-model", "none", "--realtime", "--seconds", "1000", "--trace",
-                         folder / "t.csv", "--record", folder / "r.rec", "--json"}));
+    test::Process run(
+        test::torsion({"simulate", scene("ball_on_cube"), "--contact-model", "mdr", "--body-model",
+                       "none", "--realtime", "--seconds", "1000", "--trace", folder / "t.csv",
+                       "--record", folder / "r.rec", "--json"}));
     std::this_thread::sleep_for(std::chrono::milliseconds(800));
     run.send(signal);
     const Ran ran = run.wait();

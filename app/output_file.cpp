@@ -1,8 +1,10 @@
 #include "app/output_file.hpp"
 
 #include <cerrno>
+#include <charconv>
 #include <cstdlib>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -25,11 +27,21 @@ std::string said_by_system(int code) {
   return std::error_code(code, std::generic_category()).message();
 }
 
-bool is_below(const std::filesystem::path& path, const std::filesystem::path& folder) {
-  std::error_code failed;
-  const std::filesystem::path whole = std::filesystem::absolute(path, failed).lexically_normal();
-  return !failed && *whole.lexically_relative(folder).begin() != ".." &&
-         whole.lexically_relative(folder) != ".";
+/// The descriptor that a name such as /dev/stdout stands for; -1 for other names.
+int descriptor_named(const std::filesystem::path& path) {
+  const std::string name = path.lexically_normal().string();
+  if (name == "/dev/stdout" || name == "/dev/stderr") {
+    return name == "/dev/stdout" ? STDOUT_FILENO : STDERR_FILENO;
+  }
+  for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+    int descriptor = -1;
+    const char* const end = name.data() + name.size();
+    if (name.starts_with(folder) &&
+        std::from_chars(name.data() + folder.size(), end, descriptor).ptr == end) {
+      return descriptor;
+    }
+  }
+  return -1;
 }
 
 }  // namespace
@@ -47,12 +59,18 @@ Result<Done> make_parent_folder(const std::filesystem::path& path) {
 }
 
 Result<OutputFile> OutputFile::open_as_it_is(const std::filesystem::path& path) {
-  // A pipe that nobody reads is an error and not a wait.
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  // One of this process's own goes on where it is; a pipe that nobody reads is no wait but an
+  // error.
+  const int own = descriptor_named(path);
+  const int descriptor = own >= 0
+                             ? ::fcntl(own, F_DUPFD_CLOEXEC, 0)
+                             : ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (descriptor < 0) {
     return cannot_write(path, errno == ENXIO ? "nobody reads from it" : said_by_system(errno));
   }
-  ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
+  if (own < 0) {
+    ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
+  }
   std::FILE* file = ::fdopen(descriptor, "wb");
   if (file == nullptr) {
     const int code = errno;
@@ -64,41 +82,39 @@ Result<OutputFile> OutputFile::open_as_it_is(const std::filesystem::path& path) 
   return output;
 }
 
-Result<OutputFile> OutputFile::create(const std::filesystem::path& wanted) {
-  const Result<Done> folder = make_parent_folder(wanted);
+Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
+  const Result<Done> folder = make_parent_folder(path);
   if (!folder) {
     return folder.error();
   }
-  if (std::filesystem::is_directory(wanted)) {
-    return cannot_write(wanted, "it is a folder");
+  if (std::filesystem::is_directory(path)) {
+    return cannot_write(path, "it is a folder");
   }
   std::error_code failed;
-  // Names of this process's own descriptors lead to plain files, too, which are open already.
-  const bool is_descriptor = is_below(wanted, "/dev") || is_below(wanted, "/proc");
-  const std::filesystem::file_status status = std::filesystem::status(wanted, failed);
-  if (std::filesystem::exists(status) &&
-      (is_descriptor || !std::filesystem::is_regular_file(status))) {
-    return open_as_it_is(wanted);
+  const std::filesystem::file_status status = std::filesystem::status(path, failed);
+  if (descriptor_named(path) >= 0 ||
+      (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))) {
+    return open_as_it_is(path);
   }
-  std::filesystem::path path = wanted;
-  if (std::filesystem::is_symlink(wanted, failed)) {
-    path = std::filesystem::weakly_canonical(wanted, failed);
+  std::filesystem::path place = path;
+  if (std::filesystem::is_symlink(path, failed)) {
+    place = std::filesystem::weakly_canonical(path, failed);
     if (failed) {
-      return cannot_write(wanted, failed.message());
+      return cannot_write(path, failed.message());
     }
   }
   // Its own, even beside one that is being written to the same place.
   std::filesystem::path temporary;
   std::FILE* file = nullptr;
   for (int number = 0; file == nullptr; ++number) {
-    temporary = path;
+    temporary = place;
     temporary += fmt::format(".{}.{}.tmp", ::getpid(), number);
     file = std::fopen(temporary.c_str(), "w+bx");
     if (file == nullptr && errno != EEXIST) {
       return cannot_write(path, said_by_system(errno));
     }
   }
-  return OutputFile(path, std::move(temporary), file);
+  return OutputFile(place, std::move(temporary), file);
 }
 
 Result<OutputFile> OutputFile::create_unnamed() {

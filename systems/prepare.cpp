@@ -384,7 +384,7 @@ Result<SceneDescription> with_unions(const SceneDescription& scene,
 
 }  // namespace
 
-Result<Simulation> prepare(const SceneDescription& described, const PrepareOptions& options) {
+Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options) {
   if (!(options.rate > 0.0 && options.rate <= kHighestRate)) {
     return Error{"the rate must be above 0 and at most 1e6 Hz, it is " +
                  std::to_string(options.rate)};
@@ -394,21 +394,21 @@ Result<Simulation> prepare(const SceneDescription& described, const PrepareOptio
                  " cells along a side, it has " + std::to_string(options.settings.grid_side)};
   }
   Simulation simulation;
-  const Result<SceneDescription> united = with_unions(described, simulation.united_nodes);
+  const Result<SceneDescription> united = with_unions(scene, simulation.united_nodes);
   if (!united) {
     return united.error();
   }
-  const SceneDescription& scene = united.value();
-  const Result<Built> built = build(scene, options);
+  const SceneDescription& solid = united.value();
+  const Result<Built> built = build(solid, options);
   if (!built) {
     return built.error();
   }
   World& world = simulation.world;
-  const Capacities capacities = capacities_of(scene, built.value());
+  const Capacities capacities = capacities_of(solid, built.value());
   world.reserve(capacities, Settings{1, 0});
   world.clock.at<Clock>(0).dt = 1.0 / options.rate;
-  append_scene(world, scene, built.value());
-  const Result<Done> done = append_choices(simulation, scene, options, capacities);
+  append_scene(world, solid, built.value());
+  const Result<Done> done = append_choices(simulation, solid, options, capacities);
   if (!done) {
     return done.error();
   }

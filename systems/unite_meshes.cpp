@@ -574,6 +574,7 @@ std::vector<std::vector<std::size_t>> groups_of(const std::vector<PartDescriptio
     }
   }
   std::vector<std::vector<std::size_t>> listed;
+  listed.reserve(groups.size());
   for (auto& [root, rows] : groups) {
     listed.push_back(std::move(rows));
   }
@@ -627,6 +628,7 @@ Result<std::vector<std::string>> unite_parts(std::vector<PartDescription>& parts
       continue;
     }
     std::vector<const SurfaceMesh*> meshes;
+    meshes.reserve(group.size());
     for (const std::size_t row : group) {
       meshes.push_back(&parts[row].surface);
     }

@@ -14,8 +14,8 @@
 namespace torsion {
 namespace {
 
-constexpr int kTerms = kSupportTerms;
-constexpr int kAll = 3 * kTerms;
+constexpr Eigen::Index kTerms = kSupportTerms;
+constexpr Eigen::Index kAll = 3 * kTerms;
 using TermMatrix = Eigen::Matrix<double, kTerms, kTerms, Eigen::RowMajor>;
 using TangentMatrix = Eigen::Matrix<double, 2 * kTerms, 2 * kTerms, Eigen::RowMajor>;
 using AllMatrix = Eigen::Matrix<double, kAll, kAll>;

@@ -134,14 +134,12 @@ struct Scratch {
   std::vector<double> compliance_inverse;    // likewise
   std::vector<double> compliance_residuals;  // (6 kMaxRegionsPerBody)
 
-  // patch_forces
-  DiscStiffness disc_stiffness;  // constant; empty without patch and compliance
-
   // mdr_forces
   MdrTables mdr_tables;  // constant; empty without contact model mdr
   // region_fields
   RingProfiles ring_profiles;  // constant; empty without contact model patch
   // patch_forces
+  DiscStiffness disc_stiffness;                // constant; empty without patch and compliance
   PatchColumns patch_columns;                  // (cells of one region)
   PatchPlaces patch_places;                    // likewise
   SupportColumns support_columns;              // (cells of one region)

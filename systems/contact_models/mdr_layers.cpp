@@ -97,9 +97,9 @@ void project(const MdrFoundation& before, const MdrFoundation& now, double scale
 
 constexpr double kRounding = 1e-9;  // of a layer's largest load: by so much none slips that is held
 
-/// Where slip ends, over the contact's radius: on the edge between the pieces that are at their
-/// limit and those that are not (two layers a piece). Sliding and turning have edges of their own;
-/// where both go on they count by their loads.
+/// Where slip ends, over the contact's radius: on the edge between the pieces that slip and those
+/// that do not (two layers a piece). Sliding and turning have edges of their own; where both go on
+/// they count by their loads.
 double stick_radius(const MdrPlaces& places, std::size_t slipping, const glm::dvec2& loads) {
   const std::size_t piece = slipping / 2;
   const auto edge = [&](const std::array<double, kMdrPieces + 1>& edges) {

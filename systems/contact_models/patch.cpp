@@ -264,7 +264,7 @@ void summarize(const Patch& patch, const PatchSums& sums) {
   const double cell = cell_area(patch.frame, patch.side);
   geometry.equivalent_point = grid_to_body(patch.frame, center);
   geometry.area = sums.loaded_cells * cell;
-  geometry.radius = std::sqrt(geometry.area / std::numbers::pi);
+  geometry.radius = contact_radius(patch, sums);
   geometry.mean_depth = sums.depth;
   geometry.rest_point = geometry.equivalent_point + patch.frame.normal * geometry.mean_depth;
   normal.force = sums.force;

@@ -6,26 +6,10 @@
 #include <glm/geometric.hpp>
 
 #include "ecs/assert.hpp"
+#include "systems/geometry/disjoint_sets.hpp"
 
 namespace torsion {
 namespace {
-
-std::uint32_t root_of(std::span<std::uint32_t> parent, std::uint32_t point) {
-  while (parent[point] != point) {
-    parent[point] = parent[parent[point]];
-    point = parent[point];
-  }
-  return point;
-}
-
-/// The smaller row becomes the root, so that the outcome does not depend on the order of the links.
-/// @return true when they were not linked before
-bool link(std::span<std::uint32_t> parent, std::uint32_t a, std::uint32_t b) {
-  const std::uint32_t root_a = root_of(parent, a);
-  const std::uint32_t root_b = root_of(parent, b);
-  parent[std::max(root_a, root_b)] = std::min(root_a, root_b);
-  return root_a != root_b;
-}
 
 /// Links pairs that are closer than `threshold`, until all points are one group.
 /// @return how many groups are left

@@ -9,12 +9,13 @@
 #include "systems/contact_models/layer_thickness.hpp"
 #include "systems/distance_field_build.hpp"
 #include "systems/frames.hpp"
+#include "systems/geometry/bounds.hpp"
+#include "systems/geometry/unite_meshes.hpp"
 #include "systems/prepare_anchors.hpp"
 #include "systems/prepare_compliance.hpp"
 #include "systems/sample_surface.hpp"
 #include "systems/scratch.hpp"
 #include "systems/step.hpp"
-#include "systems/unite_meshes.hpp"
 
 namespace torsion {
 namespace {
@@ -134,17 +135,6 @@ Range append_parts(World& world, std::span<const PartDescription> parts, const B
     append_rows<ShapePart>(world.parts, {&shape, 1});
   }
   return range;
-}
-
-Bounds bounds_of(std::span<const PartDescription> parts) {
-  Bounds bounds{glm::dvec3(1e300), glm::dvec3(-1e300)};
-  for (const PartDescription& part : parts) {
-    for (const glm::dvec3& position : part.surface.positions) {
-      bounds.lowest = glm::min(bounds.lowest, position);
-      bounds.highest = glm::max(bounds.highest, position);
-    }
-  }
-  return bounds;
 }
 
 double default_threshold(const World& world) {

@@ -12,6 +12,7 @@
 #include "systems/beam_sections.hpp"
 #include "systems/distance.hpp"
 #include "systems/fixed_volume.hpp"
+#include "systems/geometry/bounds.hpp"
 
 namespace torsion {
 namespace {
@@ -30,18 +31,6 @@ struct Body {
   Bounds bounds;
   double size;  // m, diagonal of the box
 };
-
-Bounds bounds_of(const std::vector<PartDescription>& parts) {
-  Bounds bounds{glm::dvec3(std::numeric_limits<double>::infinity()),
-                glm::dvec3(-std::numeric_limits<double>::infinity())};
-  for (const PartDescription& part : parts) {
-    for (const glm::dvec3& position : part.surface.positions) {
-      bounds.lowest = glm::min(bounds.lowest, position);
-      bounds.highest = glm::max(bounds.highest, position);
-    }
-  }
-  return bounds;
-}
 
 bool in_fixed_volume(const Body& body, const glm::dvec3& point) {
   return std::any_of(body.volumes.begin(), body.volumes.end(),

@@ -1,6 +1,6 @@
 // Meshes that overlap bound one solid.
 
-#include "systems/unite_meshes.hpp"
+#include "systems/geometry/unite_meshes.hpp"
 
 #include <cmath>
 #include <map>

@@ -11,12 +11,12 @@
 namespace torsion {
 
 /// In order of preference.
-enum class DeviceKind { kDiscrete, kIntegrated, kVirtual, kOther, kProcessor };
+enum class GpuKind { kDiscrete, kIntegrated, kVirtual, kOther, kProcessor };
 
 /// What the choice needs to know of a Vulkan device.
 struct DeviceFacts {
   std::string name;
-  DeviceKind kind = DeviceKind::kOther;
+  GpuKind kind = GpuKind::kOther;
   std::vector<std::string> missing;  // what it lacks of what the renderer needs, in Vulkan's words
 };
 

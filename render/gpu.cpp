@@ -75,20 +75,20 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, const GpuOpti
   return {context, info};
 }
 
-DeviceKind kind_of(vk::PhysicalDeviceType type) {
+GpuKind kind_of(vk::PhysicalDeviceType type) {
   switch (type) {
     case vk::PhysicalDeviceType::eDiscreteGpu:
-      return DeviceKind::kDiscrete;
+      return GpuKind::kDiscrete;
     case vk::PhysicalDeviceType::eIntegratedGpu:
-      return DeviceKind::kIntegrated;
+      return GpuKind::kIntegrated;
     case vk::PhysicalDeviceType::eVirtualGpu:
-      return DeviceKind::kVirtual;
+      return GpuKind::kVirtual;
     case vk::PhysicalDeviceType::eCpu:
-      return DeviceKind::kProcessor;
+      return GpuKind::kProcessor;
     case vk::PhysicalDeviceType::eOther:
       break;
   }
-  return DeviceKind::kOther;
+  return GpuKind::kOther;
 }
 
 /// The first family that draws and computes (Vulkan has one wherever anything can draw).

@@ -31,7 +31,7 @@ struct SampleCandidate {
 
 /// Points spread over the pieces by area: equal steps through the areas, and in each piece the R2
 /// sequence (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
-std::vector<SampleCandidate> candidates_on(std::span<const SurfacePiece> pieces,
+std::vector<SampleCandidate> candidates_on(std::span<const SurfaceTriangle> pieces,
                                            const PartSolids& solids, double total_area,
                                            std::uint32_t count) {
   std::vector<SampleCandidate> candidates;
@@ -179,7 +179,7 @@ class LeafCover {
     }
   }
 
-  void cover(const SurfacePiece& piece, int most_halvings) {
+  void cover(const SurfaceTriangle& piece, int most_halvings) {
     const auto& [a, b, c] = piece.corner;
     cover(a, b, c, piece.bulge, most_halvings);
   }
@@ -227,12 +227,13 @@ class LeafCover {
   std::uint32_t last_ = 0;
 };
 
-void cover_surface(std::span<const SurfacePiece> pieces, double spacing, SampledSurface& surface) {
+void cover_surface(std::span<const SurfaceTriangle> pieces, double spacing,
+                   SampledSurface& surface) {
   const double budget = static_cast<double>(kMostPieces) / static_cast<double>(pieces.size());
   const int most_halvings =
       std::max(2, static_cast<int>(std::floor(std::log2(std::max(budget, 1.0)))));
   LeafCover cover(surface.balls, surface.samples, kPieceOverSpacing * spacing);
-  for (const SurfacePiece& piece : pieces) {
+  for (const SurfaceTriangle& piece : pieces) {
     cover.cover(piece, most_halvings);
   }
   for (SurfaceBall& ball : surface.balls) {
@@ -248,10 +249,10 @@ void cover_surface(std::span<const SurfacePiece> pieces, double spacing, Sampled
 SampledSurface sample_surface(std::span<const PartDescription> parts, std::uint32_t target_count) {
   SampledSurface surface;
   const PartSolids solids(parts);
-  const std::vector<SurfacePiece> pieces = surface_pieces(parts, solids, target_count);
+  const std::vector<SurfaceTriangle> pieces = surface_pieces(parts, solids, target_count);
   const double area =
       std::accumulate(pieces.begin(), pieces.end(), 0.0,
-                      [](double sum, const SurfacePiece& piece) { return sum + piece.area; });
+                      [](double sum, const SurfaceTriangle& piece) { return sum + piece.area; });
   if (pieces.empty() || target_count == 0) {
     return surface;
   }

@@ -54,7 +54,7 @@ glm::dvec3 enclosing_box(const ShapePart& shape) {
 
 /// Adds the piece unless it has no area or is hidden in another part.
 void add_piece(const std::array<glm::dvec3, 3>& corner, std::uint32_t part, double bulge,
-               const PartSolids& solids, std::vector<SurfacePiece>& pieces) {
+               const PartSolids& solids, std::vector<SurfaceTriangle>& pieces) {
   const glm::dvec3 normal = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
   const double length = std::sqrt(glm::dot(normal, normal));
   if (!(length > 0.0)) {
@@ -82,7 +82,7 @@ double bulge_of(const ShapePart& shape, const std::array<glm::dvec3, 3>& corner)
 
 /// One face of the box, cut into squares: the face where `axis` is at `side` times its half extent.
 void add_face(const ShapePart& shape, std::uint32_t part, int axis, double side, double step,
-              const PartSolids& solids, std::vector<SurfacePiece>& pieces) {
+              const PartSolids& solids, std::vector<SurfaceTriangle>& pieces) {
   const glm::dvec3 box = enclosing_box(shape);
   const int u = (axis + 1) % 3;
   const int v = (axis + 2) % 3;
@@ -115,7 +115,7 @@ void add_face(const ShapePart& shape, std::uint32_t part, int axis, double side,
 }
 
 void add_exact_shape(const ShapePart& shape, std::uint32_t part, double squares,
-                     const PartSolids& solids, std::vector<SurfacePiece>& pieces) {
+                     const PartSolids& solids, std::vector<SurfaceTriangle>& pieces) {
   const glm::dvec3 box = enclosing_box(shape);
   const double area = 8.0 * (box.x * box.y + box.y * box.z + box.z * box.x);
   for (int axis = 0; axis < 3; ++axis) {
@@ -172,12 +172,12 @@ bool PartSolids::inside_others(const glm::dvec3& point, std::uint32_t own, doubl
   return false;
 }
 
-std::vector<SurfacePiece> surface_pieces(std::span<const PartDescription> parts,
-                                         const PartSolids& solids, std::uint32_t target_count) {
+std::vector<SurfaceTriangle> surface_pieces(std::span<const PartDescription> parts,
+                                            const PartSolids& solids, std::uint32_t target_count) {
   // About 4 squares for each sample, and enough on each part for its shape.
   const double squares =
       4.0 * target_count / static_cast<double>(std::max<std::size_t>(parts.size(), 1)) + 600.0;
-  std::vector<SurfacePiece> pieces;
+  std::vector<SurfaceTriangle> pieces;
   for (std::uint32_t part = 0; part < parts.size(); ++part) {
     if (parts[part].shape.kind != ShapeKind::kMesh) {
       add_exact_shape(parts[part].shape, part, squares, solids, pieces);

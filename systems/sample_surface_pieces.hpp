@@ -12,7 +12,7 @@
 namespace torsion {
 
 /// A flat triangle of a part's surface, in the owner's frame.
-struct SurfacePiece {
+struct SurfaceTriangle {
   std::array<glm::dvec3, 3> corner;  // m
   double area = 0.0;                 // m^2
   glm::dvec3 normal{0.0};            // unit
@@ -45,7 +45,7 @@ Distance exact_distance(const ShapePart& shape, const glm::dvec3& point);
 /// enough for `target_count` samples, with all corners on the exact surface and its edges along
 /// those of the shape. Pieces that lie wholly inside another part, and those without area, are left
 /// out.
-std::vector<SurfacePiece> surface_pieces(std::span<const PartDescription> parts,
-                                         const PartSolids& solids, std::uint32_t target_count);
+std::vector<SurfaceTriangle> surface_pieces(std::span<const PartDescription> parts,
+                                            const PartSolids& solids, std::uint32_t target_count);
 
 }  // namespace torsion

@@ -19,7 +19,7 @@ glm::dmat3 world_inertia(const World& world, std::uint32_t tool) {
 
 }  // namespace
 
-ToolDrag choose_drag(const VirtualCoupling& coupling, const MassProperties& mass) {
+ToolDamping choose_damping(const VirtualCoupling& coupling, const MassProperties& mass) {
   constexpr double kOfCritical = 0.1;
   const double inertia = (mass.inertia[0][0] + mass.inertia[1][1] + mass.inertia[2][2]) / 3.0;
   return {kOfCritical * 2.0 * std::sqrt(coupling.stiffness * mass.mass),
@@ -32,7 +32,7 @@ Pose next_heavy_tool_pose(const World& world, std::uint32_t tool, const VirtualC
   const double h = world.clock.at<Clock>(0).dt;
   const ToolBalance balance = balance_of(world, tool, coupling, handle);
   const Vector6 velocity = last_motion(world, tool) / h;
-  const ToolDrag drag = choose_drag(coupling, properties);
+  const ToolDamping tool_damping = choose_damping(coupling, properties);
   const glm::dmat3 inertia = world_inertia(world, tool);
   Matrix6 mass = Matrix6::Zero();
   mass.topLeftCorner<3, 3>() = properties.mass * Eigen::Matrix3d::Identity();
@@ -40,7 +40,8 @@ Pose next_heavy_tool_pose(const World& world, std::uint32_t tool, const VirtualC
     mass.block<3, 1>(3, 3 + column) = eigen(inertia[column]);
   }
   Vector6 damping;
-  damping << Eigen::Vector3d::Constant(drag.shifting), Eigen::Vector3d::Constant(drag.turning);
+  damping << Eigen::Vector3d::Constant(tool_damping.translation),
+      Eigen::Vector3d::Constant(tool_damping.rotation);
   const glm::dvec3 turning(velocity[3], velocity[4], velocity[5]);
   Vector6 wrench = balance.wrench;
   wrench.tail<3>() -= eigen(glm::cross(turning, inertia * turning));

@@ -8,10 +8,10 @@ namespace torsion {
 namespace {
 
 const std::array<DeviceFacts, 4> kDevices = {{
-    {"llvmpipe (LLVM 15.0.6, 256 bits)", DeviceKind::kProcessor, {}},
-    {"Old Card 100", DeviceKind::kDiscrete, {"Vulkan 1.3"}},
-    {"Built-in Graphics", DeviceKind::kIntegrated, {}},
-    {"New Card 900", DeviceKind::kDiscrete, {}},
+    {"llvmpipe (LLVM 15.0.6, 256 bits)", GpuKind::kProcessor, {}},
+    {"Old Card 100", GpuKind::kDiscrete, {"Vulkan 1.3"}},
+    {"Built-in Graphics", GpuKind::kIntegrated, {}},
+    {"New Card 900", GpuKind::kDiscrete, {}},
 }};
 
 TEST(DeviceChoiceTest, PrefersACardThatLacksNothing) {
@@ -29,7 +29,7 @@ TEST(DeviceChoiceTest, FindsANamedDeviceInUpperOrLowerCase) {
 
 TEST(DeviceChoiceTest, TakesTheFirstOfEqualKind) {
   const std::array<DeviceFacts, 2> twins = {
-      {{"Card A", DeviceKind::kDiscrete, {}}, {"Card B", DeviceKind::kDiscrete, {}}}};
+      {{"Card A", GpuKind::kDiscrete, {}}, {"Card B", GpuKind::kDiscrete, {}}}};
   EXPECT_EQ(choose_device(twins, "card").value(), 0U);
 }
 

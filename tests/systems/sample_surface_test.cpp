@@ -57,7 +57,7 @@ std::vector<Tool> tools() {
 double total_area(std::span<const PartDescription> parts, std::uint32_t count = 1000) {
   const PartSolids solids(parts);
   double area = 0.0;
-  for (const SurfacePiece& piece : surface_pieces(parts, solids, count)) {
+  for (const SurfaceTriangle& piece : surface_pieces(parts, solids, count)) {
     area += piece.area;
   }
   return area;
@@ -210,11 +210,11 @@ TEST(SampleSurfaceTest, NeighboursAreTheNearestInRisingOrder) {
 
 /// Points all over a part's own surface: of a mesh its triangles', of a shape its exact surface.
 std::vector<glm::dvec3> dense_points(const PartDescription& part) {
-  std::vector<SurfacePiece> pieces = surface_pieces({&part, 1}, PartSolids({&part, 1}), 2000);
+  std::vector<SurfaceTriangle> pieces = surface_pieces({&part, 1}, PartSolids({&part, 1}), 2000);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   std::vector<glm::dvec3> points;
-  for (const SurfacePiece& piece : pieces) {
+  for (const SurfaceTriangle& piece : pieces) {
     const double u = unit(random);
     const double v = unit(random) * (1.0 - u);
     glm::dvec3 p = piece.corner[0] + u * (piece.corner[1] - piece.corner[0]) +

@@ -43,7 +43,7 @@ double error_of_free_motion(double rate, double stiffness) {
   const Pose handle{{kOff, kFree, 0.0}, kUpright};
   const MassProperties& properties = hand.world().tools.at<MassProperties>(0);
   const double frequency = std::sqrt(stiffness / properties.mass);
-  const double decay = 0.5 * choose_drag(coupling, properties).shifting / properties.mass;
+  const double decay = 0.5 * choose_damping(coupling, properties).translation / properties.mass;
   const double ringing = std::sqrt(frequency * frequency - decay * decay);
   double worst = 0.0;
   for (int i = 1; i <= static_cast<int>(0.2 * rate); ++i) {

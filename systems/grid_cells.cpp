@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 
-#include "systems/cell_finder.hpp"
 #include "systems/frames.hpp"
 #include "systems/lanes.hpp"
 #include "systems/patch_grid.hpp"
@@ -13,26 +12,6 @@
 
 namespace torsion {
 namespace {
-
-/// Where the material under the grid has gone, in the frame of its body.
-Pose moved_grid_in_body(const Grid& grid) {
-  const RegionCarrier& carrier = grid.carrier;
-  Pose moved = grid_in_body(grid.frame);
-  const double angle = glm::length(carrier.rotation);
-  if (angle > 0.0) {
-    moved.rotation = glm::angleAxis(angle, carrier.rotation / angle) * moved.rotation;
-  }
-  moved.position += carrier.translation;
-  const RegionSupport& support = grid.support;
-  const double turn = glm::length(support.rotation);
-  if (turn > 0.0) {
-    const glm::dquat rotation = glm::angleAxis(turn, support.rotation / turn);
-    moved.rotation = rotation * moved.rotation;
-    moved.position = support.about + rotation * (moved.position - support.about);
-  }
-  moved.position += support.translation;
-  return moved;
-}
 
 /// Distance of the cells' places on the tool to the body's rest surface.
 void find_rest_surface(const Grid& grid) {
@@ -178,7 +157,7 @@ void store_cells(const Grid& grid) {
 /// Marks the cells under a region's contact points, those of other clusters in `foreign`.
 /// @return true when there are any of others in the grid
 bool mark_points(const Grid& grid, const RegionPoints& contact, CellBits& own, CellBits& foreign) {
-  const CellFinder finder(grid.frame, grid.side);
+  const CellFinder finder = finder_of(grid);
   bool any_foreign = false;
   for (const ContactPoint& point : points_of(grid.scratch, contact)) {
     if (const auto cell = finder.under(point.position)) {
@@ -250,10 +229,28 @@ Pose grid_in_body(const RegionFrame& frame) {
   return {frame.origin, glm::quat_cast(glm::dmat3(frame.tangent_x, frame.tangent_y, frame.normal))};
 }
 
+Pose moved_grid_in_body(const RegionFrame& frame, const RegionCarrier& carrier,
+                        const RegionSupport& support) {
+  Pose moved = grid_in_body(frame);
+  const double angle = glm::length(carrier.rotation);
+  if (angle > 0.0) {
+    moved.rotation = glm::angleAxis(angle, carrier.rotation / angle) * moved.rotation;
+  }
+  moved.position += carrier.translation;
+  const double turn = glm::length(support.rotation);
+  if (turn > 0.0) {
+    const glm::dquat rotation = glm::angleAxis(turn, support.rotation / turn);
+    moved.rotation = rotation * moved.rotation;
+    moved.position = support.about + rotation * (moved.position - support.about);
+  }
+  moved.position += support.translation;
+  return moved;
+}
+
 Pose grid_in_tool(const Grid& grid) {
   const Pose tool_in_body = relative(grid.world.bodies.at<Pose>(grid.identity.body),
                                      grid.world.tools.at<ToolPose>(grid.identity.tool).now);
-  return relative(tool_in_body, moved_grid_in_body(grid));
+  return relative(tool_in_body, moved_grid_in_body(grid.frame, grid.carrier, grid.support));
 }
 
 void cell_centers(const RegionFrame& frame, std::uint32_t side, std::span<double> x,

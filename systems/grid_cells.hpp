@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "systems/cell_finder.hpp"
 #include "systems/scratch.hpp"
 #include "systems/smooth_step.hpp"
 #include "systems/step.hpp"
@@ -16,7 +17,7 @@ struct Grid {
   Scratch& scratch;
   RegionIdentity identity;
   RegionFrame& frame;
-  const RegionCarrier& carrier;
+  RegionCarrier& carrier;
   const RegionSupport& support;
   std::uint32_t side;
   std::span<CellGeometry> cells;
@@ -46,6 +47,17 @@ inline std::span<const ContactPoint> points_of(const Scratch& scratch,
 
 /// The grid's frame in that of its body.
 Pose grid_in_body(const RegionFrame& frame);
+
+/// Where the material under a grid has gone, in the frame of its body: with what sticks to the
+/// tool, and with the body as a whole.
+Pose moved_grid_in_body(const RegionFrame& frame, const RegionCarrier& carrier,
+                        const RegionSupport& support);
+
+/// Finds cells by places that the material under them has moved to.
+inline CellFinder finder_of(const Grid& grid) {
+  return {moved_grid_in_body(grid.frame, grid.carrier, grid.support), grid.frame.half_size,
+          grid.side};
+}
 
 /// The grid's frame, moved as the material under it, in that of its tool.
 Pose grid_in_tool(const Grid& grid);

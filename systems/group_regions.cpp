@@ -7,6 +7,7 @@
 #include "systems/contact_models/patch_energy.hpp"
 #include "systems/fault.hpp"
 #include "systems/frames.hpp"
+#include "systems/grid_cells.hpp"
 #include "systems/region_grid.hpp"
 #include "systems/region_wrenches.hpp"
 #include "systems/scratch.hpp"
@@ -26,7 +27,11 @@ struct PairPoints {
 /// A region's cells under contact points.
 struct RegionCells {
   RegionCells(const World& world, std::uint32_t region)
-      : finder(world.regions.at<RegionFrame>(region), world.settings.at<Settings>(0).grid_side),
+      : finder(moved_grid_in_body(world.regions.at<RegionFrame>(region),
+                                  world.regions.at<RegionCarrier>(region),
+                                  world.regions.at<RegionSupport>(region)),
+               world.regions.at<RegionFrame>(region).half_size,
+               world.settings.at<Settings>(0).grid_side),
         cells(world.cells.rows<CellGeometry>(world.regions.at<RegionIdentity>(region).cells)) {}
 
   /// Share of a point that lies over the region: 1 on its covered cells, a little on the others of

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
+#include "systems/contact_axes.hpp"
 #include "systems/frames.hpp"
 #include "systems/grid_place.hpp"
 #include "systems/patch_grid.hpp"
+#include "systems/patch_layout.hpp"
 
 namespace torsion {
 namespace {
@@ -203,9 +206,8 @@ glm::dvec2 half_size_around(const Grid& grid, const glm::dvec2& middle, const Pl
   return patch_half_size(least, keeps ? now : wanted);
 }
 
-}  // namespace
-
-void center_patch(const Grid& grid, const RegionPoints& contact, double start_depth) {
+/// Passes over a grid whose axes stay until it lies around the contact.
+void find_middle(const Grid& grid, const RegionPoints& contact, double start_depth) {
   // Of the half sides: where the contact's middle is wanted.
   const glm::dvec2 off = patch_middle(grid.side) / static_cast<double>(grid.side) * 2.0 - 1.0;
   grid.frame.half_size = glm::dvec2(std::max(grid.frame.half_size.x, grid.frame.half_size.y));
@@ -246,6 +248,25 @@ void center_patch(const Grid& grid, const RegionPoints& contact, double start_de
     }
   }
   find_cells(grid, contact);
+}
+
+}  // namespace
+
+void center_patch(const Grid& grid, const RegionPoints& contact, double start_depth) {
+  find_middle(grid, contact, start_depth);
+  const ContactAxes axes = contact_axes(grid, grid.scratch.cell_columns.coverage);
+  if (axes.is_askew()) {
+    turn_axes(grid.frame, axes.angle);
+    // What fits the grid along its diagonal fits it along its sides, then.
+    grid.frame.half_size *= std::numbers::sqrt2;
+    restart_heights(grid, start_depth);
+    find_middle(grid, contact, start_depth);
+  }
+  if (axes.is_long()) {
+    lay_along_contact(grid, contact, start_depth, glm::dvec2(0.0));
+    restart_heights(grid, start_depth);
+    find_cells(grid, contact);
+  }
 }
 
 }  // namespace torsion

@@ -1,23 +1,24 @@
 #include "systems/patch_grid.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "systems/contact_axes.hpp"
 #include "systems/contact_models/influence.hpp"
-#include "systems/contact_models/patch_cells.hpp"
 #include "systems/frames.hpp"
 #include "systems/grid_cells.hpp"
+#include "systems/patch_layout.hpp"
+#include "systems/patch_resampling.hpp"
 #include "systems/region_wrenches.hpp"
 
 namespace torsion {
 namespace {
 
-constexpr double kFill = 0.81;          // of a new grid by the cells with pressure
-constexpr double kSmallestFill = 0.74;  // over that: below it the grid is laid anew, smaller
-constexpr double kSteepest = 0.25;      // smallest cosine that is divided by
-constexpr double kSure = 1.3;           // over the point load's far field: what certainly touches
+constexpr double kSmallestFill = 0.74;       // over a new grid's: below it it is laid anew, smaller
+constexpr double kOtherShape = 1.25;         // of a doubling: so far cells may be from their shape
+constexpr std::uint32_t kSettlingSteps = 8;  // on other axes
+constexpr double kSure = 1.3;  // over the point load's far field: what certainly touches
 
 /// A box of cells; `end` is one past the last.
 struct CellBox {
@@ -52,14 +53,6 @@ bool reaches_edge(const Grid& grid, const CellBox& box) {
   return box.first.x < 1 + spare || box.first.y < 1 || box.end.x > side - 1 || box.end.y > side - 1;
 }
 
-/// No more than what leaves a free row on either side, or the next step would lay it anew: of a
-/// contact in the middle half a cell more on either side has no cell's centre in it.
-double fill_of_new(std::uint32_t side) {
-  constexpr double kLess = 0.04;  // of a cell
-  const double free = static_cast<double>(patch_spare(side)) + 1.0 + kLess;
-  return std::min(kFill, std::max(1.0 - free / static_cast<double>(side), 0.5));
-}
-
 /// Takes in the contact points outside the grid that lie deeper than the pressure can have pushed
 /// the surface away there.
 void include_lobes(const Grid& grid, std::uint32_t region, const RegionPoints& contact,
@@ -67,18 +60,19 @@ void include_lobes(const Grid& grid, std::uint32_t region, const RegionPoints& c
   const World& world = grid.world;
   const double force = world.regions.at<RegionNormal>(region).force;
   const double modulus = world.bodies.at<Elasticity>(grid.identity.body).contact_modulus();
-  const glm::dvec3 center =
-      body_to_grid(grid.frame, world.regions.at<RegionGeometry>(region).equivalent_point);
+  const glm::dvec2 center(
+      body_to_grid(grid.frame, world.regions.at<RegionGeometry>(region).equivalent_point));
   const RegionSupport& support = world.regions.at<RegionSupport>(region);
+  const CellFinder finder = finder_of(grid);
   for (const ContactPoint& point : points_of(grid.scratch, contact)) {
     if (point.cluster != contact.cluster) {
       continue;
     }
-    const glm::dvec3 place = body_to_grid(grid.frame, point.position);
+    const glm::dvec2 place = finder.place(point.position);
     if (std::abs(place.x) < grid.frame.half_size.x && std::abs(place.y) < grid.frame.half_size.y) {
       continue;
     }
-    const double distance = glm::length(glm::dvec2(place - center));
+    const double distance = glm::length(place - center);
     // Points are found against the rest shape: what the whole body has sunk there is no overlap.
     const double sunk = -glm::dot(
         grid.frame.normal,
@@ -86,7 +80,7 @@ void include_lobes(const Grid& grid, std::uint32_t region, const RegionPoints& c
     // Far field of a point load, F / (pi E* r): Johnson, Contact Mechanics, 1985, (3.22a).
     if ((point.depth - sunk) * std::numbers::pi * modulus * distance > kSure * force) {
       const glm::dvec2 at =
-          (glm::dvec2(place) / grid.frame.half_size + 1.0) * 0.5 * static_cast<double>(grid.side);
+          (place / grid.frame.half_size + 1.0) * 0.5 * static_cast<double>(grid.side);
       const glm::ivec2 cell(glm::floor(at));
       box.first = glm::min(box.first, cell);
       box.end = glm::max(box.end, cell + 1);
@@ -94,152 +88,163 @@ void include_lobes(const Grid& grid, std::uint32_t region, const RegionPoints& c
   }
 }
 
-/// Catmull-Rom's weights at a place between the second and the third of four values.
-std::array<double, 4> cubic_weights(double x) {
-  return {x * (-0.5 + x * (1.0 - 0.5 * x)), 1.0 + x * x * (-2.5 + 1.5 * x),
-          x * (0.5 + x * (2.0 - 1.5 * x)), x * x * (-0.5 + 0.5 * x)};
+/// The box in m, from the grid's origin.
+PlaneBox extent_of(const Grid& grid, const CellBox& box) {
+  const glm::dvec2 half_side(0.5 * static_cast<double>(grid.side));
+  return {cell_size(grid) * (glm::dvec2(box.first) - half_side),
+          cell_size(grid) * (glm::dvec2(box.end) - half_side)};
 }
 
-/// What the cells were before the grid moved.
-struct Before {
-  std::span<const double> held_x, held_y;  // m
-  std::span<const CellTraction> tractions;
-  int side;
-  int spare;  // columns that hold nothing
-};
-
-/// Between the old cells around `place` (in cells, from the first one's centre).
-struct Resampled {
-  glm::dvec2 held{0.0};  // m
-  bool known = false;    // whether there is one
-  CellTraction traction;
-};
-
-bool inside(const Before& before, const glm::ivec2& cell) {
-  return cell.x >= before.spare && cell.y >= 0 && cell.x < before.side && cell.y < before.side;
+glm::dmat2 rotation_by(double angle) {
+  return {std::cos(angle), std::sin(angle), -std::sin(angle), std::cos(angle)};
 }
 
-/// On a cell's centre but for rounding: there, so that mirror images fall on the same side of it.
-glm::dvec2 on_centers(const glm::dvec2& place) {
-  constexpr double kOnCenter = 1e-6;
-  const glm::dvec2 nearest = glm::round(place);
-  return {std::abs(place.x - nearest.x) < kOnCenter ? nearest.x : place.x,
-          std::abs(place.y - nearest.y) < kOnCenter ? nearest.y : place.y};
-}
-
-Resampled resample(const Before& before, const glm::dvec2& cells) {
-  const glm::dvec2 place = on_centers(cells);
-  const glm::dvec2 low = glm::floor(place);
-  const glm::dvec2 part = place - low;
-  const glm::ivec2 corner(low);
-  Resampled result;
-  const std::array<double, 2> linear_x{1.0 - part.x, part.x};
-  const std::array<double, 2> linear_y{1.0 - part.y, part.y};
-  for (int y = 0; y < 2; ++y) {
-    for (int x = 0; x < 2; ++x) {
-      const glm::ivec2 at = corner + glm::ivec2(x, y);
-      if (inside(before, at)) {
-        const double weight =
-            linear_x[static_cast<std::size_t>(x)] * linear_y[static_cast<std::size_t>(y)];
-        const CellTraction& from =
-            before.tractions[static_cast<std::size_t>(at.y * before.side + at.x)];
-        result.traction.pressure += weight * from.pressure;
-        result.traction.traction += weight * from.traction;
-        result.traction.kinetic_share += weight * from.kinetic_share;
-      }
-    }
-  }
-  // The displacement is smooth: four points a way keep it, two would wear it down.
-  const glm::ivec2 between(part.x > 0.0 ? 1 : 0, part.y > 0.0 ? 1 : 0);
-  if (!inside(before, corner - between) || !inside(before, corner + 2 * between)) {
-    return result;
-  }
-  const std::array<double, 4> cubic_x = cubic_weights(part.x);
-  const std::array<double, 4> cubic_y = cubic_weights(part.y);
-  for (int y = 0; y < 4; ++y) {
-    for (int x = 0; x < 4; ++x) {
-      const glm::ivec2 at = corner + between * glm::ivec2(x - 1, y - 1);
-      const double weight =
-          cubic_x[static_cast<std::size_t>(x)] * cubic_y[static_cast<std::size_t>(y)];
-      const auto cell = static_cast<std::size_t>(at.y * before.side + at.x);
-      result.held += weight * glm::dvec2(before.held_x[cell], before.held_y[cell]);
-    }
-  }
-  result.known = true;
-  return result;
-}
-
-/// Where the cells of the new grid are among those of the old one: old = origin + scale * new.
-struct CellMove {
-  glm::dvec2 origin{0.0};
-  glm::dvec2 scale{1.0};
-};
-
-void copy_cells(const Grid& grid, const PatchSurface& surface) {
-  std::ranges::copy(surface.held_x, grid.scratch.held_before.x.begin());
-  std::ranges::copy(surface.held_y, grid.scratch.held_before.y.begin());
-  std::ranges::copy(grid.world.cells.rows<CellTraction>(grid.identity.cells),
-                    grid.scratch.tractions_before.begin());
-}
-
-void move_cells(const Grid& grid, const CellMove& move, double depth) {
-  const PatchRows rows = patch_rows(grid.world, grid.identity.cells);
-  copy_cells(grid, rows.surface);
-  const HeldBefore& held = grid.scratch.held_before;
-  const Before before{held.x, held.y, grid.scratch.tractions_before, static_cast<int>(grid.side),
-                      static_cast<int>(patch_spare(grid.side))};
-  grid.world.patch_cells.zero(grid.identity.cells);
+/// The loaded cells' extent along axes that are turned from the grid's. Their rim runs between
+/// cells, so that askew to the axes the outermost of many centres lies nearer to it than half a
+/// cell.
+PlaneBox extent_along(const Grid& grid, double angle) {
+  const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
+  const glm::dmat2 turn = rotation_by(angle);
+  const glm::dvec2 half = cell_half_size(grid);
+  const glm::dvec2 beside = glm::max(glm::min(half.x * glm::abs(glm::dvec2(turn[0].x, turn[1].x)),
+                                              half.y * glm::abs(glm::dvec2(turn[0].y, turn[1].y))),
+                                     glm::dvec2(0.5 * std::min(half.x, half.y)));
+  PlaneBox extent;
   std::size_t cell = 0;
   for (std::uint32_t j = 0; j < grid.side; ++j) {
     for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
-      const glm::dvec2 here(static_cast<double>(i), static_cast<double>(j));
-      const Resampled from = resample(before, move.origin + move.scale * here);
-      rows.surface.held_x[cell] = from.held.x;
-      rows.surface.held_y[cell] = from.held.y;
-      rows.surface.known[cell] = from.known ? 1.0 : 0.0;
-      rows.tractions[cell] = from.traction;
-      grid.cells[cell].height = -depth;
+      if (tractions[cell].pressure > 0.0) {
+        const glm::dvec2 at = cell_center(grid.frame, grid.side, i, j) * turn;
+        extent.include(at - beside, at + beside);
+      }
     }
   }
+  return extent;
 }
 
-/// Puts the origin back on the body's rest surface.
-void back_to_surface(const Grid& grid) {
-  RegionFrame& frame = grid.frame;
-  const Distance surface = signed_distance(
-      grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts, frame.origin);
-  frame.origin -= frame.normal *
-                  (surface.value / std::max(glm::dot(surface.gradient, frame.normal), kSteepest));
-}
-
-/// Lays the grid so that `box` of its cells is in its middle.
-/// @return how the cells moved
-CellMove move_frame(const Grid& grid, const CellBox& box) {
+/// Moves the grid by whole cells where that brings the box well into it.
+/// @return false where it does not: nothing has changed
+bool shift_frame(const Grid& grid, const CellBox& box, CellMove& move) {
   const double side = static_cast<double>(grid.side);
-  const glm::dvec2 off = patch_middle(grid.side) - 0.5 * side;
-  const glm::dvec2 size = cell_size(grid);
-  const glm::dvec2 half = 0.5 * size * glm::dvec2(box.end - box.first);
-  const glm::dvec2 wanted = patch_half_size(half / fill_of_new(grid.side));
-  glm::dvec2 middle = 0.5 * glm::dvec2(box.first + box.end);  // in cells from the grid's corner
-  CellMove move;
-  const glm::dvec2 growth = wanted / grid.frame.half_size;
+  const glm::dvec2 half = 0.5 * cell_size(grid) * glm::dvec2(box.end - box.first);
+  const glm::dvec2 growth = patch_half_size(half / fill_of_new(grid.side)) / grid.frame.half_size;
   // With a free row or column on either side, or the next step would lay it anew.
   const glm::ivec2 room = glm::ivec2(static_cast<int>(grid.side)) - (box.end - box.first) -
                           glm::ivec2(static_cast<int>(patch_spare(grid.side)), 0);
-  const bool keeps_size =
-      growth.x == growth.y && growth.x > 0.8 && growth.x < 1.2 && std::min(room.x, room.y) >= 2;
-  if (keeps_size) {
-    move.origin = glm::round(middle - off - 0.5 * side);
-    middle = 0.5 * side + move.origin;
-  } else {
-    move.scale = growth;
-    middle -= off * growth;
-    move.origin = middle - 0.5 - 0.5 * (side - 1.0) * growth;
-    grid.frame.half_size = wanted;
+  if (growth.x != growth.y || growth.x <= 0.8 || growth.x >= 1.2 || std::min(room.x, room.y) < 2) {
+    return false;
   }
-  grid.frame.origin += tangent_to_body(grid.frame, (middle - 0.5 * side) * size);
-  back_to_surface(grid);
+  const glm::dvec2 off = patch_middle(grid.side) - 0.5 * side;
+  move.origin = glm::round(0.5 * glm::dvec2(box.first + box.end) - off - 0.5 * side);
+  shift_origin(grid, move.origin * cell_size(grid));
+  return true;
+}
+
+/// How cells have moved with their grid, whose normal is the same.
+CellMove move_between(const RegionFrame& before, const RegionFrame& now, std::uint32_t side) {
+  CellMove move;
+  move.turn = glm::dmat2(
+      glm::dot(before.tangent_x, now.tangent_x), glm::dot(before.tangent_y, now.tangent_x),
+      glm::dot(before.tangent_x, now.tangent_y), glm::dot(before.tangent_y, now.tangent_y));
+  const glm::dvec2 old_cell = 2.0 / static_cast<double>(side) * before.half_size;
+  const glm::dvec2 cell = 2.0 / static_cast<double>(side) * now.half_size;
+  const double middle = 0.5 * (static_cast<double>(side) - 1.0);
+  const glm::dvec2 origin(body_to_grid(before, now.origin));
+  move.by = glm::dmat2(move.turn[0] * cell.x / old_cell, move.turn[1] * cell.y / old_cell);
+  move.origin = origin / old_cell + middle - move.by * glm::dvec2(middle);
   return move;
+}
+
+/// 1 for every loaded cell, 0 for the others.
+std::span<const double> loaded_weights(const Grid& grid) {
+  const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
+  const std::span<double> weights = grid.scratch.cell_columns.coverage;
+  std::ranges::transform(tractions, weights.begin(),
+                         [](const CellTraction& cell) { return cell.pressure > 0.0 ? 1.0 : 0.0; });
+  return weights;
+}
+
+/// How the loaded cells lie in their grid.
+struct Fit {
+  CellBox box;               // of them, and of lobes outside of the grid
+  bool has_lobes = false;    // there are some
+  bool cut = false;          // the box comes to the grid's edge
+  bool too_small = false;    // it leaves much of the grid empty
+  bool other_shape = false;  // cells of another shape would suit it
+  bool has_rims = false;     // a long one with straight rims
+  ContactAxes axes;
+
+  /// Whether the grid is to follow the contact's axes: then what slips keeps its way.
+  [[nodiscard]] bool takes_axes() const { return has_rims || axes.angle != 0.0; }
+};
+
+/// Whether the box goes from one edge of the grid to the other, which may both cut the contact off.
+bool fills_side(const Grid& grid, const CellBox& box) {
+  const auto side = static_cast<int>(grid.side);
+  const auto spare = static_cast<int>(patch_spare(grid.side));
+  return (box.first.x <= spare && box.end.x >= side) || (box.first.y <= 0 && box.end.y >= side);
+}
+
+/// Whether the loaded cells fill their box along axes that are turned by `angle`, as those of a
+/// punch with straight rims do.
+bool is_rectangular(const Grid& grid, double angle) {
+  constexpr double kRectangular = 0.9;  // of an ellipse 0.79
+  const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
+  const auto loaded = std::ranges::count_if(
+      tractions, [](const CellTraction& cell) { return cell.pressure > 0.0; });
+  const PlaneBox box = extent_along(grid, angle);
+  const glm::dvec2 size = box.highest - box.lowest;
+  return static_cast<double>(loaded) * cell_area(grid.frame, grid.side) >
+         kRectangular * size.x * size.y;
+}
+
+Fit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& contact) {
+  Fit fit;
+  fit.box = loaded_cells(grid);
+  if (fit.box.end.x == 0) {
+    return fit;
+  }
+  fit.cut = reaches_edge(grid, fit.box);
+  if (!fit.cut) {
+    // Only then: a contact that has outgrown its grid has points outside of it anyway, and which
+    // ones is chance.
+    const CellBox loaded = fit.box;
+    include_lobes(grid, region, contact, fit.box);
+    fit.has_lobes = fit.box.first != loaded.first || fit.box.end != loaded.end;
+    fit.cut = reaches_edge(grid, fit.box);
+  }
+  const glm::ivec2 cells = fit.box.end - fit.box.first;
+  fit.too_small =
+      std::max(cells.x, cells.y) <
+      static_cast<int>(kSmallestFill * fill_of_new(grid.side) * static_cast<double>(grid.side));
+  const glm::dvec2 size = cell_size(grid) * glm::dvec2(cells);
+  const double ratio =
+      std::clamp(std::log2(size.x / size.y), -1.0 * kMostAspect, 1.0 * kMostAspect);
+  fit.other_shape = std::abs(ratio - patch_aspect(grid.frame.half_size)) > kOtherShape;
+  if (!fit.has_lobes) {
+    fit.axes = contact_axes(grid, loaded_weights(grid));
+    fit.has_rims =
+        fit.axes.is_long() && !fills_side(grid, fit.box) && is_rectangular(grid, fit.axes.angle);
+    // A contact whose pressure ends smoothly gains nothing from axes that are a little better.
+    const double enough = (fit.has_rims ? kAligned : 1.0) * fit.axes.allowance;
+    if (std::abs(fit.axes.angle) <= enough) {
+      fit.axes.angle = 0.0;
+    }
+  }
+  return fit;
+}
+
+/// Lays the grid along the loaded cells' axes and around them.
+void lay_frame(const Grid& grid, const RegionPoints& contact, const Fit& fit, double depth) {
+  const PlaneBox loaded =
+      fit.axes.angle == 0.0 ? extent_of(grid, fit.box) : extent_along(grid, fit.axes.angle);
+  turn_axes(grid.frame, fit.axes.angle);
+  const GridLayout layout = layout_around(loaded, grid.side);
+  shift_origin(grid, layout.shift);
+  grid.frame.half_size = layout.half_size;
+  if (fit.has_rims) {
+    lay_along_contact(grid, contact, depth, loaded.highest - loaded.lowest);
+  }
 }
 
 }  // namespace
@@ -276,40 +281,30 @@ glm::dvec2 patch_half_size(const glm::dvec2& least) {
 
 void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const Grid grid = grid_of(context, region);
-  CellBox box = loaded_cells(grid);
-  if (box.end.x == 0) {
-    return;
-  }
-  if (!reaches_edge(grid, box)) {
-    // Only then: a contact that has outgrown its grid has points outside of it anyway, and which
-    // ones is chance.
-    include_lobes(grid, region, contact, box);
-  }
-  const glm::ivec2 extent = box.end - box.first;
-  const bool too_small =
-      std::max(extent.x, extent.y) <
-      static_cast<int>(kSmallestFill * fill_of_new(grid.side) * static_cast<double>(grid.side));
-  if (!reaches_edge(grid, box) && !too_small) {
+  const Fit fit = fit_of(grid, region, contact);
+  if (fit.box.end.x == 0 || !(fit.cut || fit.too_small || fit.other_shape || fit.axes.is_askew())) {
     return;
   }
   const double depth = context.world.regions.at<RegionGeometry>(region).largest_depth;
-  const glm::dvec3 origin = grid.frame.origin;
-  const CellMove move = move_frame(grid, box);
-  move_cells(grid, move, depth);
-  std::uint32_t& event = context.world.regions.at<RegionWrench>(region).event_now;
-  if (event == 0 && move.scale != glm::dvec2(1.0)) {
-    event = static_cast<std::uint32_t>(RegionEvent::kGridLaidAnew);
+  CellMove move;
+  if (fit.axes.is_askew() || fit.other_shape || !shift_frame(grid, fit.box, move)) {
+    const RegionFrame before = grid.frame;
+    lay_frame(grid, contact, fit, depth);
+    move = move_between(before, grid.frame, grid.side);
   }
-  // The material's motion is told at the grid's origin, which has moved.
-  RegionCarrier& carrier = context.world.regions.at<RegionCarrier>(region);
-  const double turn = glm::length(carrier.rotation);
-  if (turn > 0.0) {
-    const glm::dvec3 way = grid.frame.origin - origin;
-    carrier.translation += glm::angleAxis(turn, carrier.rotation / turn) * way - way;
+  const double reach = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
+  move_cells(grid, move, depth, fit.takes_axes() ? reach : 0.0);
+  std::uint32_t& event = context.world.regions.at<RegionWrench>(region).event_now;
+  if (event == 0 && !move.keeps_cells()) {
+    event = static_cast<std::uint32_t>(RegionEvent::kGridLaidAnew);
   }
   PatchState& state = context.world.regions.at<PatchState>(region);
   state.moved = 1;
-  state.resized = move.scale != glm::dvec2(1.0) ? 1 : 0;
+  state.resized = move.keeps_cells() ? 0 : 1;
+  if (!move.keeps_cells() && fit.takes_axes()) {
+    state.settling = kSettlingSteps;
+  }
+  state.slide = state.slide * move.turn;
 }
 
 }  // namespace torsion

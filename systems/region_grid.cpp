@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/contact_axes.hpp"
 #include "systems/frames.hpp"
 #include "systems/grid_cells.hpp"
 #include "systems/grid_place.hpp"
@@ -19,13 +20,6 @@ constexpr double kSmallestFill = 0.45;  // of the grid by the contact, else the 
 constexpr double kSettled =
     0.02;  // of the grid: what it is off by when a region begins, splits or takes over another
 
-void turn_about_normal(RegionFrame& frame, double angle) {
-  const glm::dvec3 x = frame.tangent_x;
-  const glm::dvec3 y = frame.tangent_y;
-  frame.tangent_x = std::cos(angle) * x + std::sin(angle) * y;
-  frame.tangent_y = std::cos(angle) * y - std::sin(angle) * x;
-}
-
 /// Where the contact sticks, the material went along with the tool in the last step: the grid turns
 /// with it, and the place of the tractions moves with it. Without this a long contact that sticks
 /// and turns would seem to leave the area that it holds, for contact is found against the rest
@@ -40,8 +34,8 @@ void follow_material(World& world, std::uint32_t region) {
   const glm::dvec3 slide = tangent_to_body(frame, share * motion.slide);
   const glm::dvec3 arm = tractions.origin - pivot;
   tractions.origin += slide + std::sin(angle) * glm::cross(frame.normal, arm);
-  turn_about_normal(tractions, angle);
-  turn_about_normal(frame, angle);
+  turn_axes(tractions, angle);
+  turn_axes(frame, angle);
 }
 
 /// True when the contact reaches the grid's edge, so that some of it may lie outside.

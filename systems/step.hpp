@@ -31,6 +31,7 @@ struct ModelChoice {
   std::string contact_why;
   std::string body_why;
   bool body_is_auto = false;
+  bool long_contact = false;  // with edges, expected: contact model patch needs more cells for it
 };
 
 /// A world with the schedule that moves it and the memory that the schedule needs.

@@ -37,6 +37,7 @@ struct Influence {
 struct LayerGrid {
   double thickness = 0.0;     // m; 0: for a curved surface
   glm::dvec2 half_size{0.0};  // m
+  glm::dvec3 tangent_x{0.0};  // of the grid, for a curved surface
 };
 
 /// One number of a cell of a region with contact model `patch`, a column each, so that loops take

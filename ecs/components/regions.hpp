@@ -125,16 +125,18 @@ struct RegionFriction {
 
 /// How the contact model `patch` stands in a region. Written by: patch_forces.
 struct PatchState {
-  glm::dvec2 slide{0.0};      // m, grid: motion of the last step, as in RegionMotion
-  double spin = 0.0;          // rad, likewise
-  double deepened = 0.0;      // m: change of the largest depth in the last step
-  double along_last = 0.0;    // share of the motion before it by which it went on: -1 to 1
-  double depth = 0.0;         // m: the largest depth
-  double residual = 0.0;      // of the pressures and tractions, relative to the mean pressure
-  std::uint32_t sweeps = 0;   // in the last step
-  std::uint32_t started = 0;  // 0: no solution yet
-  std::uint32_t moved = 0;    // 1: the grid has moved, displacements must be found anew
-  std::uint32_t resized = 0;  // 1: and its cells have another size
+  glm::dvec2 slide{0.0};       // m, grid: motion of the last step, as in RegionMotion
+  double spin = 0.0;           // rad, likewise
+  double deepened = 0.0;       // m: change of the largest depth in the last step
+  double along_last = 0.0;     // share of the motion before it by which it went on: -1 to 1
+  double depth = 0.0;          // m: the largest depth
+  double residual = 0.0;       // of the pressures and tractions, relative to the mean pressure
+  std::uint32_t sweeps = 0;    // in the last step
+  std::uint32_t started = 0;   // 0: no solution yet
+  std::uint32_t moved = 0;     // 1: the grid has moved, displacements must be found anew
+  std::uint32_t resized = 0;   // 1: and its cells have another size or other axes
+  std::uint32_t settling = 0;  // steps to go until it has settled on other axes
+  std::uint32_t padding = 0;
 };
 
 /// What a region with contact model `patch` holds of the work done on it, and the forces of the

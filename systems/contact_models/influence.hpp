@@ -18,7 +18,7 @@ inline constexpr std::uint32_t kSolvedKinds = 6;
 inline constexpr std::uint32_t kInfluenceKinds = 8;
 
 /// Cells are 2^aspect times as long along x as along y; a grid takes the nearest of these.
-inline constexpr std::int32_t kMostAspect = 2;
+inline constexpr std::int32_t kMostAspect = 4;
 inline constexpr std::uint32_t kAspects = 2 * kMostAspect + 1;
 
 /// Number of values of all tables of one body for grids of side x side cells.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "systems/contact_axes.hpp"
 #include "systems/contact_models/friction_decay.hpp"
 #include "systems/contact_models/patch_cells.hpp"
 #include "systems/contact_models/patch_energy.hpp"
@@ -166,6 +167,17 @@ void add_motion_of_body(const Patch& patch, double sign) {
   add(patch.support.z, columns.depression);
 }
 
+/// As a step solves whose pressures have far to go.
+/// @param sweeps  at most
+void solve_longer(Patch& patch, std::uint32_t sweeps) {
+  const std::uint32_t least = patch.world.settings.at<Settings>(0).sweeps;
+  patch.problem.sweeps = std::max(least, std::min(kSweepsAnew, sweeps));
+  patch.problem.sweeps_of_rounds = std::max(least, sweeps);
+  patch.problem.rounds = kRoundsAnew;
+  patch.problem.skip = kSkipAnew;
+  patch.problem.settled = 0.0;
+}
+
 /// After the grid has moved, or at a region's beginning: displacements of the tractions that are
 /// there.
 /// @param sweeps  at most
@@ -192,12 +204,7 @@ void start_anew(Patch& patch, std::uint32_t sweeps) {
     patch.rows.tractions[cell].traction =
         -glm::dvec2(columns.traction_x[cell], columns.traction_y[cell]);
   }
-  const std::uint32_t least = patch.world.settings.at<Settings>(0).sweeps;
-  patch.problem.sweeps = std::max(least, std::min(kSweepsAnew, sweeps));
-  patch.problem.sweeps_of_rounds = std::max(least, sweeps);
-  patch.problem.rounds = kRoundsAnew;
-  patch.problem.skip = kSkipAnew;
-  patch.problem.settled = 0.0;
+  solve_longer(patch, sweeps);
 }
 
 /// A pressure to measure changes by: the mean of what is there, or what the depth will ask for.
@@ -283,6 +290,20 @@ void summarize(const Patch& patch, const PatchSums& sums) {
   carrier.rotation = patch.frame.normal * turn;
 }
 
+/// While a region settles on a grid with other axes its displacements are found on other cells, and
+/// differ a little from those before, as if the material had moved under the tool that has not:
+/// fresh cells would come into contact that carry no traction, less traction would let the material
+/// spring back farther, and so on. It is the grid that goes back by as much instead, to where the
+/// material under it stands as it stood.
+/// @param before  when the cells' depths were found
+void keep_place(const Patch& patch, const RegionCarrier& before) {
+  RegionFrame& frame = patch.world.regions.at<RegionFrame>(patch.region);
+  RegionCarrier& carrier = patch.world.regions.at<RegionCarrier>(patch.region);
+  turn_axes(frame, glm::dot(before.rotation - carrier.rotation, frame.normal));
+  const glm::dvec3 shift = before.translation - carrier.translation;
+  frame.origin += shift - frame.normal * glm::dot(shift, frame.normal);
+}
+
 /// True where the last step's displacements are no start.
 bool is_anew(const PatchState& state) {
   return state.started == 0 || state.moved != 0;
@@ -300,8 +321,10 @@ SolutionStart start_of(const Patch& patch) {
 
 /// @param sweeps_anew  at most, of one that is
 void solve_region(StepContext& context, std::uint32_t region, std::uint32_t sweeps_anew) {
+  const RegionCarrier carrier = context.world.regions.at<RegionCarrier>(region);
   Patch patch = patch_of(context, region);
   const bool anew = is_anew(patch.state);
+  const std::uint32_t settling = patch.state.settling;
   const std::uint32_t body = patch.world.regions.at<RegionIdentity>(region).body;
   load_cells(patch.rows, patch.world.bodies.at<Friction>(body), patch.columns, patch.places);
   const double depth = largest(whole_lanes(patch.columns.depth.size()), patch.columns.depth.data());
@@ -315,6 +338,9 @@ void solve_region(StepContext& context, std::uint32_t region, std::uint32_t swee
     set_targets(patch.motion, patch.places, patch.columns);
     foresee_cells(patch.rows, foreseen_shares(patch), patch.columns, patch.problem);
     let_go_cells(patch.problem, patch.columns, patch.work, kNoContact);
+    if (settling > 0) {
+      solve_longer(patch, sweeps_anew);
+    }
   }
   if (has_support(patch)) {
     find_support(patch);
@@ -349,10 +375,15 @@ void solve_region(StepContext& context, std::uint32_t region, std::uint32_t swee
                  outcome.sweeps,
                  1,
                  0,
+                 0,
+                 settling > 0 ? settling - 1 : 0,
                  0};
   summarize(patch, sums);
   settle_energy(patch.world, region,
                 {patch.problem, patch.columns, patch.support.z, held_by_body, patch.work}, start);
+  if (settling > 0 && sums.force > 0.0) {
+    keep_place(patch, carrier);
+  }
 }
 
 /// How many sweeps each of the regions that are anew gets in this step.
@@ -362,7 +393,8 @@ std::uint32_t sweeps_of_each_anew(const World& world) {
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
     if (has_patch(world, world.regions.at<RegionIdentity>(region))) {
       ++all;
-      anew += is_anew(world.regions.at<PatchState>(region)) ? 1U : 0U;
+      const PatchState& state = world.regions.at<PatchState>(region);
+      anew += is_anew(state) || state.settling > 0 ? 1U : 0U;
     }
   }
   const std::uint32_t of_others = (all - anew) * world.settings.at<Settings>(0).sweeps;

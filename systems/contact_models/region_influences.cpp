@@ -14,8 +14,9 @@
 namespace torsion {
 namespace {
 
-constexpr double kThicker = 0.01;  // relative: less is not worth new tables
-constexpr double kBent = 0.1;      // likewise, of what the curvature adds
+constexpr double kThicker = 0.01;    // relative: less is not worth new tables
+constexpr double kBent = 0.1;        // likewise, of what the curvature adds
+constexpr double kSameAxes = 0.999;  // cosine: a grid that has turned by 2.6 degrees has others
 
 bool is_layer_like(const LayerGrid& filled, double thickness, const glm::dvec2& half_size) {
   return filled.half_size == half_size &&
@@ -68,7 +69,7 @@ void take_layer(const RegionTables& at, double thickness, double poisson_ratio) 
   if (!is_layer_like(at.filled, thickness, half_size)) {
     fill_layer_influences(at.result.tables, at.kernel, poisson_ratio, at.cell() / thickness,
                           at.own());
-    at.filled = {thickness, half_size};
+    at.filled = {thickness, half_size, {}};
     at.result.changed = true;
   }
   at.result.tables = layer_influence_tables(at.own(), at.result.tables.side);
@@ -82,10 +83,12 @@ void take_bend(const RegionTables& at, double poisson_ratio) {
   const RegionIdentity& identity = at.world.regions.at<RegionIdentity>(at.region);
   const Footing& footing = at.world.footings.at<Footing>(block_of(identity));
   const bool was_bent = at.filled.thickness == 0.0 && at.filled.half_size.x > 0.0;
+  const bool same_grid = at.filled.half_size == frame.half_size &&
+                         glm::dot(at.filled.tangent_x, frame.tangent_x) > kSameAxes;
   const bool laid =
       at.world.footings.at<FootingResponse>(block_of(identity)).serial != footing.serial;
   const InfluenceTables own = layer_influence_tables(at.own(), at.result.tables.side);
-  if (laid || (was_bent && at.filled.half_size != frame.half_size)) {
+  if (laid || (was_bent && !same_grid)) {
     const SurfaceBend bend = find_surface_bend(at.world, identity.body, footing, frame,
                                                std::max(frame.half_size.x, frame.half_size.y));
     if (bend.reach == 0.0) {
@@ -93,11 +96,11 @@ void take_bend(const RegionTables& at, double poisson_ratio) {
       at.filled = LayerGrid{};
       return;
     }
-    if (at.filled.half_size != frame.half_size || !was_bent ||
+    if (!same_grid || !was_bent ||
         !are_bent_like(own, at.result.tables, bend, poisson_ratio, at.cell())) {
       fill_curved_influences(at.result.tables, curved_response(bend.curvature, poisson_ratio),
                              at.cell(), bend.reach, at.own());
-      at.filled = {0.0, frame.half_size};
+      at.filled = {0.0, frame.half_size, frame.tangent_x};
       at.result.changed = true;
     }
   }

@@ -89,7 +89,21 @@ TEST(ChooseModelsTest, ThePartThatTouchesCounts) {
   // Longer than the cube's top of 0.1 m: its edges end the contact, which no paraboloid has.
   const PartDescription bar = test::make_part(ShapeKind::kCapsule, {0.02, 0.08, 0.02},
                                               {stays, glm::angleAxis(1.5708, glm::dvec3(0, 0, 1))});
-  EXPECT_EQ(why(bar, stays), "auto: a contact with edges or of a mesh, tolerance 5 %");
+  const std::string of_long =
+      "auto: a long contact with edges, error of patch up to 10 %, tolerance 5 %";
+  EXPECT_EQ(why(bar, stays), of_long);
+  const PartDescription blade = test::make_part(ShapeKind::kBox, {0.02, 0.02, 0.004});
+  EXPECT_EQ(why(blade, stays), of_long);
+}
+
+TEST(ChooseModelsTest, ALongContactGetsMoreCells) {
+  const auto side_for = [](const glm::dvec3& half_size) {
+    const std::vector<ModelChoice> choices{
+        choice_for({test::make_part(ShapeKind::kBox, half_size)}, glm::dvec3(0.0))};
+    return choose_grid_side(choices);
+  };
+  EXPECT_EQ(side_for({0.02, 0.02, 0.02}), 12U);
+  EXPECT_EQ(side_for({0.02, 0.02, 0.004}), 20U);
 }
 
 }  // namespace

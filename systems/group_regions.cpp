@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "systems/body_models/region_stands.hpp"
 #include "systems/cell_finder.hpp"
 #include "systems/contact_models/patch_energy.hpp"
 #include "systems/fault.hpp"
@@ -153,6 +154,7 @@ void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t c
     world.patch_cells.zero(cells);
   }
   place_new_grid(context, row, {pair.points, cluster});
+  begin_support(world, row);
   // on_tool is zero: what it exerts at birth fades in.
   world.regions.at<RegionWrench>(row).event_now = static_cast<std::uint32_t>(event);
 }

@@ -235,12 +235,9 @@ glm::dvec3 apart(const Footing& there, const Footing& here) {
   return distance < least ? here.center + way * (least / distance) : there.center;
 }
 
-void find_coupling(const CompliantBody& body, const Footing& there, const Footing& here,
-                   RegionCoupling& coupling) {
-  coupling.serial_to = there.serial;
-  coupling.serial_from = here.serial;
-  Eigen::Map<Matrix6> motion(coupling.motion.data());
-  motion = there.share * here.share * motion_between(body.ports, there, here);
+/// What a wrench on `here` does to `there`.
+Matrix6 motion_of(const CompliantBody& body, const Footing& there, const Footing& here) {
+  Matrix6 motion = there.share * here.share * motion_between(body.ports, there, here);
   if (there.center != here.center) {
     motion += half_space_coupling({apart(there, here), there.normal}, {here.center, here.normal},
                                   body.world.bodies.at<Elasticity>(body.row));
@@ -249,6 +246,14 @@ void find_coupling(const CompliantBody& body, const Footing& there, const Footin
   if (thickness > 0.0) {
     motion = on_layer(body, motion, there, here, thickness);
   }
+  return motion;
+}
+
+void find_coupling(const CompliantBody& body, const Footing& there, const Footing& here,
+                   RegionCoupling& coupling) {
+  coupling.serial_to = there.serial;
+  coupling.serial_from = here.serial;
+  Eigen::Map<Matrix6>(coupling.motion.data()) = motion_of(body, there, here);
 }
 
 /// @param found_before  take those that were, or those that never were
@@ -310,6 +315,40 @@ void find_stands(CompliantBody& body) {
   for (std::size_t i = 0; i < body.count; ++i) {
     move_by_own_load(body, body.stands[i]);
   }
+}
+
+void begin_support(World& world, std::uint32_t region) {
+  const std::uint32_t row = world.regions.at<RegionIdentity>(region).body;
+  RegionSupport& support = world.regions.at<RegionSupport>(region);
+  support = RegionSupport{};
+  if (world.bodies.at<BodyModels>(row).body != BodyModel::kCompliance) {
+    return;
+  }
+  const CompliantBody body{world, row, ports_of(world, row)};
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const double radius = std::sqrt(frame.half_size.x * frame.half_size.y);
+  Footing there;
+  Vector6 motion = Vector6::Zero();
+  for (std::uint32_t other = 0; other < world.regions.size(); ++other) {
+    const RegionIdentity& identity = world.regions.at<RegionIdentity>(other);
+    const Footing& here = world.footings.at<Footing>(block_of(identity));
+    if (identity.body != row || other == region || here.reach == 0.0) {
+      continue;
+    }
+    if (there.reach == 0.0) {
+      lay_footing(
+          body.ports,
+          {frame.origin, radius * frame.tangent_x, radius * frame.tangent_y, frame.normal, radius},
+          there);
+      there.share = 1.0;
+    }
+    motion += motion_of(body, there, here) * contact_load(world, other, here).wrench;
+  }
+  support.about = frame.origin;
+  support.translation = {motion[0], motion[1], motion[2]};
+  support.rotation = {motion[3], motion[4], motion[5]};
+  support.translation_by_others = support.translation;
+  support.rotation_by_others = support.rotation;
 }
 
 void find_couplings(const CompliantBody& body) {

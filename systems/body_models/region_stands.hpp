@@ -46,6 +46,11 @@ inline constexpr std::size_t kCouplingsAStep = kMaxRegionsPerBody;
 /// which was laid first; the others serve a step longer. A new region's is laid at once.
 void find_stands(CompliantBody& body);
 
+/// Where a region that begins finds the material: moved by what the body's other regions do to it
+/// now. Without it the first solution would press on the body at rest, and the others would feel
+/// that. Writes RegionSupport.
+void begin_support(World& world, std::uint32_t region);
+
 /// Finds couplings anew between regions whose footings have been laid since, kCouplingsAStep at
 /// most, of new regions first; the others stay as they are a step longer.
 void find_couplings(const CompliantBody& body);

@@ -28,9 +28,13 @@ constexpr double kMdrCombinedError = 0.07;
 constexpr double kMdrCoupling = 0.095;    // times 1 - 2 nu: pressure moves the surface sideways
 constexpr double kMdrWideError = 0.095;   // times contact radius over body depth: shape unknown
 constexpr double kFiniteBodyError = 1.1;  // of the force, times contact radius over body depth
-// Of contact model patch at the cells that it is given for them, where a blade turns on gel by 90
-// degrees, against 2500 cells (long_contact_test.cpp); 0.024 on average.
-constexpr double kLongEdgedError = 0.1;
+// Of contact model patch at the cells that it is given for contacts with edges that are long, like
+// a blade's that turns by 90 degrees, against finer grids: 0.093 for 8 x 1.2 mm on gel
+// (long_contact_test.cpp), 0.108 and 0.097 for 3 : 1 and 6 : 1 on a half-space, 0.25 for 15 : 1;
+// 0.02 to 0.06 on average.
+constexpr double kLongEdgedError = 0.11;
+constexpr double kSlenderEdgedError = 0.25;
+constexpr double kSlender = 8.0;              // times the width
 constexpr double kLong = 1.6;                 // times the width
 constexpr std::size_t kFewest = 12;           // points that tell how long a contact is
 constexpr double kSlidesWhileTurning = 0.05;  // of the radius, between two expected poses
@@ -143,10 +147,10 @@ std::pair<double, std::uint32_t> extent_of_groups(std::span<const glm::dvec3> po
   return {radius, count};
 }
 
-/// Whether points spread more than kLong times as far along one way as across it.
-bool is_long(const Touch& touch) {
+/// How far points spread along one way over across it; 1 where they are too few to tell.
+double elongation_of(const Touch& touch) {
   if (touch.points.size() < kFewest) {
-    return false;
+    return 1.0;
   }
   // Second moments in the tangent plane.
   RegionFrame plane;
@@ -162,7 +166,7 @@ bool is_long(const Touch& touch) {
   }
   const double mean = 0.5 * (xx + yy);
   const double radius = std::hypot(0.5 * (xx - yy), xy);
-  return mean + radius > kLong * kLong * (mean - radius);
+  return std::sqrt((mean + radius) / std::max(mean - radius, 1e-6 * mean));
 }
 
 /// Turn of a tool about `normal` from one pose to the next, rad.
@@ -200,9 +204,10 @@ std::pair<ContactModel, std::string> auto_contact(const ExpectedContact& contact
   if (!contact.any) {
     return {ContactModel::kMdr, "auto: the expected motion touches it nowhere; the cheapest"};
   }
-  if (contact.long_edged) {
-    return {ContactModel::kPatch, "auto: a long contact with edges, error of patch up to " +
-                                      percent(kLongEdgedError) + within};
+  if (contact.elongation > kLong) {
+    const double error = contact.elongation > kSlender ? kSlenderEdgedError : kLongEdgedError;
+    return {ContactModel::kPatch,
+            "auto: a long contact with edges, error of patch up to " + percent(error) + within};
   }
   if (!contact.smooth) {
     return {ContactModel::kPatch, "auto: a contact with edges or of a mesh" + within};
@@ -249,7 +254,9 @@ ExpectedContact expect_contact(const World& world, std::uint32_t body,
       contact.single = contact.single && regions == 1;
       contact.smooth = contact.smooth && touch.smooth;
       contact.round = contact.round && touch.round && !body_is_long;
-      contact.long_edged = contact.long_edged || (!touch.smooth && regions == 1 && is_long(touch));
+      if (!touch.smooth && regions == 1) {
+        contact.elongation = std::max(contact.elongation, elongation_of(touch));
+      }
       contact.depth = std::max(contact.depth, touch.depth);
       contact.radius = std::max(contact.radius, radius);
       contact.body_depth =
@@ -273,7 +280,8 @@ double mdr_error(const ExpectedContact& contact, double poisson_ratio) {
 
 ModelChoice choose_models(const BodyModels& scene, const PrepareOptions& options,
                           const ExpectedContact& contact, double poisson_ratio) {
-  ModelChoice choice{scene, "the scene says so", "the scene says so", false, contact.long_edged};
+  ModelChoice choice{scene, "the scene says so", "the scene says so", false,
+                     contact.elongation > kLong};
   if (options.contact_model != ContactModel::kAuto) {
     choice.models.contact = options.contact_model;
     choice.contact_why = "the command line says so";

@@ -16,7 +16,7 @@ struct ExpectedContact {
   bool smooth = true;       // touched by exact shapes without edges only: mdr knows their curvature
   bool round = true;        // by spheres only, and the body is no ellipsoid, cylinder or capsule
   bool slides = false;      // while it turns about the normal
-  bool long_edged = false;  // like a blade's: with edges, and longer than wide
+  double elongation = 1.0;  // length over width, of those with edges that are long: the largest
   double depth = 0.0;       // m, largest
   double radius = 0.0;      // m: largest of the overlap
   double body_depth = 0.0;  // m: from the contact to what holds the body, the least

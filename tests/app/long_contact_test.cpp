@@ -49,7 +49,7 @@ double largest_step(const std::vector<double>& values) {
 
 TEST(LongContactTest, ATurningBladeKeepsItsTorqueWhereItsGridIsLaidAnew) {
   // Every grid is off by what its rims miss, up to a cell of 10, whose share of the torque is its
-  // square's: a tenth, as `auto` says. What is left of that fades in by a twentieth a step at most.
+  // square's: a tenth. What is left of that fades in by a twentieth a step at most.
   const std::vector<double> fine = torques_with(36);
   const double most = largest_size(fine);
   const std::vector<double> found = torques_with(0);

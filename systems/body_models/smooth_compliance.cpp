@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <glm/geometric.hpp>
 
@@ -27,6 +28,17 @@ constexpr double kShareOfFactor = 0.3;   // of the time, roughly, for the progre
 
 Eigen::Index rows_of(std::size_t nodes) {
   return 3 * static_cast<Eigen::Index>(nodes);
+}
+
+/// Eigen cuts large products into blocks by the processor's caches, and with them the order in
+/// which sums are rounded. These sizes make it the same on every machine.
+void fix_product_blocks() {
+  constexpr int kL1 = 48 << 10;  // bytes; other sizes cost little
+  constexpr int kL2 = 1280 << 10;
+  constexpr int kL3 = 32 << 20;
+  if (Eigen::l1CacheSize() != kL1 || Eigen::l2CacheSize() != kL2 || Eigen::l3CacheSize() != kL3) {
+    Eigen::setCpuCacheSizes(kL1, kL2, kL3);
+  }
 }
 
 double bulk_modulus(double poisson_ratio) {
@@ -236,6 +248,7 @@ Result<SmoothCompliance> build_smooth_compliance(const ElasticSolid& solid,
         "the body's material needs a Young's modulus above 0 and a Poisson's ratio above "
         "-1 and at most 0.5"};
   }
+  fix_product_blocks();
   Result<SolidGrid> grid = build_solid_grid(solid, std::clamp(options.elements, 8U, 64U));
   if (!grid) {
     return grid.error();

@@ -151,6 +151,15 @@ TEST(SmoothComplianceTest, LargeBlockLeavesTwoPortsOnItsTopToTheHalfSpace) {
             0.1 * smooth.block(0, 0, 3, 3).norm());
 }
 
+TEST(SmoothComplianceTest, IsTheSameToTheBitWhateverTheCachesOfTheMachine) {
+  const ElasticSolid solid = block_solid({1.0, 1.0, 1.0}, 0.4);
+  const std::vector<Port> ports = choose_ports(solid, 20);
+  Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 8 << 20);
+  const Eigen::MatrixXd small = build(solid, ports, 20).matrix;
+  Eigen::setCpuCacheSizes(128 << 10, 4 << 20, 64 << 20);
+  EXPECT_EQ((build(solid, ports, 20).matrix - small).norm(), 0.0);
+}
+
 TEST(SmoothComplianceTest, WhatOnePortDoesToAnotherIsReciprocal) {
   // Between forces and displacements the grid is right to 0.3 %; torques see derivatives, which
   // are worst between ports on both sides of an edge, nearer to it than three elements.

@@ -10,6 +10,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "ecs/model_names.hpp"
+#include "systems/contact_axes.hpp"
 #include "systems/distance.hpp"
 #include "systems/frames.hpp"
 #include "systems/group_points.hpp"
@@ -30,12 +31,11 @@ constexpr double kMdrWideError = 0.095;   // times contact radius over body dept
 constexpr double kFiniteBodyError = 1.1;  // of the force, times contact radius over body depth
 // Of contact model patch at the cells that it is given for contacts with edges that are long, like
 // a blade's that turns by 90 degrees, against finer grids: 0.093 for 8 x 1.2 mm on gel
-// (long_contact_test.cpp), 0.108 and 0.097 for 3 : 1 and 6 : 1 on a half-space, 0.25 for 15 : 1;
-// 0.02 to 0.06 on average.
-constexpr double kLongEdgedError = 0.11;
+// (long_contact_test.cpp), 0.13 and 0.12 for 3 : 1 and 6 : 1 on a half-space, 0.24 for 15 : 1;
+// 0.02 to 0.05 on average.
+constexpr double kLongEdgedError = 0.15;
 constexpr double kSlenderEdgedError = 0.25;
 constexpr double kSlender = 8.0;              // times the width
-constexpr double kLong = 1.6;                 // times the width
 constexpr std::size_t kFewest = 12;           // points that tell how long a contact is
 constexpr double kSlidesWhileTurning = 0.05;  // of the radius, between two expected poses
 constexpr double kTurnsWhileSliding = 1e-3;   // rad between two expected poses: less is no turn
@@ -147,26 +147,21 @@ std::pair<double, std::uint32_t> extent_of_groups(std::span<const glm::dvec3> po
   return {radius, count};
 }
 
-/// How far points spread along one way over across it; 1 where they are too few to tell.
+/// Length over width of what touches; 1 where the points are too few to tell.
 double elongation_of(const Touch& touch) {
   if (touch.points.size() < kFewest) {
     return 1.0;
   }
-  // Second moments in the tangent plane.
   RegionFrame plane;
   turn_normal_to(plane, glm::normalize(touch.normal));
-  double xx = 0.0;
-  double xy = 0.0;
-  double yy = 0.0;
+  SecondMoments sum;
   for (const glm::dvec3& point : touch.points) {
     const glm::dvec3 at = body_to_grid_direction(plane, point - touch.center);
-    xx += at.x * at.x;
-    xy += at.x * at.y;
-    yy += at.y * at.y;
+    sum.xx += at.x * at.x;
+    sum.xy += at.x * at.y;
+    sum.yy += at.y * at.y;
   }
-  const double mean = 0.5 * (xx + yy);
-  const double radius = std::hypot(0.5 * (xx - yy), xy);
-  return std::sqrt((mean + radius) / std::max(mean - radius, 1e-6 * mean));
+  return 1.0 / std::max(sum.width_over_length(), 1e-3);
 }
 
 /// Turn of a tool about `normal` from one pose to the next, rad.
@@ -204,7 +199,7 @@ std::pair<ContactModel, std::string> auto_contact(const ExpectedContact& contact
   if (!contact.any) {
     return {ContactModel::kMdr, "auto: the expected motion touches it nowhere; the cheapest"};
   }
-  if (contact.elongation > kLong) {
+  if (contact.elongation > kLongContact) {
     const double error = contact.elongation > kSlender ? kSlenderEdgedError : kLongEdgedError;
     return {ContactModel::kPatch,
             "auto: a long contact with edges, error of patch up to " + percent(error) + within};
@@ -281,7 +276,7 @@ double mdr_error(const ExpectedContact& contact, double poisson_ratio) {
 ModelChoice choose_models(const BodyModels& scene, const PrepareOptions& options,
                           const ExpectedContact& contact, double poisson_ratio) {
   ModelChoice choice{scene, "the scene says so", "the scene says so", false,
-                     contact.elongation > kLong};
+                     contact.elongation > kLongContact};
   if (options.contact_model != ContactModel::kAuto) {
     choice.models.contact = options.contact_model;
     choice.contact_why = "the command line says so";

@@ -254,7 +254,7 @@ void find_middle(const Grid& grid, const RegionPoints& contact, double start_dep
 
 void center_patch(const Grid& grid, const RegionPoints& contact, double start_depth) {
   find_middle(grid, contact, start_depth);
-  const ContactAxes axes = contact_axes(grid, grid.scratch.cell_columns.coverage);
+  const ContactAxes axes = contact_axes(grid, covered_moments(grid));
   if (axes.is_askew()) {
     turn_axes(grid.frame, axes.angle);
     // What fits the grid along its diagonal fits it along its sides, then.

@@ -26,21 +26,27 @@ struct CellBox {
   glm::ivec2 end{0};
 };
 
-/// The cells with pressure; empty when there are none.
-CellBox loaded_cells(const Grid& grid) {
+/// The cells with pressure.
+struct LoadedCells {
+  CellBox box;  // empty when there are none
+  CellMoments moments;
+};
+
+LoadedCells loaded_cells(const Grid& grid) {
   const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
   const auto side = static_cast<int>(grid.side);
-  CellBox box{{side, side}, {0, 0}};
+  LoadedCells loaded{{{side, side}, {0, 0}}, {}};
   std::size_t cell = 0;
   for (int j = 0; j < side; ++j) {
     for (int i = 0; i < side; ++i, ++cell) {
       if (tractions[cell].pressure > 0.0) {
-        box.first = glm::min(box.first, glm::ivec2(i, j));
-        box.end = glm::max(box.end, glm::ivec2(i + 1, j + 1));
+        loaded.box.first = glm::min(loaded.box.first, glm::ivec2(i, j));
+        loaded.box.end = glm::max(loaded.box.end, glm::ivec2(i + 1, j + 1));
+        loaded.moments.add(1.0, static_cast<double>(i), static_cast<double>(j));
       }
     }
   }
-  return box;
+  return loaded;
 }
 
 glm::dvec2 cell_size(const Grid& grid) {
@@ -155,15 +161,6 @@ CellMove move_between(const RegionFrame& before, const RegionFrame& now, std::ui
   return move;
 }
 
-/// 1 for every loaded cell, 0 for the others.
-std::span<const double> loaded_weights(const Grid& grid) {
-  const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
-  const std::span<double> weights = grid.scratch.cell_columns.coverage;
-  std::ranges::transform(tractions, weights.begin(),
-                         [](const CellTraction& cell) { return cell.pressure > 0.0 ? 1.0 : 0.0; });
-  return weights;
-}
-
 /// How the loaded cells lie in their grid.
 struct Fit {
   CellBox box;               // of them, and of lobes outside of the grid
@@ -185,22 +182,19 @@ bool fills_side(const Grid& grid, const CellBox& box) {
   return (box.first.x <= spare && box.end.x >= side) || (box.first.y <= 0 && box.end.y >= side);
 }
 
-/// Whether the loaded cells fill their box along axes that are turned by `angle`, as those of a
+/// Whether so many loaded cells fill their box along axes that are turned by `angle`, as those of a
 /// punch with straight rims do.
-bool is_rectangular(const Grid& grid, double angle) {
+bool fill_their_box(const Grid& grid, double loaded, double angle) {
   constexpr double kRectangular = 0.9;  // of an ellipse 0.79
-  const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
-  const auto loaded = std::ranges::count_if(
-      tractions, [](const CellTraction& cell) { return cell.pressure > 0.0; });
   const PlaneBox box = extent_along(grid, angle);
   const glm::dvec2 size = box.highest - box.lowest;
-  return static_cast<double>(loaded) * cell_area(grid.frame, grid.side) >
-         kRectangular * size.x * size.y;
+  return loaded * cell_area(grid.frame, grid.side) > kRectangular * size.x * size.y;
 }
 
 Fit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& contact) {
   Fit fit;
-  fit.box = loaded_cells(grid);
+  const LoadedCells loaded = loaded_cells(grid);
+  fit.box = loaded.box;
   if (fit.box.end.x == 0) {
     return fit;
   }
@@ -208,9 +202,8 @@ Fit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& contact) 
   if (!fit.cut) {
     // Only then: a contact that has outgrown its grid has points outside of it anyway, and which
     // ones is chance.
-    const CellBox loaded = fit.box;
     include_lobes(grid, region, contact, fit.box);
-    fit.has_lobes = fit.box.first != loaded.first || fit.box.end != loaded.end;
+    fit.has_lobes = fit.box.first != loaded.box.first || fit.box.end != loaded.box.end;
     fit.cut = reaches_edge(grid, fit.box);
   }
   const glm::ivec2 cells = fit.box.end - fit.box.first;
@@ -222,9 +215,9 @@ Fit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& contact) 
       std::clamp(std::log2(size.x / size.y), -1.0 * kMostAspect, 1.0 * kMostAspect);
   fit.other_shape = std::abs(ratio - patch_aspect(grid.frame.half_size)) > kOtherShape;
   if (!fit.has_lobes) {
-    fit.axes = contact_axes(grid, loaded_weights(grid));
-    fit.has_rims =
-        fit.axes.is_long() && !fills_side(grid, fit.box) && is_rectangular(grid, fit.axes.angle);
+    fit.axes = contact_axes(grid, loaded.moments);
+    fit.has_rims = fit.axes.is_long() && !fills_side(grid, fit.box) &&
+                   fill_their_box(grid, loaded.moments.weight, fit.axes.angle);
     // A contact whose pressure ends smoothly gains nothing from axes that are a little better.
     const double enough = (fit.has_rims ? kAligned : 1.0) * fit.axes.allowance;
     if (std::abs(fit.axes.angle) <= enough) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <glm/geometric.hpp>
 
@@ -62,12 +61,10 @@ double middle_of(double cells, double wanted) {
   return std::round(wanted - 0.5 * cells) + 0.5 * cells;
 }
 
-/// Whether a contact covers its box, as a punch with straight rims does.
-bool is_rectangular(const Grid& grid, const PlaneBox& box) {
-  const std::span<const double> coverage = grid.scratch.cell_columns.coverage;
-  const double cells = std::accumulate(coverage.begin(), coverage.end(), 0.0);
+/// Whether so many covered cells cover their box, as a punch's with straight rims do.
+bool cover_their_box(const Grid& grid, double covered, const PlaneBox& box) {
   const glm::dvec2 size = box.highest - box.lowest;
-  return cells * cell_area(grid.frame, grid.side) > kRectangular * size.x * size.y;
+  return covered * cell_area(grid.frame, grid.side) > kRectangular * size.x * size.y;
 }
 
 }  // namespace
@@ -87,7 +84,10 @@ GridLayout layout_around(const PlaneBox& loaded, std::uint32_t side) {
 
 GridLayout layout_between_rims(const PlaneBox& covered, bool sharp_x, bool sharp_y,
                                std::uint32_t side) {
-  const glm::dvec2 size = covered.highest - covered.lowest;
+  // What is thinner than the longest cells allow has room beside it.
+  const glm::dvec2 covers = covered.highest - covered.lowest;
+  const glm::dvec2 size =
+      glm::max(covers, glm::dvec2(std::ldexp(std::max(covers.x, covers.y), -kMostAspect)));
   const double most = std::floor(fill_of_new(side) * static_cast<double>(side));
   CellsBetween cells{most, most, 0};
   glm::dvec2 cell = size / most;
@@ -112,16 +112,17 @@ void lay_along_contact(const Grid& grid, const RegionPoints& contact, double dep
                        const glm::dvec2& loaded) {
   restart_heights(grid, depth);
   CellBits covered = find_cells(grid, contact);
-  const std::span<const double> coverage = grid.scratch.cell_columns.coverage;
-  ContactAxes axes = contact_axes(grid, coverage);
+  CellMoments moments = covered_moments(grid);
+  ContactAxes axes = contact_axes(grid, moments);
   if (std::abs(axes.angle) > kAligned * axes.allowance) {
     turn_axes(grid.frame, axes.angle);
     restart_heights(grid, depth);
     covered = find_cells(grid, contact);
-    axes = contact_axes(grid, coverage);
+    moments = covered_moments(grid);
+    axes = contact_axes(grid, moments);
   }
   const PlaneBox box = covered_box(grid, covered);
-  if (box.empty() || !is_rectangular(grid, box)) {
+  if (box.empty() || !cover_their_box(grid, moments.weight, box)) {
     return;
   }
   const bool sharp_x = loaded.x == 0.0 || axes.size.x < kSharp * loaded.x;

@@ -12,6 +12,7 @@
 #include "systems/region_grid.hpp"
 #include "systems/region_wrenches.hpp"
 #include "systems/scratch.hpp"
+#include "systems/split_patch.hpp"
 
 namespace torsion {
 namespace {
@@ -123,9 +124,10 @@ std::uint32_t regions_on(const World& world, std::uint32_t body) {
       std::ranges::count(world.regions.column<RegionIdentity>(), body, &RegionIdentity::body));
 }
 
-/// @param event  kBegins or kTakesOver
+/// Begins a region where there was none, or one that splits off another.
+/// @param split_from  kNoRow, or that one
 void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t cluster,
-                  RegionEvent event) {
+                  std::uint32_t split_from) {
   World& world = context.world;
   Clock& clock = world.clock.at<Clock>(0);
   const std::uint32_t row = world.regions.size();
@@ -154,9 +156,17 @@ void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t c
     world.patch_cells.zero(cells);
   }
   place_new_grid(context, row, {pair.points, cluster});
-  begin_support(world, row);
+  if (split_from == kNoRow) {
+    begin_support(world, row);
+  } else {
+    begin_split_support(world, split_from, row);
+    if (world.regions.at<PatchState>(split_from).started != 0) {
+      copy_patch(world, split_from, row);
+    }
+  }
   // on_tool is zero: what it exerts at birth fades in.
-  world.regions.at<RegionWrench>(row).event_now = static_cast<std::uint32_t>(event);
+  world.regions.at<RegionWrench>(row).event_now = static_cast<std::uint32_t>(
+      split_from != kNoRow ? RegionEvent::kTakesOver : RegionEvent::kBegins);
 }
 
 bool owns_cluster(const Scratch& scratch, std::uint32_t region) {
@@ -236,8 +246,8 @@ std::uint32_t heir_of(const World& world, const Scratch& scratch, std::uint32_t 
   return kNoRow;
 }
 
-/// A cluster without an owner that lies over a living region was split off it. Leaves in
-/// scratch.owners that such a cluster overlaps one.
+/// A cluster without an owner that lies over a living region was split off it. Leaves that region
+/// in scratch.owners.
 void note_splits(World& world, Scratch& scratch, std::span<const ContactPoint> points) {
   for (const ContactPoint& point : points) {
     if (scratch.owners[point.cluster].region != kNoRow) {
@@ -247,7 +257,7 @@ void note_splits(World& world, Scratch& scratch, std::span<const ContactPoint> p
       if (owner.region != kNoRow &&
           RegionCells(world, owner.region).overlap_with(point.position) >= 1.0) {
         world.regions.at<RegionWrench>(owner.region).event_now = kTakesOver;
-        scratch.owners[point.cluster].overlap = 1.0;
+        scratch.owners[point.cluster].split_from = owner.region;
       }
     }
   }
@@ -275,10 +285,12 @@ void group_regions(StepContext& context) {
       const std::uint32_t owner = scratch.owners[cluster].region;
       if (owner != kNoRow) {
         follow_contact(context, owner, {pair.points, cluster});
-      } else {
-        const bool split_off = scratch.owners[cluster].overlap > 0.0;
-        begin_region(context, pair, cluster,
-                     split_off ? RegionEvent::kTakesOver : RegionEvent::kBegins);
+      }
+    }
+    for (std::uint32_t cluster = 0; cluster < pair.clusters; ++cluster) {
+      const ClusterOwner& owner = scratch.owners[cluster];
+      if (owner.region == kNoRow) {
+        begin_region(context, pair, cluster, owner.split_from);
       }
     }
     scratch.region_commands.apply(world.regions, world.region_handles);

@@ -11,6 +11,7 @@
 #include "systems/patch_centering.hpp"
 #include "systems/patch_grid.hpp"
 #include "systems/region_motion.hpp"
+#include "systems/split_patch.hpp"
 
 namespace torsion {
 namespace {
@@ -190,6 +191,7 @@ void region_grids(StepContext& context) {
     }
     context.world.regions.at<RegionGeometry>(region) = summarize_cells(grid);
   }
+  share_out_patches(context.world);
 }
 
 }  // namespace torsion

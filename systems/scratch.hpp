@@ -57,6 +57,7 @@ struct ClusterOwner {
   std::uint32_t region =
       kNoRow;  // row in `regions`; kNoRow: nobody continues it, a new region forms
   double overlap = 0.0;
+  std::uint32_t split_from = kNoRow;  // nobody continues it, but it lies over this region
 };
 
 /// The region's block of cells, by number: it does not move when rows do.

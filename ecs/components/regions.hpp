@@ -123,7 +123,8 @@ struct RegionFriction {
   double stick_share = 0.0;    // of the area that sticks: there the body moves with the tool
 };
 
-/// How the contact model `patch` stands in a region. Written by: patch_forces.
+/// How the contact model `patch` stands in a region. Written by: patch_forces and, when the grid
+/// moves or a region splits off, group_regions and region_grids.
 struct PatchState {
   glm::dvec2 slide{0.0};       // m, grid: motion of the last step, as in RegionMotion
   double spin = 0.0;           // rad, likewise
@@ -136,11 +137,12 @@ struct PatchState {
   std::uint32_t moved = 0;     // 1: the grid has moved, displacements must be found anew
   std::uint32_t resized = 0;   // 1: and its cells have another size or other axes
   std::uint32_t settling = 0;  // steps to go until it has settled on other axes
-  std::uint32_t padding = 0;
+  std::uint32_t copy_of = 0;   // in the step in which it splits off: 1 + the other's block of cells
 };
 
 /// What a region with contact model `patch` holds of the work done on it, and the forces of the
-/// last step that its work is reckoned by. Written by: patch_forces.
+/// last step that its work is reckoned by. Written by: patch_forces and, when a region splits off,
+/// region_grids.
 struct PatchEnergy {
   double held = 0.0;       // J, with what the body as a whole holds of its load
   double owed = 0.0;       // J: lacking work that is still to be charged

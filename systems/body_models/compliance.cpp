@@ -60,13 +60,12 @@ Vector6 support_now(const CompliantBody& body, const Stand& stand) {
                       : support_at(support, center);
 }
 
-/// Of such a region Newton's change is that by the others less what its own load gives way by it:
-/// the former is its own part of the equations, (I + C K) du, less what the others' answer to its
-/// own change will be (RegionReaction).
+/// What the other regions are to have to do with such a region's motion: Newton's change du is that
+/// by them less what its own load gives way by it, (I + C K) du, less what the others' answer to
+/// its own change will be (RegionReaction).
 /// @param scaled  y of fill_equations
-/// @return where its support is to be
-Vector6 move_by_others(const CompliantBody& body, const Stand& stand, const StiffnessRoot& root,
-                       const Vector6& scaled) {
+void move_by_others(const CompliantBody& body, const Stand& stand, const StiffnessRoot& root,
+                    const Vector6& scaled) {
   const Footing& footing = footing_of(body, stand);
   RegionSupport& support = body.world.regions.at<RegionSupport>(stand.region);
   Vector6 by_others = support_by_others(support, footing.center) + root.inverse * scaled;
@@ -79,7 +78,6 @@ Vector6 move_by_others(const CompliantBody& body, const Stand& stand, const Stif
   }
   support.translation_by_others = {by_others[0], by_others[1], by_others[2]};
   support.rotation_by_others = {by_others[3], by_others[4], by_others[5]};
-  return stand.motion + by_others;
 }
 
 void move_supports(const CompliantBody& body, const Eigen::Map<Eigen::VectorXd>& change,
@@ -90,8 +88,13 @@ void move_supports(const CompliantBody& body, const Eigen::Map<Eigen::VectorXd>&
     RegionSupport& support = body.world.regions.at<RegionSupport>(stand.region);
     const Vector6 before = support_at(support, center);
     const Vector6 scaled = change.segment<6>(static_cast<Eigen::Index>(6 * i));
-    const Vector6 after = stand.solved ? move_by_others(body, stand, roots[i], scaled)
-                                       : Vector6(before + roots[i].inverse * scaled);
+    // Where it is to be seen next. For contact model patch that foresees how its own load changes,
+    // which its equations then find: seen from where all of the others' change but nothing of its
+    // own answer has moved it, it would lie far from the tool on a body that sways much.
+    const Vector6 after = support_now(body, stand) + roots[i].inverse * scaled;
+    if (stand.solved) {
+      move_by_others(body, stand, roots[i], scaled);
+    }
     const Vector6 step = after - before + answer_at(support, center);
     support.about = center;
     support.translation = {after[0], after[1], after[2]};

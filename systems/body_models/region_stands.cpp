@@ -225,13 +225,17 @@ bool is_found(const RegionCoupling& coupling, const Footing& to, const Footing& 
   return coupling.serial_to == to.serial && coupling.serial_from == from.serial;
 }
 
-/// Where the one is seen from the other: as far as their rims at least. Point loads in each other's
-/// place would move each other without bound, and regions that part or meet lie in each other for a
-/// step.
-glm::dvec3 apart(const Footing& there, const Footing& here) {
+/// Where the one is seen from the other. Point loads in each other's place would move each other
+/// without bound, and regions that part or meet may have their middles anywhere: mdr's are discs,
+/// so they lie as far apart as their rims at least. Those of patch are what their cells are, and
+/// the middle of one may lie within the disc of another: as far as the larger one's rim at least,
+/// where two regions do less to each other than each does to itself. With q = (1 - nu^2) / (pi E)
+/// point loads at distance d sink by q / d, discs by (pi / 2) q / a.
+glm::dvec3 apart(const Footing& there, const Footing& here, ContactModel model) {
   const glm::dvec3 way = there.center - here.center;
   const double distance = glm::length(way);
-  const double least = there.radius + here.radius;
+  const double least = model == ContactModel::kPatch ? std::max(there.radius, here.radius)
+                                                     : there.radius + here.radius;
   return distance < least ? here.center + way * (least / distance) : there.center;
 }
 
@@ -239,8 +243,10 @@ glm::dvec3 apart(const Footing& there, const Footing& here) {
 Matrix6 motion_of(const CompliantBody& body, const Footing& there, const Footing& here) {
   Matrix6 motion = there.share * here.share * motion_between(body.ports, there, here);
   if (there.center != here.center) {
-    motion += half_space_coupling({apart(there, here), there.normal}, {here.center, here.normal},
-                                  body.world.bodies.at<Elasticity>(body.row));
+    const ContactModel model = body.world.bodies.at<BodyModels>(body.row).contact;
+    motion +=
+        half_space_coupling({apart(there, here, model), there.normal}, {here.center, here.normal},
+                            body.world.bodies.at<Elasticity>(body.row));
   }
   const double thickness = layer_thickness(body.world, body.row, here.normal, here.center);
   if (thickness > 0.0) {
@@ -274,6 +280,44 @@ std::size_t find_some_couplings(const CompliantBody& body, bool found_before, st
     }
   }
   return most;
+}
+
+/// What a wrench on one of two regions that were one does to the other.
+struct ToEachOther {
+  Matrix6 motion;
+  Matrix6 known;  // of that, what it did as the one region's own load
+};
+
+ToEachOther to_each_other(const CompliantBody& body, const Footing& there, const Footing& here) {
+  ToEachOther both{motion_of(body, there, here), Matrix6::Zero()};
+  if (here.on_layer == 0) {
+    both.known = there.share * here.share * motion_between(body.ports, there, here);
+  }
+  return both;
+}
+
+/// A disc as large as the grid around a new region's contact points.
+ContactEllipse disc_of_grid(const RegionFrame& frame) {
+  const double radius = std::sqrt(frame.half_size.x * frame.half_size.y);
+  return {frame.origin, radius * frame.tangent_x, radius * frame.tangent_y, frame.normal, radius};
+}
+
+/// Of a region's load a part has become another region's.
+/// @param motion  what it moves here, 6 x 6
+/// @param known   of that, what it has moved before
+/// @param place   m, body: of the motion
+void move_by_part(const Matrix6& motion, const Matrix6& known, const Vector6& load,
+                  const glm::dvec3& place, RegionSupport& support) {
+  const Vector6 by_others = motion * load;
+  const Vector6 more = by_others - known * load;
+  const glm::dvec3 rotation(by_others[3], by_others[4], by_others[5]);
+  const glm::dvec3 more_rotation(more[3], more[4], more[5]);
+  const glm::dvec3 arm = support.about - place;
+  support.translation += glm::dvec3(more[0], more[1], more[2]) + glm::cross(more_rotation, arm);
+  support.rotation += more_rotation;
+  support.translation_by_others +=
+      glm::dvec3(by_others[0], by_others[1], by_others[2]) + glm::cross(rotation, arm);
+  support.rotation_by_others += rotation;
 }
 
 }  // namespace
@@ -325,8 +369,6 @@ void begin_support(World& world, std::uint32_t region) {
     return;
   }
   const CompliantBody body{world, row, ports_of(world, row)};
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const double radius = std::sqrt(frame.half_size.x * frame.half_size.y);
   Footing there;
   Vector6 motion = Vector6::Zero();
   for (std::uint32_t other = 0; other < world.regions.size(); ++other) {
@@ -336,19 +378,78 @@ void begin_support(World& world, std::uint32_t region) {
       continue;
     }
     if (there.reach == 0.0) {
-      lay_footing(
-          body.ports,
-          {frame.origin, radius * frame.tangent_x, radius * frame.tangent_y, frame.normal, radius},
-          there);
+      lay_footing(body.ports, disc_of_grid(world.regions.at<RegionFrame>(region)), there);
       there.share = 1.0;
     }
     motion += motion_of(body, there, here) * contact_load(world, other, here).wrench;
   }
-  support.about = frame.origin;
+  support.about = world.regions.at<RegionFrame>(region).origin;
   support.translation = {motion[0], motion[1], motion[2]};
   support.rotation = {motion[3], motion[4], motion[5]};
   support.translation_by_others = support.translation;
   support.rotation_by_others = support.rotation;
+}
+
+void begin_split_support(World& world, std::uint32_t from, std::uint32_t region) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(from);
+  RegionSupport& old = world.regions.at<RegionSupport>(from);
+  RegionSupport& fresh = world.regions.at<RegionSupport>(region);
+  fresh = old;
+  if (has_patch(world, identity) ||
+      world.bodies.at<BodyModels>(identity.body).body != BodyModel::kCompliance) {
+    return;
+  }
+  const Footing& here = world.footings.at<Footing>(block_of(identity));
+  if (here.reach == 0.0) {
+    return;
+  }
+  const CompliantBody body{world, identity.body, ports_of(world, identity.body)};
+  Footing there;
+  lay_footing(body.ports, disc_of_grid(world.regions.at<RegionFrame>(region)), there);
+  there.share = here.share;
+  const ToEachOther both = to_each_other(body, there, here);
+  const double relative = there.radius / here.radius;
+  const double share = std::min(relative * relative, 0.5);
+  Vector6 taken = Vector6::Zero();
+  const Vector6 load = contact_load(world, from, here).wrench;
+  taken.head<3>() = share * load.head<3>();
+  Vector6 left = load - taken;
+  const glm::dvec3 arm = there.center - here.center;
+  left.tail<3>() -= eigen(arm).cross(Eigen::Vector3d(taken.head<3>()));
+  move_by_part(both.motion, both.known, left, there.center, fresh);
+  move_by_part(both.motion.transpose(), both.known.transpose(), taken, here.center, old);
+}
+
+void split_support(World& world, std::uint32_t from, std::uint32_t region) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(from);
+  if (world.bodies.at<BodyModels>(identity.body).body != BodyModel::kCompliance) {
+    return;
+  }
+  const Footing& here = world.footings.at<Footing>(block_of(identity));
+  if (here.reach == 0.0) {
+    return;
+  }
+  const CompliantBody body{world, identity.body, ports_of(world, identity.body)};
+  Stand stand;
+  stand.region = region;
+  stand.block = block_of(world.regions.at<RegionIdentity>(region));
+  stand.solved = true;
+  forget_couplings(world, stand.block);
+  lay(body, stand, contact_ellipse(world, region));
+  const Footing& there = footing_of(body, stand);
+  const ToEachOther both = to_each_other(body, there, here);
+  RegionSupport& old = world.regions.at<RegionSupport>(from);
+  RegionSupport& fresh = world.regions.at<RegionSupport>(region);
+  fresh = old;
+  move_by_part(both.motion, both.known, contact_load(world, from, here).wrench, there.center,
+               fresh);
+  move_by_part(both.motion.transpose(), both.known.transpose(),
+               contact_load(world, region, there).wrench, here.center, old);
+  RegionReaction& reaction = world.regions.at<RegionReaction>(from);
+  if (reaction.active != 0) {
+    // They have answered to the whole load, and it is still there.
+    Eigen::Map<Vector6>(reaction.wrench.data()) -= contact_load(world, region, here).wrench;
+  }
 }
 
 void find_couplings(const CompliantBody& body) {

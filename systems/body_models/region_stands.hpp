@@ -51,6 +51,16 @@ void find_stands(CompliantBody& body);
 /// that. Writes RegionSupport.
 void begin_support(World& world, std::uint32_t region);
 
+/// The same of a region that splits off another one: where that one has it. With contact model
+/// patch split_support has the rest to do, of others the load is shared out by the discs' areas.
+/// Writes RegionSupport, of both.
+void begin_split_support(World& world, std::uint32_t from, std::uint32_t region);
+
+/// A region with contact model patch that has taken a part of another's load: to each of the two
+/// what the other one's part does to it is by another region from now on. Writes Footing of the new
+/// one, and RegionSupport and RegionReaction.
+void split_support(World& world, std::uint32_t from, std::uint32_t region);
+
 /// Finds couplings anew between regions whose footings have been laid since, kCouplingsAStep at
 /// most, of new regions first; the others stay as they are a step longer.
 void find_couplings(const CompliantBody& body);

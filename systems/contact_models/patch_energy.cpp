@@ -241,6 +241,25 @@ void settle_energy(World& world, std::uint32_t region, const PatchSolution& solu
   world.regions.at<PatchEnergy>(region) = now;
 }
 
+void split_energy(World& world, std::uint32_t from, std::uint32_t region, double share) {
+  const PatchEnergy before = world.regions.at<PatchEnergy>(from);
+  for (const std::uint32_t each : {from, region}) {
+    const double part = each == region ? share : 1.0 - share;
+    const RegionSupport& support = world.regions.at<RegionSupport>(each);
+    PatchEnergy& energy = world.regions.at<PatchEnergy>(each);
+    energy.held = part * before.held;
+    energy.owed = part * before.owed;
+    energy.lent = part * before.lent;
+    energy.taken = part * before.taken;
+    energy.depth = world.regions.at<RegionGeometry>(each).largest_depth;
+    energy.force = part * before.force;
+    energy.couple = part * before.couple;
+    energy.point = world.regions.at<RegionGeometry>(each).equivalent_point;
+    energy.translation_by_others = translation_by_others(support, energy.point);
+    energy.rotation_by_others = support.rotation_by_others;
+  }
+}
+
 void join_energies(const PatchEnergy& ended, PatchEnergy& heir) {
   heir.held += ended.held;
   heir.owed += ended.owed;

@@ -57,6 +57,10 @@ enum class SolutionStart : std::uint32_t {
 void settle_energy(World& world, std::uint32_t region, const PatchSolution& solution,
                    SolutionStart start);
 
+/// Gives a region that splits off another one its share of what that one holds, of which the force
+/// is `share`. Both are at the tractions that they have kept.
+void split_energy(World& world, std::uint32_t from, std::uint32_t region, double share);
+
 /// What a region that ends hands to the one that takes over.
 void join_energies(const PatchEnergy& ended, PatchEnergy& heir);
 

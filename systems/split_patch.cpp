@@ -1,0 +1,105 @@
+#include "systems/split_patch.hpp"
+
+#include <algorithm>
+
+#include "systems/body_models/region_stands.hpp"
+#include "systems/contact_models/patch_cells.hpp"
+#include "systems/contact_models/patch_energy.hpp"
+#include "systems/frames.hpp"
+#include "systems/scratch.hpp"
+
+namespace torsion {
+namespace {
+
+void copy_cells(World& world, Range from, Range to) {
+  const PatchRows theirs = patch_rows(world, from);
+  const PatchRows mine = patch_rows(world, to);
+  std::ranges::copy(world.cells.rows<CellGeometry>(from),
+                    world.cells.rows<CellGeometry>(to).begin());
+  std::ranges::copy(theirs.tractions, mine.tractions.begin());
+  std::ranges::copy(theirs.surface.held_x, mine.surface.held_x.begin());
+  std::ranges::copy(theirs.surface.held_y, mine.surface.held_y.begin());
+  std::ranges::copy(theirs.surface.known, mine.surface.known.begin());
+}
+
+template <class Component>
+void copy_component(World& world, std::uint32_t from, std::uint32_t region) {
+  world.regions.at<Component>(region) = world.regions.at<Component>(from);
+}
+
+/// Lets go of the cells that are not in the region's contact.
+/// @return the pressure that is left, Pa, summed over the cells
+double keep_covered(World& world, std::uint32_t region) {
+  const PatchRows rows = patch_rows(world, world.regions.at<RegionIdentity>(region).cells);
+  double sum = 0.0;
+  for (std::size_t cell = 0; cell < rows.tractions.size(); ++cell) {
+    if (rows.geometry[cell].coverage <= 0.0) {
+      rows.tractions[cell] = CellTraction{};
+      rows.surface.known[cell] = 0.0;
+    }
+    sum += rows.tractions[cell].pressure;
+  }
+  return sum;
+}
+
+/// Cells that are as near to the one region's contact as to the other's count in both.
+void halve_shared(World& world, std::uint32_t from, std::uint32_t region) {
+  const PatchRows theirs = patch_rows(world, world.regions.at<RegionIdentity>(from).cells);
+  const PatchRows mine = patch_rows(world, world.regions.at<RegionIdentity>(region).cells);
+  for (std::size_t cell = 0; cell < mine.tractions.size(); ++cell) {
+    if (theirs.geometry[cell].coverage > 0.0 && mine.geometry[cell].coverage > 0.0) {
+      for (CellTraction* const each : {&theirs.tractions[cell], &mine.tractions[cell]}) {
+        each->pressure *= 0.5;
+        each->traction *= 0.5;
+      }
+    }
+  }
+}
+
+/// The region that was copied; its row may have changed since.
+std::uint32_t copied_from(const World& world, const PatchState& state) {
+  const auto regions = world.regions.column<RegionIdentity>();
+  const auto found = std::ranges::find(regions, state.copy_of - 1, block_of);
+  return static_cast<std::uint32_t>(found - regions.begin());
+}
+
+void share_out(World& world, std::uint32_t from, std::uint32_t region) {
+  halve_shared(world, from, region);
+  const double left = keep_covered(world, from);
+  const double taken = keep_covered(world, region);
+  split_support(world, from, region);
+  if (left + taken > 0.0) {
+    split_energy(world, from, region, taken / (left + taken));
+  }
+  for (const std::uint32_t each : {from, region}) {
+    PatchState& state = world.regions.at<PatchState>(each);
+    state.moved = 1;
+    state.resized = 1;
+  }
+}
+
+}  // namespace
+
+void copy_patch(World& world, std::uint32_t from, std::uint32_t region) {
+  const Range cells = world.regions.at<RegionIdentity>(from).cells;
+  copy_cells(world, cells, world.regions.at<RegionIdentity>(region).cells);
+  copy_component<RegionFrame>(world, from, region);
+  copy_component<RegionCarrier>(world, from, region);
+  copy_component<RegionGeometry>(world, from, region);
+  copy_component<RegionMotion>(world, from, region);
+  copy_component<RegionFriction>(world, from, region);
+  copy_component<PatchState>(world, from, region);
+  world.regions.at<PatchState>(region).copy_of = cells.first / cells.count + 1;
+}
+
+void share_out_patches(World& world) {
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    PatchState& state = world.regions.at<PatchState>(region);
+    if (state.copy_of != 0) {
+      share_out(world, copied_from(world, state), region);
+      state.copy_of = 0;
+    }
+  }
+}
+
+}  // namespace torsion

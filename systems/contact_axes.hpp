@@ -33,6 +33,16 @@ struct CellMoments {
   double xy = 0.0;
   double yy = 0.0;
 
+  /// A run of `count` whole cells in row j.
+  void add_run(double first, double count, double j) {
+    const double middle = first + 0.5 * (count - 1.0);
+    weight += count;
+    x += count * middle;
+    y += count * j;
+    xx += count * middle * middle + count * (count * count - 1.0) / 12.0;
+    xy += count * middle * j;
+    yy += count * j * j;
+  }
   void add(double of_cell, double i, double j) {
     weight += of_cell;
     x += of_cell * i;

@@ -1,7 +1,9 @@
 #include "systems/patch_grid.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "systems/contact_axes.hpp"
@@ -36,14 +38,20 @@ LoadedCells loaded_cells(const Grid& grid) {
   const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
   const auto side = static_cast<int>(grid.side);
   LoadedCells loaded{{{side, side}, {0, 0}}, {}};
-  std::size_t cell = 0;
   for (int j = 0; j < side; ++j) {
-    for (int i = 0; i < side; ++i, ++cell) {
-      if (tractions[cell].pressure > 0.0) {
-        loaded.box.first = glm::min(loaded.box.first, glm::ivec2(i, j));
-        loaded.box.end = glm::max(loaded.box.end, glm::ivec2(i + 1, j + 1));
-        loaded.moments.add(1.0, static_cast<double>(i), static_cast<double>(j));
-      }
+    const CellTraction* const row = &tractions[static_cast<std::size_t>(j * side)];
+    std::uint64_t bits = 0;
+    for (int i = 0; i < side; ++i) {
+      bits |= static_cast<std::uint64_t>(row[i].pressure > 0.0) << i;
+    }
+    for (std::uint64_t left = bits; left != 0;) {
+      const int first = std::countr_zero(left);
+      const int count = std::countr_one(left >> first);
+      const int end = first + count;
+      loaded.moments.add_run(first, count, j);
+      loaded.box.first = glm::min(loaded.box.first, glm::ivec2(first, j));
+      loaded.box.end = glm::max(loaded.box.end, glm::ivec2(end, j + 1));
+      left = end < 64 ? left >> end << end : 0;
     }
   }
   return loaded;

@@ -9,6 +9,7 @@
 #include "systems/fault.hpp"
 #include "systems/frames.hpp"
 #include "systems/grid_cells.hpp"
+#include "systems/join_patch.hpp"
 #include "systems/region_grid.hpp"
 #include "systems/region_wrenches.hpp"
 #include "systems/scratch.hpp"
@@ -263,6 +264,30 @@ void note_splits(World& world, Scratch& scratch, std::span<const ContactPoint> p
   }
 }
 
+/// Whether a region of patch has tractions that are worth keeping.
+bool has_settled(const World& world, std::uint32_t region) {
+  constexpr double kSettled = 0.1;  // PatchState::residual
+  const PatchState& state = world.regions.at<PatchState>(region);
+  return state.started != 0 && state.residual < kSettled;
+}
+
+/// Regions of patch that others take over hand them their tractions.
+void join_patches(StepContext& context, const ContactPair& pair,
+                  std::span<const ContactPoint> points) {
+  const World& world = context.world;
+  const auto regions = world.regions.column<RegionIdentity>();
+  for (std::uint32_t region = 0; region < regions.size(); ++region) {
+    if (!of_pair(regions[region], pair) || owns_cluster(context.scratch, region) ||
+        !has_settled(world, region)) {
+      continue;
+    }
+    const std::uint32_t heir = heir_of(world, context.scratch, region, points);
+    if (heir != kNoRow && has_settled(world, heir)) {
+      join_patch(context, region, heir);
+    }
+  }
+}
+
 }  // namespace
 
 void group_regions(StepContext& context) {
@@ -287,6 +312,7 @@ void group_regions(StepContext& context) {
         follow_contact(context, owner, {pair.points, cluster});
       }
     }
+    join_patches(context, pair, points);
     for (std::uint32_t cluster = 0; cluster < pair.clusters; ++cluster) {
       const ClusterOwner& owner = scratch.owners[cluster];
       if (owner.region == kNoRow) {

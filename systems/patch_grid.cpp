@@ -154,21 +154,6 @@ bool shift_frame(const Grid& grid, const CellBox& box, CellMove& move) {
   return true;
 }
 
-/// How cells have moved with their grid, whose normal is the same.
-CellMove move_between(const RegionFrame& before, const RegionFrame& now, std::uint32_t side) {
-  CellMove move;
-  move.turn = glm::dmat2(
-      glm::dot(before.tangent_x, now.tangent_x), glm::dot(before.tangent_y, now.tangent_x),
-      glm::dot(before.tangent_x, now.tangent_y), glm::dot(before.tangent_y, now.tangent_y));
-  const glm::dvec2 old_cell = 2.0 / static_cast<double>(side) * before.half_size;
-  const glm::dvec2 cell = 2.0 / static_cast<double>(side) * now.half_size;
-  const double middle = 0.5 * (static_cast<double>(side) - 1.0);
-  const glm::dvec2 origin(body_to_grid(before, now.origin));
-  move.by = glm::dmat2(move.turn[0] * cell.x / old_cell, move.turn[1] * cell.y / old_cell);
-  move.origin = origin / old_cell + middle - move.by * glm::dvec2(middle);
-  return move;
-}
-
 /// How the loaded cells lie in their grid.
 struct Fit {
   CellBox box;               // of them, and of lobes outside of the grid

@@ -8,6 +8,7 @@
 #include <glm/matrix.hpp>
 
 #include "systems/contact_models/patch_cells.hpp"
+#include "systems/frames.hpp"
 #include "systems/patch_grid.hpp"
 
 namespace torsion {
@@ -133,6 +134,20 @@ Slip slip_at(const Before& before, const glm::dvec2& place) {
 
 }  // namespace
 
+CellMove move_between(const RegionFrame& before, const RegionFrame& now, std::uint32_t side) {
+  CellMove move;
+  move.turn = glm::dmat2(
+      glm::dot(before.tangent_x, now.tangent_x), glm::dot(before.tangent_y, now.tangent_x),
+      glm::dot(before.tangent_x, now.tangent_y), glm::dot(before.tangent_y, now.tangent_y));
+  const glm::dvec2 old_cell = 2.0 / static_cast<double>(side) * before.half_size;
+  const glm::dvec2 cell = 2.0 / static_cast<double>(side) * now.half_size;
+  const double middle = 0.5 * (static_cast<double>(side) - 1.0);
+  const glm::dvec2 origin(body_to_grid(before, now.origin));
+  move.by = glm::dmat2(move.turn[0] * cell.x / old_cell, move.turn[1] * cell.y / old_cell);
+  move.origin = origin / old_cell + middle - move.by * glm::dvec2(middle);
+  return move;
+}
+
 void move_cells(const Grid& grid, const CellMove& move, double depth, double ahead) {
   const PatchRows rows = patch_rows(grid.world, grid.identity.cells);
   Scratch& scratch = grid.scratch;
@@ -167,6 +182,25 @@ void move_cells(const Grid& grid, const CellMove& move, double depth, double ahe
       rows.surface.known[cell] = known ? 1.0 : 0.0;
       rows.tractions[cell] = traction;
       grid.cells[cell].height = -depth;
+    }
+  }
+}
+
+void add_cells(const Grid& grid, const CellMove& move, std::span<const CellTraction> others) {
+  const Before before{
+      {}, {}, others, static_cast<int>(grid.side), static_cast<int>(patch_spare(grid.side))};
+  const PatchRows rows = patch_rows(grid.world, grid.identity.cells);
+  const glm::dmat2 to_new = glm::transpose(move.turn);
+  std::size_t cell = 0;
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
+      const glm::dvec2 here(static_cast<double>(i), static_cast<double>(j));
+      const CellTraction more = linear_traction(before, on_centers(move.origin + move.by * here));
+      CellTraction& traction = rows.tractions[cell];
+      if (more.pressure > traction.pressure) {
+        traction = more;
+        traction.traction = to_new * more.traction;
+      }
     }
   }
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include <glm/mat2x2.hpp>
 #include <glm/vec2.hpp>
 
@@ -18,6 +20,9 @@ struct CellMove {
   [[nodiscard]] bool keeps_cells() const { return by == glm::dmat2(1.0); }
 };
 
+/// Between two grids of so many cells a side, whose normals are the same or nearly so.
+CellMove move_between(const RegionFrame& before, const RegionFrame& now, std::uint32_t side);
+
 /// Gives the cells of a region with contact model `patch`, whose grid has moved, what the old cells
 /// around their places held: pressure and traction by linear interpolation, the displacement at
 /// which friction holds the surface by a cubic one. Where the old cells slipped nothing holds it:
@@ -27,5 +32,12 @@ struct CellMove {
 /// @param depth  m, from which cells look for the tool
 /// @param ahead  m; 0 where cells are so like the old ones that they may stick
 void move_cells(const Grid& grid, const CellMove& move, double depth, double ahead);
+
+/// Adds the pressures and tractions of another region's cells, by linear interpolation. Where both
+/// regions carry pressure, as cells do that were as near to the one as to the other, the larger
+/// counts.
+/// @param move    from that region's grid to this one's
+/// @param others  (side x side)
+void add_cells(const Grid& grid, const CellMove& move, std::span<const CellTraction> others);
 
 }  // namespace torsion

@@ -191,7 +191,7 @@ void region_grids(StepContext& context) {
     }
     context.world.regions.at<RegionGeometry>(region) = summarize_cells(grid);
   }
-  share_out_patches(context.world);
+  share_out_patches(context);
 }
 
 }  // namespace torsion

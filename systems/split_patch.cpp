@@ -5,8 +5,9 @@
 #include "systems/body_models/region_stands.hpp"
 #include "systems/contact_models/patch_cells.hpp"
 #include "systems/contact_models/patch_energy.hpp"
-#include "systems/frames.hpp"
-#include "systems/scratch.hpp"
+#include "systems/grid_cells.hpp"
+#include "systems/grid_summary.hpp"
+#include "systems/patch_grid.hpp"
 
 namespace torsion {
 namespace {
@@ -17,9 +18,6 @@ void copy_cells(World& world, Range from, Range to) {
   std::ranges::copy(world.cells.rows<CellGeometry>(from),
                     world.cells.rows<CellGeometry>(to).begin());
   std::ranges::copy(theirs.tractions, mine.tractions.begin());
-  std::ranges::copy(theirs.surface.held_x, mine.surface.held_x.begin());
-  std::ranges::copy(theirs.surface.held_y, mine.surface.held_y.begin());
-  std::ranges::copy(theirs.surface.known, mine.surface.known.begin());
 }
 
 template <class Component>
@@ -35,7 +33,6 @@ double keep_covered(World& world, std::uint32_t region) {
   for (std::size_t cell = 0; cell < rows.tractions.size(); ++cell) {
     if (rows.geometry[cell].coverage <= 0.0) {
       rows.tractions[cell] = CellTraction{};
-      rows.surface.known[cell] = 0.0;
     }
     sum += rows.tractions[cell].pressure;
   }
@@ -60,13 +57,28 @@ void halve_shared(World& world, std::uint32_t from, std::uint32_t region) {
 std::uint32_t copied_from(const World& world, const PatchState& state) {
   const auto regions = world.regions.column<RegionIdentity>();
   const auto found = std::ranges::find(regions, state.copy_of - 1, block_of);
+  TORSION_ASSERT(found != regions.end());
   return static_cast<std::uint32_t>(found - regions.begin());
 }
 
-void share_out(World& world, std::uint32_t from, std::uint32_t region) {
+/// Lays the grid around what is left, at once: in the next step that would be a second event.
+void lay_around_rest(StepContext& context, std::uint32_t region) {
+  const Grid grid = grid_of(context, region);
+  const RegionPoints& contact = context.scratch.region_points[block_of(grid.identity)];
+  follow_patch(context, region, contact);
+  find_cells(grid, contact);
+  context.world.regions.at<RegionGeometry>(region) = summarize_cells(grid);
+  // They are held where they will have moved to without the other region's tractions.
+  std::ranges::fill(patch_rows(context.world, grid.identity.cells).surface.known, 0.0);
+}
+
+void share_out(StepContext& context, std::uint32_t from, std::uint32_t region) {
+  World& world = context.world;
   halve_shared(world, from, region);
   const double left = keep_covered(world, from);
   const double taken = keep_covered(world, region);
+  lay_around_rest(context, from);
+  lay_around_rest(context, region);
   split_support(world, from, region);
   if (left + taken > 0.0) {
     split_energy(world, from, region, taken / (left + taken));
@@ -92,11 +104,12 @@ void copy_patch(World& world, std::uint32_t from, std::uint32_t region) {
   world.regions.at<PatchState>(region).copy_of = cells.first / cells.count + 1;
 }
 
-void share_out_patches(World& world) {
+void share_out_patches(StepContext& context) {
+  World& world = context.world;
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
     PatchState& state = world.regions.at<PatchState>(region);
     if (state.copy_of != 0) {
-      share_out(world, copied_from(world, state), region);
+      share_out(context, copied_from(world, state), region);
       state.copy_of = 0;
     }
   }

@@ -296,6 +296,14 @@ ToEachOther to_each_other(const CompliantBody& body, const Footing& there, const
   return both;
 }
 
+Stand solved_stand(const World& world, std::uint32_t region) {
+  Stand stand;
+  stand.region = region;
+  stand.block = block_of(world.regions.at<RegionIdentity>(region));
+  stand.solved = true;
+  return stand;
+}
+
 /// A disc as large as the grid around a new region's contact points.
 ContactEllipse disc_of_grid(const RegionFrame& frame) {
   const double radius = std::sqrt(frame.half_size.x * frame.half_size.y);
@@ -430,10 +438,7 @@ void split_support(World& world, std::uint32_t from, std::uint32_t region) {
     return;
   }
   const CompliantBody body{world, identity.body, ports_of(world, identity.body)};
-  Stand stand;
-  stand.region = region;
-  stand.block = block_of(world.regions.at<RegionIdentity>(region));
-  stand.solved = true;
+  const Stand stand = solved_stand(world, region);
   forget_couplings(world, stand.block);
   lay(body, stand, contact_ellipse(world, region));
   const Footing& there = footing_of(body, stand);
@@ -450,6 +455,25 @@ void split_support(World& world, std::uint32_t from, std::uint32_t region) {
     // They have answered to the whole load, and it is still there.
     Eigen::Map<Vector6>(reaction.wrench.data()) -= contact_load(world, region, here).wrench;
   }
+}
+
+void join_support(World& world, std::uint32_t ended, std::uint32_t heir) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(heir);
+  if (world.bodies.at<BodyModels>(identity.body).body != BodyModel::kCompliance) {
+    return;
+  }
+  const Footing& here = world.footings.at<Footing>(block_of(identity));
+  const Footing& there =
+      world.footings.at<Footing>(block_of(world.regions.at<RegionIdentity>(ended)));
+  if (here.reach == 0.0 || there.reach == 0.0) {
+    return;
+  }
+  const CompliantBody body{world, identity.body, ports_of(world, identity.body)};
+  const ToEachOther both = to_each_other(body, here, there);
+  RegionSupport& support = world.regions.at<RegionSupport>(heir);
+  move_by_part(both.motion, both.known, -contact_load(world, ended, there).wrench, here.center,
+               support);
+  world.regions.at<RegionReaction>(heir) = RegionReaction{};
 }
 
 void find_couplings(const CompliantBody& body) {

@@ -61,6 +61,11 @@ void begin_split_support(World& world, std::uint32_t from, std::uint32_t region)
 /// one, and RegionSupport and RegionReaction.
 void split_support(World& world, std::uint32_t from, std::uint32_t region);
 
+/// A region with contact model patch that has taken over another one's tractions, which that still
+/// has, too: what they do here is by its own load from now on. Writes RegionSupport and
+/// RegionReaction.
+void join_support(World& world, std::uint32_t ended, std::uint32_t heir);
+
 /// Finds couplings anew between regions whose footings have been laid since, kCouplingsAStep at
 /// most, of new regions first; the others stay as they are a step longer.
 void find_couplings(const CompliantBody& body);

@@ -260,6 +260,14 @@ void split_energy(World& world, std::uint32_t from, std::uint32_t region, double
   }
 }
 
+void retell_others(World& world, std::uint32_t region, const RegionSupport& before) {
+  const RegionSupport& now = world.regions.at<RegionSupport>(region);
+  PatchEnergy& energy = world.regions.at<PatchEnergy>(region);
+  energy.translation_by_others +=
+      translation_by_others(now, energy.point) - translation_by_others(before, energy.point);
+  energy.rotation_by_others += now.rotation_by_others - before.rotation_by_others;
+}
+
 void join_energies(const PatchEnergy& ended, PatchEnergy& heir) {
   heir.held += ended.held;
   heir.owed += ended.owed;

@@ -61,6 +61,10 @@ void settle_energy(World& world, std::uint32_t region, const PatchSolution& solu
 /// is `share`. Both are at the tractions that they have kept.
 void split_energy(World& world, std::uint32_t from, std::uint32_t region, double share);
 
+/// What the other regions have to do with a region's motion was `before` and is something else now,
+/// though the material has not moved: nothing works by that.
+void retell_others(World& world, std::uint32_t region, const RegionSupport& before);
+
 /// What a region that ends hands to the one that takes over.
 void join_energies(const PatchEnergy& ended, PatchEnergy& heir);
 

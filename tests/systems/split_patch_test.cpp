@@ -77,6 +77,19 @@ TEST_P(SplitPatchTest, ForceAndTorqueGoOnWhereTwoBecomeOne) {
   expect_to_go_on(-2e-6, 1);
 }
 
+TEST_P(SplitPatchTest, GivesNoEnergyOverClosedPaths) {
+  hand.step_to({{glm::dvec3(0.0, 0.1205, 0.0), glm::dquat(1.0, 0.0, 0.0, 0.0)}});
+  hand.move({0.0, -2.5e-3, 0.0}, {0.0, 1.0, 0.0}, 0.0, 500);
+  for (int loop = 0; loop < 4; ++loop) {
+    const double before = hand.world().tools.at<ToolWrench>(0).work;
+    hand.move({0.0, -2.5e-3, 0.0}, {0.0, 1.0, 0.0}, 0.0, 300);
+    EXPECT_EQ(hand.world().regions.size(), 1U);
+    hand.move({0.0, 2.5e-3, 0.0}, {0.0, 1.0, 0.0}, 0.0, 300);
+    EXPECT_EQ(hand.world().regions.size(), 2U);
+    EXPECT_GE(hand.world().tools.at<ToolWrench>(0).work, before);
+  }
+}
+
 // Balls whose middles are d = 22 mm apart, with contacts of a = 8 mm, move each other by 4 / (3 pi)
 // a / d = 0.15 of what they do themselves (Johnson, Contact Mechanics, 1985, (3.22a) and 4.2): a
 // quarter of the force, as F ~ depth^(3/2). That is what changes where regions do not see each

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems/body_models/region_stands.hpp"
+#include "systems/body_models/region_supports.hpp"
 #include "systems/cell_finder.hpp"
 #include "systems/contact_models/patch_energy.hpp"
 #include "systems/fault.hpp"

@@ -5,7 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "systems/body_models/region_stands.hpp"
+#include "systems/body_models/region_supports.hpp"
 #include "systems/contact_models/patch_cells.hpp"
 #include "systems/contact_models/patch_energy.hpp"
 #include "systems/frames.hpp"

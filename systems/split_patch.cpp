@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "systems/body_models/region_stands.hpp"
+#include "systems/body_models/region_supports.hpp"
 #include "systems/contact_models/patch_cells.hpp"
 #include "systems/contact_models/patch_energy.hpp"
 #include "systems/grid_cells.hpp"

@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <glm/geometric.hpp>
 
-#include "systems/body_models/region_stands.hpp"
+#include "systems/body_models/region_couplings.hpp"
 #include "systems/body_models/symmetric_solve.hpp"
 #include "systems/fault.hpp"
 #include "systems/scratch.hpp"

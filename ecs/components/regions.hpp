@@ -43,7 +43,8 @@ struct RegionCarrier {
 };
 
 /// How the whole body's deformation has moved the material under the region, as a rigid body.
-/// Written by: compliance; zero with other body models.
+/// Written by: compliance and, when a region begins, splits off or takes over, group_regions and
+/// region_grids; zero with other body models.
 struct RegionSupport {
   glm::dvec3 about{0.0};             // m, body: the point that has gone by `translation`
   glm::dvec3 translation{0.0};       // m, body
@@ -58,7 +59,8 @@ struct RegionSupport {
 /// How the body's other regions answer to a change of this one's load, where the body gives way by
 /// much: by it they move this one, as a rigid body, by minus `motion` times the change. Without it
 /// each of two tools that pinch a soft body would feel it move away by far, and the other's answer
-/// a step later. Written by: compliance; zero where the body gives way by little.
+/// a step later. Written by: compliance and, when a region splits off or takes over, region_grids
+/// and group_regions; zero where the body gives way by little.
 struct RegionReaction {
   std::array<double, 36> motion{};  // 6 x 6, body axes, about RegionSupport::about
   std::array<double, 6> wrench{};   // on the material, about it, that the others have answered to
@@ -141,8 +143,8 @@ struct PatchState {
 };
 
 /// What a region with contact model `patch` holds of the work done on it, and the forces of the
-/// last step that its work is reckoned by. Written by: patch_forces and, when a region splits off,
-/// region_grids.
+/// last step that its work is reckoned by. Written by: patch_forces and, when a region splits off
+/// or takes over, region_grids and group_regions.
 struct PatchEnergy {
   double held = 0.0;       // J, with what the body as a whole holds of its load
   double owed = 0.0;       // J: lacking work that is still to be charged

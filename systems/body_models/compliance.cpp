@@ -7,8 +7,8 @@
 #include <Eigen/LU>
 #include <glm/geometric.hpp>
 
+#include "systems/body_models/dense_solve.hpp"
 #include "systems/body_models/region_couplings.hpp"
-#include "systems/body_models/symmetric_solve.hpp"
 #include "systems/fault.hpp"
 #include "systems/scratch.hpp"
 
@@ -51,6 +51,13 @@ Vector6 support_by_others(const RegionSupport& support, const glm::dvec3& point)
   return motion;
 }
 
+/// The rest, by its own load.
+Vector6 own_support(const CompliantBody& body, const Stand& stand) {
+  const RegionSupport& support = body.world.regions.at<RegionSupport>(stand.region);
+  const glm::dvec3& center = footing_of(body, stand).center;
+  return support_at(support, center) - support_by_others(support, center);
+}
+
 /// The motion that Newton's step starts from. A region with contact model patch, which knows in its
 /// own equations what its load does (patch_support.hpp), stands where that has moved it.
 Vector6 support_now(const CompliantBody& body, const Stand& stand) {
@@ -60,17 +67,45 @@ Vector6 support_now(const CompliantBody& body, const Stand& stand) {
                       : support_at(support, center);
 }
 
+/// How a load's wrench about its footing's centre changes by a translation of the material under
+/// it: the tool stands elsewhere on it, so that the load has the couple force x translation more.
+/// Nothing for a contact model that does not say where on the material its load lies.
+Matrix6 wrench_by_place(const Stand& stand) {
+  Matrix6 wrench = Matrix6::Zero();
+  if (stand.solved) {
+    const Eigen::Vector3d force = stand.load.wrench.head<3>();
+    wrench.bottomLeftCorner<3, 3>() << 0.0, -force.z(), force.y(), force.z(), 0.0, -force.x(),
+        -force.y(), force.x(), 0.0;
+  }
+  return wrench;
+}
+
+/// Newton's step of one body.
+struct NewtonStep {
+  std::array<StiffnessRoot, kMaxRegionsPerBody> roots;
+  // Whether the regions' loads go with what moves them, all regions' together (add_sway), and by
+  // how much each region has been moved since its load was found.
+  bool sways_together = false;
+  std::array<Vector6, kMaxRegionsPerBody> moved;
+};
+
 /// What the other regions are to have to do with such a region's motion: Newton's change du is that
 /// by them less what its own load gives way by it, (I + C K) du, less what the others' answer to
 /// its own change will be (RegionReaction).
 /// @param scaled  y of fill_equations
-void move_by_others(const CompliantBody& body, const Stand& stand, const StiffnessRoot& root,
+void move_by_others(const CompliantBody& body, std::size_t i, const NewtonStep& newton,
                     const Vector6& scaled) {
+  const Stand& stand = body.stands[i];
+  const StiffnessRoot& root = newton.roots[i];
   const Footing& footing = footing_of(body, stand);
   RegionSupport& support = body.world.regions.at<RegionSupport>(stand.region);
   Vector6 by_others = support_by_others(support, footing.center) + root.inverse * scaled;
   if (footing.on_layer == 0) {
-    by_others += Eigen::Map<const Matrix6>(footing.own.data()) * (root.root * scaled);
+    const Eigen::Map<const Matrix6> own(footing.own.data());
+    by_others += own * (root.root * scaled);
+    if (newton.sways_together) {
+      by_others -= own * (wrench_by_place(stand) * (newton.moved[i] + root.inverse * scaled));
+    }
   }
   const RegionReaction& reaction = body.world.regions.at<RegionReaction>(stand.region);
   if (reaction.active != 0) {
@@ -80,8 +115,19 @@ void move_by_others(const CompliantBody& body, const Stand& stand, const Stiffne
   support.rotation_by_others = {by_others[3], by_others[4], by_others[5]};
 }
 
+/// How a wrench on one region moves it or another one, as Newton's matrix has it.
+Matrix6 compliance_between(const CompliantBody& body, const Stand& to, const Stand& from) {
+  if (to.region == from.region) {
+    const Footing& footing = footing_of(body, to);
+    return footing.on_layer == 0 ? Matrix6(Eigen::Map<const Matrix6>(footing.own.data()))
+                                 : Matrix6(Matrix6::Zero());
+  }
+  const Eigen::Map<const Matrix6> stored(coupling_between(body, to, from).motion.data());
+  return to.block > from.block ? Matrix6(stored) : Matrix6(stored.transpose());
+}
+
 void move_supports(const CompliantBody& body, const Eigen::Map<Eigen::VectorXd>& change,
-                   const std::array<StiffnessRoot, kMaxRegionsPerBody>& roots) {
+                   const NewtonStep& newton) {
   for (std::size_t i = 0; i < body.count; ++i) {
     const Stand& stand = body.stands[i];
     const glm::dvec3& center = footing_of(body, stand).center;
@@ -91,9 +137,9 @@ void move_supports(const CompliantBody& body, const Eigen::Map<Eigen::VectorXd>&
     // Where it is to be seen next. For contact model patch that foresees how its own load changes,
     // which its equations then find: seen from where all of the others' change but nothing of its
     // own answer has moved it, it would lie far from the tool on a body that sways much.
-    const Vector6 after = support_now(body, stand) + roots[i].inverse * scaled;
+    const Vector6 after = support_now(body, stand) + newton.roots[i].inverse * scaled;
     if (stand.solved) {
-      move_by_others(body, stand, roots[i], scaled);
+      move_by_others(body, i, newton, scaled);
     }
     const Vector6 step = after - before + answer_at(support, center);
     support.about = center;
@@ -136,26 +182,19 @@ void fill_equations(const CompliantBody& body,
   }
 }
 
-/// Of a region with contact model patch: where it is to be seen next by its own load. As the
-/// material goes aside the tool stands elsewhere on it, and its load has another couple about the
-/// footing: a body that sways by couples much would go to and fro, for that shows only in the next
+/// Of a region with contact model patch: where it is to be seen next by its own load. A body that
+/// sways much by couples would go to and fro, for what its sway does to them shows only in the next
 /// step. By one Newton step, with w the load and C the compliance: u + du = C w(u + du), where the
-/// couple is w's own and force x du more. Never farther than C w itself.
+/// wrench is w's own and G du more (wrench_by_place). Never farther than C w itself.
 void sway(const CompliantBody& body, Stand& stand) {
   const Footing& footing = footing_of(body, stand);
   if (!stand.solved || footing.on_layer != 0) {
     return;
   }
-  const RegionSupport& support = body.world.regions.at<RegionSupport>(stand.region);
-  const Vector6 now =
-      support_at(support, footing.center) - support_by_others(support, footing.center);
+  const Vector6 now = own_support(body, stand);
   const Vector6 plain = stand.motion - now;
   const Eigen::Map<const Matrix6> own(footing.own.data());
-  const Eigen::Vector3d force = stand.load.wrench.head<3>();
-  Eigen::Matrix3d couple;  // force x du
-  couple << 0.0, -force.z(), force.y(), force.z(), 0.0, -force.x(), -force.y(), force.x(), 0.0;
-  Matrix6 newton = Matrix6::Identity();
-  newton.leftCols<3>() -= own.rightCols<3>() * couple;
+  const Matrix6 newton = Matrix6::Identity() - own * wrench_by_place(stand);
   const Vector6 step = newton.partialPivLu().solve(plain);
   if (step.allFinite() && step.head<3>().norm() <= plain.head<3>().norm()) {
     stand.motion = now + step;
@@ -212,6 +251,34 @@ void find_reactions(const CompliantBody& body,
   }
 }
 
+/// sway() of all regions of a body together, for what moves the one moves the other as well: two
+/// tools that pinch a body sway it by their couples each, which cancel. With v what Newton's step
+/// finds and s what its regions have been moved by already since their loads were found, their
+/// answers included: (I + C K - C G) v = r + C G s.
+/// @param upper   of fill_equations
+/// @param full    n x n, is filled with Newton's matrix, not symmetric
+/// @param change  of fill_equations; K^(1/2) C G s is added
+void add_sway(const CompliantBody& body, const Eigen::Map<RowMatrix>& upper, NewtonStep& newton,
+              Eigen::Map<RowMatrix>& full, Eigen::Map<Eigen::VectorXd>& change) {
+  newton.sways_together = true;
+  full = upper.selfadjointView<Eigen::Upper>();
+  for (std::size_t j = 0; j < body.count; ++j) {
+    const Stand& from = body.stands[j];
+    const RegionSupport& support = body.world.regions.at<RegionSupport>(from.region);
+    newton.moved[j] =
+        from.motion - own_support(body, from) + answer_at(support, footing_of(body, from).center);
+    const Matrix6 by_place = wrench_by_place(from);
+    const auto there = static_cast<Eigen::Index>(6 * j);
+    for (std::size_t i = 0; i < body.count; ++i) {
+      const auto at = static_cast<Eigen::Index>(6 * i);
+      const Matrix6 sways =
+          newton.roots[i].root * compliance_between(body, body.stands[i], from) * by_place;
+      full.block<6, 6>(at, there) -= sways * newton.roots[j].inverse;
+      change.segment<6>(at) += sways * newton.moved[j];
+    }
+  }
+}
+
 /// Where a region's equations have reckoned with the others' answer, that has moved it by now.
 void take_answers(World& world, std::uint32_t row) {
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
@@ -246,32 +313,36 @@ void deform_body(StepContext& context, std::uint32_t row) {
   take_answers(context.world, row);
   CompliantBody body{context.world, row, ports_of(context.world, row)};
   find_stands(body);
-  for (std::size_t i = 0; i < body.count; ++i) {
-    sway(body, body.stands[i]);
-  }
   find_couplings(body);
-  std::array<StiffnessRoot, kMaxRegionsPerBody> roots;
+  NewtonStep newton;
   for (std::size_t i = 0; i < body.count; ++i) {
-    roots[i] = stiffness_root(body, body.stands[i]);
+    newton.roots[i] = stiffness_root(body, body.stands[i]);
   }
   const std::size_t size = 6 * body.count;
   const auto rows = static_cast<Eigen::Index>(size);
   Eigen::Map<RowMatrix> matrix(context.scratch.compliance_matrix.data(), rows, rows);
   Eigen::Map<Eigen::VectorXd> change(context.scratch.compliance_residuals.data(), rows);
   change.setZero();
-  fill_equations(body, roots, matrix, change);
-  if (answers_within_a_step(body, roots)) {
+  if (answers_within_a_step(body, newton.roots)) {
+    fill_equations(body, newton.roots, matrix, change);
     Eigen::Map<RowMatrix> copy(context.scratch.compliance_copy.data(), rows, rows);
     Eigen::Map<RowMatrix> inverse(context.scratch.compliance_inverse.data(), rows, rows);
     copy = matrix;
-    find_reactions(body, roots, copy, inverse);
+    find_reactions(body, newton.roots, copy, inverse);
+    add_sway(body, matrix, newton, copy, change);
+    solve_general(size, copy.data(), change.data());
+  } else {
+    for (std::size_t i = 0; i < body.count; ++i) {
+      sway(body, body.stands[i]);
+    }
+    fill_equations(body, newton.roots, matrix, change);
+    solve_symmetric(size, size, matrix.data(), 1, change.data(), kLeastPivot);
   }
-  solve_symmetric(size, size, matrix.data(), 1, change.data(), kLeastPivot);
   if (!change.allFinite()) {
     raise(context.world.clock.at<Clock>(0), Fault::kResultNotFinite);
     change.setZero();
   }
-  move_supports(body, change, roots);
+  move_supports(body, change, newton);
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "systems/body_models/dense_solve.hpp"
 #include "systems/body_models/support_field.hpp"
-#include "systems/body_models/symmetric_solve.hpp"
 
 namespace torsion {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "systems/body_models/symmetric_solve.hpp"
+#include "systems/body_models/dense_solve.hpp"
 #include "systems/widest.hpp"
 
 namespace torsion {

@@ -46,6 +46,18 @@ std::vector<Pose> pinch_poses(double width, double depth) {
   return {{{-x, 0.08, 0.0}, glm::dquat(1, 0, 0, 0)}, {{x, 0.08, 0.0}, glm::dquat(1, 0, 0, 0)}};
 }
 
+/// How nearly equal both sides' forces are to be, of the force. What one force F does to the column
+/// alone, F l^3 / (3 E I), and what the other takes back of it are both some hundred to a thousand
+/// times the depth (k l^3 / (3 E I) with k the contact's stiffness, 14 N/mm here), and the table of
+/// the body's compliance has them to 1e-5 each.
+double balance_of(double width) {
+  constexpr double kTable = 1e-5;
+  constexpr double kStiffness = 1.4e4;
+  const double second_moment = std::pow(width, 4.0) / 12.0;
+  const double sway = kStiffness * std::pow(0.08, 3.0) / (3.0 * 1e6 * second_moment);
+  return std::max(1e-3, 2.0 * kTable * sway);
+}
+
 class PinchTest : public testing::TestWithParam<double> {};
 
 TEST_P(PinchTest, ComesToRestWithTheSameForceFromBothSides) {
@@ -63,7 +75,7 @@ TEST_P(PinchTest, ComesToRestWithTheSameForceFromBothSides) {
       if (step >= 200) {
         least = std::min(least, force);
         most = std::max(most, force);
-        EXPECT_NEAR(hand.wrench(0).force.x, -hand.wrench(1).force.x, 1e-3 * force);
+        EXPECT_NEAR(hand.wrench(0).force.x, -hand.wrench(1).force.x, balance_of(width) * force);
       }
     }
     EXPECT_EQ(hand.clock().faults_ever, 0U);
@@ -75,7 +87,8 @@ TEST_P(PinchTest, ComesToRestWithTheSameForceFromBothSides) {
   EXPECT_NEAR(held_force(ContactModel::kMdr), force, 0.06 * force);
 }
 
-INSTANTIATE_TEST_SUITE_P(WidthOverHeight, PinchTest, testing::Values(0.36, 0.32, 0.3, 0.25));
+INSTANTIATE_TEST_SUITE_P(WidthOverHeight, PinchTest,
+                         testing::Values(0.36, 0.32, 0.3, 0.25, 0.2, 0.15));
 
 // Taps of a ball on a half-space, a hundred a second: what the tool's own way makes of a new
 // contact is no jump. The cells' first steps are coarse, so 5 % of the peak.

@@ -1,4 +1,4 @@
-#include "systems/body_models/symmetric_solve.hpp"
+#include "systems/body_models/dense_solve.hpp"
 
 #include <random>
 
@@ -30,6 +30,29 @@ TEST(SymmetricSolveTest, SolvesForOneAndForManyRightSides) {
       EXPECT_LT((matrix * found - right).norm(), 1e-12 * right.norm()) << n << " x " << width;
     }
   }
+}
+
+// Rows that have to be exchanged, a first pivot of zero among them. An elimination with exchanges
+// is off by the matrix' condition times 1e-16 times a growth of some n; the worst of these draws
+// has a condition of some 1e4.
+TEST(GeneralSolveTest, SolvesWhereRowsHaveToBeExchanged) {
+  std::mt19937 random(12);
+  std::normal_distribution<double> value;
+  for (const Eigen::Index n : {2, 3, 12, 60, 96}) {
+    RowMatrix matrix = RowMatrix::NullaryExpr(n, n, [&] { return value(random); });
+    matrix.diagonal().setZero();
+    const Eigen::VectorXd expected = Eigen::VectorXd::NullaryExpr(n, [&] { return value(random); });
+    Eigen::VectorXd found = matrix * expected;
+    solve_general(static_cast<std::size_t>(n), RowMatrix(matrix).data(), found.data());
+    EXPECT_LT((found - expected).norm(), 1e-9 * expected.norm()) << n;
+  }
+}
+
+TEST(GeneralSolveTest, OfASingularMatrixFindsNothingFinite) {
+  RowMatrix matrix = RowMatrix::Ones(3, 3);
+  Eigen::VectorXd found = Eigen::Vector3d(1.0, 2.0, 3.0);
+  solve_general(3, matrix.data(), found.data());
+  EXPECT_FALSE(found.allFinite());
 }
 
 }  // namespace

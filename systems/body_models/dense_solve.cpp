@@ -1,6 +1,8 @@
-#include "systems/body_models/symmetric_solve.hpp"
+#include "systems/body_models/dense_solve.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "systems/widest.hpp"
 
@@ -38,6 +40,34 @@ void solve_symmetric(std::size_t n, std::size_t stride, double* upper, std::size
     for (std::size_t c = 0; c < width; ++c) {
       found[c] *= row[k];
     }
+  }
+}
+
+TORSION_WIDEST
+void solve_general(std::size_t n, double* matrix, double* right) {
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t largest = k;
+    for (std::size_t i = k + 1; i < n; ++i) {
+      if (std::abs(matrix[i * n + k]) > std::abs(matrix[largest * n + k])) {
+        largest = i;
+      }
+    }
+    if (largest != k) {
+      std::swap_ranges(matrix + k * n + k, matrix + (k + 1) * n, matrix + largest * n + k);
+      std::swap(right[k], right[largest]);
+    }
+    const double* const row = matrix + k * n;
+    for (std::size_t i = k + 1; i < n; ++i) {
+      const double factor = matrix[i * n + k] / row[k];
+      subtract(n - k, factor, row + k, matrix + i * n + k);
+      right[i] -= factor * right[k];
+    }
+  }
+  for (std::size_t k = n; k-- > 0;) {
+    for (std::size_t j = k + 1; j < n; ++j) {
+      right[k] -= matrix[k * n + j] * right[j];
+    }
+    right[k] /= matrix[k * n + k];
   }
 }
 

@@ -13,4 +13,10 @@ namespace torsion {
 void solve_symmetric(std::size_t n, std::size_t stride, double* upper, std::size_t width,
                      double* right, double least_pivot);
 
+/// Solves A x = b for any A by Gauss' elimination with exchanges of rows, in place, likewise. What
+/// it finds of a singular A is not finite.
+/// @param matrix  n x n, row-major; overwritten
+/// @param right   n: b, then x
+void solve_general(std::size_t n, double* matrix, double* right);
+
 }  // namespace torsion

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "app/report/element_results.hpp"
+#include "app/report/embedded_results.hpp"
 
 namespace torsion {
 namespace {

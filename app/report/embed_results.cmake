@@ -1,9 +1,9 @@
-# Writes OUTPUT, a C++ source with the text of every .csv in FOLDER, so that the program needs no
-# files: cmake -D FOLDER=... -D OUTPUT=... -P embed_results.cmake
+# Writes OUTPUT, a C++ source with FUNCTION, which has the text of every .csv in FOLDER, so that the
+# program needs no files: cmake -D FOLDER=... -D FUNCTION=... -D OUTPUT=... -P embed_results.cmake
 file(GLOB paths ${FOLDER}/*.csv)
 list(SORT paths)
-set(text "#include \"app/report/element_results.hpp\"\n\n#include <array>\n\nnamespace torsion {\n\n")
-string(APPEND text "std::span<const EmbeddedFile> element_results() {\n")
+set(text "#include \"app/report/embedded_results.hpp\"\n\n#include <array>\n\nnamespace torsion {\n\n")
+string(APPEND text "std::span<const EmbeddedFile> ${FUNCTION}() {\n")
 list(LENGTH paths count)
 string(APPEND text "  static constexpr std::array<EmbeddedFile, ${count}> kFiles = {{\n")
 foreach(path IN LISTS paths)

@@ -6,7 +6,8 @@
 #include <fmt/format.h>
 
 #include "app/report/paper_ball.hpp"
-#include "app/report/shapes.hpp"
+#include "app/report/rolling_case.hpp"
+#include "app/report/sphere_on_half_space.hpp"
 #include "tests/reference/exact/cattaneo_mindlin.hpp"
 #include "tests/reference/exact/hertz.hpp"
 #include "tests/reference/exact/limit_surface.hpp"
@@ -17,85 +18,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kHalfSize = 2.0;    // m: 440 contact radii, so that the block is a half-space
-constexpr double kClearance = 1e-5;  // m
-constexpr int kPressPoints = 8;
 constexpr int kPointsOfLeg = 16;
-
-struct SphereOnHalfSpace {
-  Elasticity elasticity;
-  Friction friction;
-  reference::HertzSphere hertz;
-  int steps = 0;  // between the points of a path
-};
-
-/// A sphere's own contact radius and force, with Hertz' form of the pressure.
-reference::HertzSphere sphere_contact(double modulus, double depth) {
-  const reference::SneddonSphere exact =
-      reference::sneddon_sphere_at_depth(kPaperBallRadius, modulus, depth);
-  reference::HertzSphere contact =
-      reference::hertz_sphere_at_depth(kPaperBallRadius, modulus, depth);
-  contact.force = exact.force;
-  contact.radius = exact.radius;
-  return contact;
-}
-
-SphereOnHalfSpace sphere_on_half_space(bool quick) {
-  SphereOnHalfSpace sphere;
-  sphere.hertz = sphere_contact(sphere.elasticity.contact_modulus(), kPaperBallDepth);
-  sphere.steps = quick ? 10 : 40;
-  return sphere;
-}
-
-SceneDescription scene_of(const SphereOnHalfSpace& sphere) {
-  SceneDescription scene;
-  BodyDescription body;
-  body.node = "half_space";
-  body.elasticity = sphere.elasticity;
-  body.friction = sphere.friction;
-  body.fixed.kind = FixedKind::kFace;
-  body.fixed.point = {0.0, -2.0 * kHalfSize, 0.0};
-  body.fixed.normal = {0.0, 1.0, 0.0};
-  body.parts.push_back(exact_part(ShapeKind::kBox, glm::dvec3(kHalfSize),
-                                  {glm::dvec3(0.0, -kHalfSize, 0.0), {1.0, 0.0, 0.0, 0.0}}, 1));
-  // Drawn is a piece around the contact.
-  const double piece = 10.0 * sphere.hertz.radius;
-  SurfaceMesh surface = shape_surface(ShapeKind::kBox, {piece, 0.4 * piece, piece}, 61);
-  for (glm::dvec3& position : surface.positions) {
-    position.y -= 0.4 * piece;
-  }
-  body.draw = drawn({surface}, false, {0.85F, 0.72F, 0.6F, 1.0F});
-  scene.bodies.push_back(std::move(body));
-  ToolDescription tool;
-  tool.node = "ball";
-  tool.parts.push_back(exact_part(ShapeKind::kSphere, glm::dvec3(kPaperBallRadius)));
-  tool.draw = drawn({shape_surface(ShapeKind::kSphere, glm::dvec3(kPaperBallRadius), 41)}, true,
-                    {0.45F, 0.55F, 0.7F, 1.0F});
-  scene.tools.push_back(std::move(tool));
-  return scene;
-}
-
-Pose pose_at(double depth, double turn, double shift) {
-  return {glm::dvec3(shift, kPaperBallRadius - depth, 0.0),
-          glm::angleAxis(turn, glm::dvec3(0.0, 1.0, 0.0))};
-}
-
-/// From just above the surface down to kPaperBallDepth.
-std::vector<PathPoint> press(const SphereOnHalfSpace& sphere, bool force_is_normal) {
-  std::vector<PathPoint> path{
-      {pose_at(-kClearance, 0.0, 0.0), 1, Leg::kApproach, 0.0, kNoReference, kNoReference}};
-  for (int i = 1; i <= kPressPoints; ++i) {
-    PathPoint point;
-    const double depth = kPaperBallDepth * i / kPressPoints;
-    point.tool = pose_at(depth, 0.0, 0.0);
-    point.steps = sphere.steps;
-    if (force_is_normal) {
-      point.force = sphere_contact(sphere.elasticity.contact_modulus(), depth).force;
-    }
-    path.push_back(point);
-  }
-  return path;
-}
 
 /// To `amplitude`, to -amplitude, and back: calls add(value, leg) for each point.
 template <class Add>
@@ -109,17 +32,6 @@ void to_and_fro(double amplitude, const Add& add) {
   for (int i = 1; i <= 2 * kPointsOfLeg; ++i) {
     add(amplitude * (i - kPointsOfLeg) / kPointsOfLeg, Leg::kReload);
   }
-}
-
-std::string sphere_text(const SphereOnHalfSpace& sphere) {
-  return fmt::format(
-      "A rigid ball of radius {:.0f} mm on a block with sides of {:.0f} m (E = {:.3g} MPa, "
-      "\u03bd = {:.2g}, \u03bc = {:.2g}) that stands for a half-space. It is pressed {:.4g} mm "
-      "deep: "
-      "F = {:.3g} N, contact radius a = {:.3g} mm.",
-      1e3 * kPaperBallRadius, 2.0 * kHalfSize, 1e-6 * sphere.elasticity.youngs_modulus,
-      sphere.elasticity.poisson_ratio, sphere.friction.dynamic_friction, 1e3 * kPaperBallDepth,
-      sphere.hertz.force, 1e3 * sphere.hertz.radius);
 }
 
 /// How far the largest couple of a sphere is from that of Hertz' pressure of the same force and
@@ -273,6 +185,7 @@ std::vector<ReferenceCase> exact_cases(bool quick) {
   cases.push_back(twist_case(quick));
   cases.push_back(shear_case(quick));
   cases.push_back(slide_and_spin_case(quick));
+  cases.push_back(rolling_case(quick));
   return cases;
 }
 

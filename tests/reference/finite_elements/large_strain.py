@@ -143,7 +143,10 @@ class Body:
         matrix = self.model.tangent_matrix()
         matrix.to_csc()
         starts, rows = matrix.csc_ind()
-        return sp.csc_matrix((matrix.csc_val(), rows, starts))
+        size = len(starts) - 1
+        # The shape said: from the rows that have an entry SciPy would take one row too few where the
+        # last has none.
+        return sp.csc_matrix((matrix.csc_val(), rows, starts), shape=(size, size))
 
 
 @dataclass

@@ -14,4 +14,7 @@ struct EmbeddedFile {
 /// tests/reference/finite_elements/results/*.csv, by name.
 std::span<const EmbeddedFile> element_results();
 
+/// tests/reference/boundary_elements/*.csv, by name.
+std::span<const EmbeddedFile> boundary_element_results();
+
 }  // namespace torsion

@@ -12,6 +12,7 @@
 #include "ecs/model_names.hpp"
 #include "systems/contact_axes.hpp"
 #include "systems/distance.hpp"
+#include "systems/expected_rolling.hpp"
 #include "systems/frames.hpp"
 #include "systems/group_points.hpp"
 #include "systems/surface_piece.hpp"
@@ -26,6 +27,9 @@ constexpr double kMdrLongError = 0.025;   // a long one
 // One that does both at once: found not by the report but against patch, where the directions of
 // slip and turn change in turn (patch_mdr_ball_test.cpp).
 constexpr double kMdrCombinedError = 0.07;
+// Times the contact radii rolled, at most all: mdr's springs stay with the contact, while the
+// material leaves it with what it holds (mdr_rolling_test.cpp).
+constexpr double kMdrRollingError = 0.95;
 constexpr double kMdrCoupling = 0.095;    // times 1 - 2 nu: pressure moves the surface sideways
 constexpr double kMdrWideError = 0.095;   // times contact radius over body depth: shape unknown
 constexpr double kFiniteBodyError = 1.1;  // of the force, times contact radius over body depth
@@ -38,6 +42,7 @@ constexpr double kSlenderEdgedError = 0.25;
 constexpr double kSlender = 8.0;              // times the width
 constexpr std::size_t kFewest = 12;           // points that tell how long a contact is
 constexpr double kSlidesWhileTurning = 0.05;  // of the radius, between two expected poses
+constexpr double kTellsOfRolling = 0.02;      // of the torque: less is not worth a word
 constexpr double kTurnsWhileSliding = 1e-3;   // rad between two expected poses: less is no turn
 
 /// What is found at one time.
@@ -48,6 +53,8 @@ struct Touch {
   glm::dvec3 center{0.0};          // m, body: mean of the points
   bool smooth = true;              // as in ExpectedContact
   bool round = true;
+  std::vector<TouchedPlace> places;
+  double rolled = 0.0;  // m: the farthest of the places
 };
 
 /// That part on whose surface a point of its owner's frame lies, or next to it.
@@ -82,21 +89,25 @@ bool makes_long_contacts(ShapeKind kind) {
          kind == ShapeKind::kCapsule;
 }
 
+/// @param before  of the pose before
 void touch_with_tool(const World& world, std::uint32_t body, std::uint32_t tool, const Pose& pose,
-                     Touch& touch) {
+                     std::span<const TouchedPlace> before, Touch& touch) {
   const Pose& body_pose = world.bodies.at<Pose>(body);
   const Range parts = world.bodies.at<OwnedRows>(body).parts;
   const OwnedRows& owned = world.tools.at<OwnedRows>(tool);
+  std::vector<TouchingPoint> points;
   for (const SurfaceSample& sample : world.samples.rows<SurfaceSample>(owned.samples)) {
     const glm::dvec3 point = to_inner(body_pose, to_outer(pose, sample.position));
     const Distance distance = signed_distance(world, parts, point);
     if (distance.value < 0.0) {
+      const ShapePart& part = part_at(world, owned.parts, sample.position);
       touch.points.push_back(point);
+      points.push_back({point, sample.position, -distance.value, &part});
       if (-distance.value > touch.depth) {
         touch.depth = -distance.value;
         touch.normal = distance.gradient;
       }
-      const ShapeKind kind = part_at(world, owned.parts, sample.position).kind;
+      const ShapeKind kind = part.kind;
       touch.smooth = touch.smooth &&
                      !near_edge(part_at(world, parts, point), point, sample.spacing) &&
                      (kind == ShapeKind::kSphere || kind == ShapeKind::kEllipsoid ||
@@ -104,12 +115,18 @@ void touch_with_tool(const World& world, std::uint32_t body, std::uint32_t tool,
       touch.round = touch.round && kind == ShapeKind::kSphere;
     }
   }
+  const glm::dquat tool_to_body = glm::conjugate(body_pose.rotation) * pose.rotation;
+  for (const TouchedPlace& place : touched_places(world, body, tool, pose, points, before)) {
+    touch.rolled = std::max(touch.rolled, rolled_way(place, tool_to_body));
+    touch.places.push_back(place);
+  }
 }
 
-Touch touch_with_tools(const World& world, std::uint32_t body, std::span<const Pose> poses) {
+Touch touch_with_tools(const World& world, std::uint32_t body, std::span<const Pose> poses,
+                       std::span<const TouchedPlace> before) {
   Touch touch;
   for (std::uint32_t tool = 0; tool < world.tools.size(); ++tool) {
-    touch_with_tool(world, body, tool, poses[tool], touch);
+    touch_with_tool(world, body, tool, poses[tool], before, touch);
   }
   for (const glm::dvec3& point : touch.points) {
     touch.center += point / static_cast<double>(touch.points.size());
@@ -189,6 +206,10 @@ std::string percent(double share) {
   return text;
 }
 
+double rolling_error(const ExpectedContact& contact) {
+  return std::min(1.0, kMdrRollingError * contact.rolled);
+}
+
 /// Cheapest contact model within the tolerance.
 std::pair<ContactModel, std::string> auto_contact(const ExpectedContact& contact, double tolerance,
                                                   double poisson_ratio) {
@@ -213,7 +234,9 @@ std::pair<ContactModel, std::string> auto_contact(const ExpectedContact& contact
       (contact.round ? "round contact" : "smooth contact") + (contact.single ? "" : "s") +
       (contact.slides
            ? (contact.single ? " that slides while it turns" : " that slide while they turn")
-           : "");
+           : "") +
+      (rolling_error(contact) > kTellsOfRolling ? (contact.single ? " that rolls" : " that roll")
+                                                : "");
   const ContactModel model = error <= tolerance ? ContactModel::kMdr : ContactModel::kPatch;
   return {model, "auto: " + kind + ", error of mdr " + percent(error) + within};
 }
@@ -242,7 +265,7 @@ ExpectedContact expect_contact(const World& world, std::uint32_t body,
                           [](const ShapePart& part) { return makes_long_contacts(part.kind); });
   Touch last;
   for (std::size_t time = 0; time < poses.size(); ++time) {
-    Touch touch = touch_with_tools(world, body, poses[time]);
+    Touch touch = touch_with_tools(world, body, poses[time], last.places);
     if (!touch.points.empty()) {
       const auto [radius, regions] = extent_of_groups(touch.points, threshold);
       contact.any = true;
@@ -254,6 +277,7 @@ ExpectedContact expect_contact(const World& world, std::uint32_t body,
       }
       contact.depth = std::max(contact.depth, touch.depth);
       contact.radius = std::max(contact.radius, radius);
+      contact.rolled = std::max(contact.rolled, touch.rolled / radius);
       contact.body_depth =
           std::min(contact.body_depth, distance_to_fixed(world, body, touch.center));
       contact.slides = contact.slides || (!last.points.empty() &&
@@ -269,8 +293,10 @@ double mdr_error(const ExpectedContact& contact, double poisson_ratio) {
   const double kind = contact.slides  ? kMdrCombinedError
                       : contact.round ? kMdrRoundError
                                       : kMdrLongError;
-  return std::max({kind, kMdrCoupling * (1.0 - 2.0 * poisson_ratio),
-                   kMdrWideError * contact.radius / std::max(contact.body_depth, 1e-300)});
+  const double in_place =
+      std::max({kind, kMdrCoupling * (1.0 - 2.0 * poisson_ratio),
+                kMdrWideError * contact.radius / std::max(contact.body_depth, 1e-300)});
+  return std::min(1.0, in_place + rolling_error(contact));
 }
 
 ModelChoice choose_models(const BodyModels& scene, const PrepareOptions& options,

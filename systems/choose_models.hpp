@@ -16,6 +16,7 @@ struct ExpectedContact {
   bool smooth = true;       // touched by exact shapes without edges only: mdr knows their curvature
   bool round = true;        // by spheres only, and the body is no ellipsoid, cylinder or capsule
   bool slides = false;      // while it turns about the normal
+  double rolled = 0.0;      // over the radius: how far it rolls since it began, the farthest
   double elongation = 1.0;  // length over width, of those with edges that are long: the largest
   double depth = 0.0;       // m, largest
   double radius = 0.0;      // m: largest of the overlap

@@ -14,11 +14,11 @@
 namespace torsion {
 namespace {
 
-constexpr double kRadii = 8.0;        // contact radii with each spin: steady after six
-constexpr int kPoints = 16;           // of each
-constexpr int kSteadyPoints = 4;      // the last ones, which are compared
-constexpr int kStepsBetween = 5;      // times SphereOnHalfSpace::steps
-constexpr double kFriction = 0.75;    // that of Friction{}
+constexpr double kRadii = 8.0;      // contact radii with each spin: steady after six
+constexpr int kPoints = 16;         // of each
+constexpr int kSteadyPoints = 4;    // the last ones, which are compared
+constexpr int kStepsBetween = 5;    // times SphereOnHalfSpace::steps
+constexpr double kFriction = 0.75;  // that of Friction{}
 
 /// A row of tests/reference/boundary_elements/steady_rolling.csv.
 struct SteadyRolling {

@@ -19,7 +19,6 @@ constexpr std::uint32_t kRoundsOnSoftBody = 3;  // at most: pressing moves it si
 // not steady the more so: by ends as early as elsewhere, played-back recordings went 7 % astray.
 constexpr double kSettledOnBody = 0.01;  // PatchProblem::settled
 
-
 /// As the tool goes over cells that stay where they are, while RegionMotion's pivot goes with it.
 RegionMotion motion_over_cells(const World& world, std::uint32_t region, const RegionFrame& frame) {
   RegionMotion motion = world.regions.at<RegionMotion>(region);

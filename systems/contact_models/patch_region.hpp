@@ -25,7 +25,6 @@ struct Patch {
   PatchProblem problem;
 };
 
-
 /// The region's problem for this step, with the sweeps of the settings.
 Patch patch_of(StepContext& context, std::uint32_t region);
 

@@ -18,7 +18,7 @@ using test::make_ball_scene;
 using test::options_of;
 using test::PressedBall;
 
-constexpr int kSteps = 300;
+constexpr int kPathSteps = 300;
 
 /// Presses, slides and twists, about an axis that is not quite the normal.
 /// @param t       0 to 1
@@ -81,8 +81,8 @@ TEST_P(InvariantModelTest, TheSceneTurnedAndShiftedGivesTheSameForcesTurned) {
   turned.bodies[0].pose = moved;
   Hand hand(scene, options_of(GetParam().scene));
   Hand hand_turned(turned, options_of(GetParam().scene));
-  for (int i = 0; i <= kSteps; ++i) {
-    const Pose pose = pose_at(static_cast<double>(i) / kSteps);
+  for (int i = 0; i <= kPathSteps; ++i) {
+    const Pose pose = pose_at(static_cast<double>(i) / kPathSteps);
     hand.step_to({pose});
     hand_turned.step_to({{to_outer(moved, pose.position), moved.rotation * pose.rotation}});
     // Poses 14 m away are rounded to 2e-15 m, 4e-12 of the depth; the issue asks for 1e-6.
@@ -98,8 +98,8 @@ TEST_P(InvariantModelTest, TheMirroredMotionGivesTheMirroredWrench) {
   const SceneDescription scene = make_ball_scene(GetParam().scene);
   Hand hand(scene, options_of(GetParam().scene));
   Hand mirrored(scene, options_of(GetParam().scene));
-  for (int i = 0; i <= kSteps; ++i) {
-    const double t = static_cast<double>(i) / kSteps;
+  for (int i = 0; i <= kPathSteps; ++i) {
+    const double t = static_cast<double>(i) / kPathSteps;
     hand.step_to({pose_at(t)});
     mirrored.step_to({pose_at(t, 1.0, -1.0)});
     const Wrench& wrench = hand.wrench();
@@ -122,8 +122,8 @@ void expect_mirrored(const PartDescription& part, double low) {
   Hand hand(scene);
   Hand mirrored(scene);
   glm::dvec3 largest(0.0);
-  for (int i = 0; i <= kSteps; ++i) {
-    const double t = static_cast<double>(i) / kSteps;
+  for (int i = 0; i <= kPathSteps; ++i) {
+    const double t = static_cast<double>(i) / kPathSteps;
     Pose pose = pose_at(t);
     Pose mirror = pose_at(t, 1.0, -1.0);
     pose.position.y += low - 0.05;
@@ -170,8 +170,8 @@ void expect_scaled(const BallScene& ball, const Scale& scale, double bound) {
   Hand hand(make_ball_scene(ball), options_of(ball));
   Hand scaled(scaled_scene(ball, scale), options_of(ball));
   const double force = scale.modulus * scale.length * scale.length;
-  for (int i = 0; i <= kSteps; ++i) {
-    const double t = static_cast<double>(i) / kSteps;
+  for (int i = 0; i <= kPathSteps; ++i) {
+    const double t = static_cast<double>(i) / kPathSteps;
     hand.step_to({pose_at(t)});
     scaled.step_to({pose_at(t, scale.length)});
     const Wrench& wrench = scaled.wrench();

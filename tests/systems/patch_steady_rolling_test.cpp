@@ -32,8 +32,8 @@ struct SteadyRolling {
   double friction = 0.0;
   double along = 0.0;  // creepages
   double across = 0.0;
-  double spin = 0.0;      // 1/m
-  glm::dvec3 load{0.0};   // N, N, N m: on the body, along, across and about the normal
+  double spin = 0.0;     // 1/m
+  glm::dvec3 load{0.0};  // N, N, N m: on the body, along, across and about the normal
 };
 
 std::vector<SteadyRolling> read_cases() {
@@ -86,10 +86,12 @@ TEST(SteadyRollingReferenceTest, IsNearKalkersCoefficientsAndContact) {
   EXPECT_NEAR(cases[0].load.x / (unit * cases[0].along) / 5.20, 1.0, 0.02);
   EXPECT_NEAR(cases[1].load.y / (unit * cases[1].across) / 3.98, 1.0, 0.02);
   const auto find = [&](double along, double spin) {
-    return std::ranges::find_if(cases, [&](const SteadyRolling& rolling) {
-             return rolling.friction < 1.0 && rolling.along == along && rolling.across == 0.0 &&
-                    rolling.spin == spin;
-           })->load;
+    return std::ranges::find_if(cases,
+                                [&](const SteadyRolling& rolling) {
+                                  return rolling.friction < 1.0 && rolling.along == along &&
+                                         rolling.across == 0.0 && rolling.spin == spin;
+                                })
+        ->load;
   };
   const double force = kBallFriction * kBallForce;
   const double couple = 3.0 * std::numbers::pi / 16.0 * force * radius;
@@ -112,8 +114,8 @@ TEST_P(PatchSteadyRollingTest, IsNearBoundaryElements) {
     if (rolling.friction != kBallFriction) {
       continue;
     }
-    const glm::dvec3 load = 0.5 * (load_of_rolling(scene, rolling, 1.0) -
-                                   load_of_rolling(scene, rolling, -1.0));
+    const glm::dvec3 load =
+        0.5 * (load_of_rolling(scene, rolling, 1.0) - load_of_rolling(scene, rolling, -1.0));
     const double force = kBallFriction * kBallForce;
     const double radius = std::cbrt(0.75 * kBallForce * kBallRadius / (4.0 * kBallShearModulus));
     const double couple = 3.0 * std::numbers::pi / 16.0 * force * radius;

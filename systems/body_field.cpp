@@ -62,6 +62,25 @@ void fill_slots(const Snapshot& snapshot, BodyField& field) {
   }
 }
 
+/// All regions of a tool that its axis misses turn one beam: together no farther than the tool.
+void limit_past_turns(const Snapshot& snapshot, BodyField& field) {
+  for (std::uint32_t tool = 0; tool < snapshot.tools.size(); ++tool) {
+    double sum = 0.0;
+    double most = 0.0;
+    for (const Slot& slot : field.slots) {
+      if (slot.tool == tool) {
+        sum += std::abs(slot.twist.past_turn);
+        most = std::max(most, snapshot.regions.at<RegionMotion>(slot.region).largest_rotation);
+      }
+    }
+    for (Slot& slot : field.slots) {
+      if (slot.tool == tool && sum > most) {
+        slot.twist.past_turn *= most / sum;
+      }
+    }
+  }
+}
+
 void fill_touchers(const Snapshot& snapshot, BodyField& field) {
   const Pose& pose = field.world.bodies.at<Pose>(field.body);
   for (const Slot& slot : field.slots) {
@@ -226,6 +245,7 @@ BodyField body_field(const World& world, const Snapshot& snapshot, const FrameWo
                         field.weights);
   }
   fill_slots(snapshot, field);
+  limit_past_turns(snapshot, field);
   fill_touchers(snapshot, field);
   if (!field.has_weights || field.slots.empty()) {
     return field;

@@ -48,7 +48,8 @@ void find_deepest(const World& world, std::uint32_t body, const Pose& pose,
   }
   const Pose& body_pose = world.bodies.at<Pose>(body);
   const Range parts = world.bodies.at<OwnedRows>(body).parts;
-  const glm::dquat to_part = glm::conjugate(pose.rotation * part.pose.rotation) * body_pose.rotation;
+  const glm::dquat to_part =
+      glm::conjugate(pose.rotation * part.pose.rotation) * body_pose.rotation;
   const glm::dvec3 mean = to_inner(part.pose, place.on_tool);
   Distance distance = signed_distance(world, parts, deepest.on_body);
   for (int step = 0; step < kSteps; ++step) {

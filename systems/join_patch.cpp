@@ -69,6 +69,10 @@ void join_patch(StepContext& context, std::uint32_t ended, std::uint32_t heir) {
   const RegionSupport support = world.regions.at<RegionSupport>(heir);
   join_support(world, ended, heir);
   retell_others(world, heir, support);
+  RegionMotion& motion = world.regions.at<RegionMotion>(heir);
+  const RegionMotion& of_ended = world.regions.at<RegionMotion>(ended);
+  motion.largest_turn = std::max(motion.largest_turn, of_ended.largest_turn);
+  motion.largest_rotation = std::max(motion.largest_rotation, of_ended.largest_rotation);
   PatchState& state = world.regions.at<PatchState>(heir);
   state.moved = 1;
   state.resized = 1;

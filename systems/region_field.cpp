@@ -84,6 +84,7 @@ TurnedDiscs turned_discs(const Snapshot& snapshot, std::uint32_t region) {
   discs.normal = frame.normal;
   discs.radius = field.radius;
   std::copy(std::begin(field.turn), std::end(field.turn), discs.turn.begin());
+  discs.most = snapshot.regions.at<RegionMotion>(region).largest_turn;
   discs.sum_far_terms();
   return discs;
 }
@@ -153,7 +154,7 @@ double TurnedDiscs::angle(const glm::dvec3& point) const {
   const double near = 1.0 - smooth_step(std::sqrt(square) / radius - 3.0);
   const double far = near < 1.0 ? far_angle(height, square) : 0.0;
   if (near == 0.0) {
-    return far;
+    return std::clamp(far, -most, most);
   }
   double sum = 0.0;
   for (std::size_t j = 0; j < kFieldDiscs; ++j) {
@@ -164,7 +165,7 @@ double TurnedDiscs::angle(const glm::dvec3& point) const {
     const double zeta = std::sqrt(std::max(zeta_2, 0.0));
     sum += turn[j] * 2.0 / pi * (0.5 * pi - std::atan(zeta) - zeta / (1.0 + zeta_2));
   }
-  return near * sum + (1.0 - near) * far;
+  return std::clamp(near * sum + (1.0 - near) * far, -most, most);
 }
 
 double PressedSurface::near_share(const glm::dvec3& point) const {
@@ -226,7 +227,8 @@ RegionTwist region_twist(const World& world, const Snapshot& snapshot, std::uint
     return twist;
   }
   twist.through = motion.axis_share;
-  twist.stick_turn = friction.stick_turn;
+  // What the tractions stand for, of which some a slide has left: no more than the tool has turned.
+  twist.stick_turn = std::clamp(friction.stick_turn, -motion.largest_turn, motion.largest_turn);
   twist.stick_radius = std::max(friction.stick_radius, 1e-3 * geometry.radius);
   twist.through_height = height_share(fixed, contact, frame.normal, geometry.radius);
   const double height = body_to_grid(frame, geometry.equivalent_point).z;
@@ -247,9 +249,11 @@ RegionTwist region_twist(const World& world, const Snapshot& snapshot, std::uint
     // keeps turning about one axis soon remembers twice as much (systems/couple_tools.cpp).
     constexpr double kFirstTurn = 0.01;
     const double known = smooth_step(tool.axis_turn / kFirstTurn);
-    twist.past_turn =
-        past * known *
-        turn_past_region(world, identity.body, contact, axis, center, -glm::dot(torque, axis));
+    // A beam that is softer than the contact would turn farther than the tool that turns it.
+    twist.past_turn = past * known *
+                      std::clamp(turn_past_region(world, identity.body, contact, axis, center,
+                                                  -glm::dot(torque, axis)),
+                                 -motion.largest_rotation, motion.largest_rotation);
     twist.past_height = height_share(fixed, contact, axis, geometry.radius);
     twist.point = pivot * motion.axis_share + center * past;
     const glm::dvec3 blended = frame.normal * motion.axis_share + axis * past;

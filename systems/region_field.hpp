@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include <glm/vec3.hpp>
 
@@ -30,8 +31,9 @@ struct TurnedDiscs {
   double radius = 0.0;     // m: of the largest; 0: there are none
   // Far away, at height z and distance R, the angle is turn_3 / R^3 + turn_5 (1 - 5 z^2 / R^2) /
   // R^5.
-  double turn_3 = 0.0;  // rad m^3
-  double turn_5 = 0.0;  // rad m^5
+  double turn_3 = 0.0;                                    // rad m^3
+  double turn_5 = 0.0;                                    // rad m^5
+  double most = std::numeric_limits<double>::infinity();  // rad: nothing turns farther
   std::array<double, kFieldDiscs>
       turn{};  // rad: of the disc of radius (j + 1) / kFieldDiscs * radius
 

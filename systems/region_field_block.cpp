@@ -147,6 +147,13 @@ void near_angles(const TurnedDiscs& discs, const PlacesAboutDiscs& places, std::
   }
 }
 
+TORSION_WIDEST
+void clamp_angles(float most, BlockColumn& angles) {
+  for (float& angle : angles) {
+    angle = std::min(std::max(angle, -most), most);
+  }
+}
+
 }  // namespace
 
 void TurnedDiscs::angles(const BlockVectors& points, std::size_t used, BlockColumn& angles) const {
@@ -165,7 +172,9 @@ void TurnedDiscs::angles(const BlockVectors& points, std::size_t used, BlockColu
       rows[found++] = i;
     }
   }
+  const auto limit = static_cast<float>(most);
   if (found == 0) {
+    clamp_angles(limit, angles);
     return;
   }
   BlockColumn sums;
@@ -177,6 +186,7 @@ void TurnedDiscs::angles(const BlockVectors& points, std::size_t used, BlockColu
     // The far field has no end at the centre.
     angle = share < 1.0F ? share * sums[k] + (1.0F - share) * angle : sums[k];
   }
+  clamp_angles(limit, angles);
 }
 
 void RegionTwist::angles(const BlockVectors& rest, std::size_t used, BlockColumn& angles) const {

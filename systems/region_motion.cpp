@@ -89,6 +89,9 @@ void region_motion(StepContext& context) {
     motion.slide = glm::dvec2(body_to_grid_direction(frame, shift_after(over, pivot)));
     motion.spin = glm::dot(turn_of(over), frame.normal);
     motion.turn += motion.spin;
+    motion.largest_turn = std::max(motion.largest_turn, std::abs(motion.turn));
+    motion.rotation += turn_of(over);
+    motion.largest_rotation = std::max(motion.largest_rotation, glm::length(motion.rotation));
     const bool has_axis = glm::dot(axis.along, axis.along) > 0.0;
     motion.lever =
         lever_to_fixed(world.bodies.at<FixedRegion>(identity.body), geometry.equivalent_point,

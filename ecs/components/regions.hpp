@@ -105,7 +105,10 @@ struct RegionMotion {
   glm::dvec3 axis{0.0};   // body, unit; zero before the tool has turned
   double spin = 0.0;      // rad: turn about the normal in this step
   double turn = 0.0;      // rad: phi, the sum of spin since the region formed
-  double axis_share = 0.0;  // 1: the rotation axis goes through the region; 0: it misses it
+  double largest_turn = 0.0;      // rad: the most that |turn| has been since then
+  glm::dvec3 rotation{0.0};       // rad, body: the tool's over the material since then, summed up
+  double largest_rotation = 0.0;  // rad: the most that its length has been
+  double axis_share = 0.0;        // 1: the rotation axis goes through the region; 0: it misses it
   double lever = 0.0;  // m: l of the paper, distance to the fixed point along the axis, at least a
 };
 
@@ -133,7 +136,7 @@ struct PatchState {
   double deepened = 0.0;       // m: change of the largest depth in the last step
   double along_last = 0.0;     // share of the motion before it by which it went on: -1 to 1
   double depth = 0.0;          // m: the largest depth
-  double residual = 0.0;       // of the pressures and tractions, relative to the mean pressure
+  double residual = 0.0;       // what is left of the equations, as in PatchOutcome
   std::uint32_t sweeps = 0;    // in the last step
   std::uint32_t started = 0;   // 0: no solution yet
   std::uint32_t moved = 0;     // 1: the grid has moved, displacements must be found anew

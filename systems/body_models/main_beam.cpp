@@ -94,7 +94,8 @@ MainBeam main_beam(const World& world, std::uint32_t body, const glm::dvec3& tip
   const TransverseAxes axes = transverse_axes(beam.direction, reference);
   beam.first = axes.first;
   beam.second = axes.second;
-  if (anchors.count > 0) {
+  // Other body models have anchors too, but no sections.
+  if (anchors.count > 0 && world.bodies.at<BodyModels>(body).body == BodyModel::kSkeleton) {
     interpolate_sections(world, anchors, tip, size, beam);
   }
   return beam;

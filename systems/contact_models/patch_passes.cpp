@@ -158,6 +158,26 @@ void find_overlaps(std::size_t count, const double* __restrict depth,
 }
 
 TORSION_WIDEST
+PressureResidual pressure_residual(std::size_t count, const double* __restrict depth,
+                                   const double* __restrict depression,
+                                   const double* __restrict pressure) {
+  Wide lacking{};
+  Wide scale{};
+  const Wide none{};
+  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+    const Wide has = lanes_at(pressure + k).all;
+    const Wide all = lanes_at(depth + k).all;
+    const Wide deep = all > 0.0 ? all : none;
+    const Wide overlap = all - lanes_at(depression + k).all;
+    const Wide positive = overlap > 0.0 ? overlap : none;
+    const Wide left = has > 0.0 ? overlap : positive;
+    lacking += left * left;
+    scale += deep * deep;
+  }
+  return {sum_of(lacking), sum_of(scale)};
+}
+
+TORSION_WIDEST
 double keep_asked(std::size_t count, const double* __restrict residual, double* __restrict asked) {
   Wide sums{};
   const Wide none{};

@@ -51,6 +51,14 @@ double wanted_by_asked(const LocalInverse& inverse, double scale, std::uint32_t 
 void find_overlaps(std::size_t count, const double* depth, const double* depression,
                    const double* pressure, double* residual);
 
+/// Sums of squares over the cells, m^2.
+struct PressureResidual {
+  double lacking = 0.0;  // of the gap or overlap under pressure, and of overlap without
+  double scale = 0.0;    // of the depth
+};
+PressureResidual pressure_residual(std::size_t count, const double* depth, const double* depression,
+                                   const double* pressure);
+
 /// asked = 0 where there is no residual.
 /// @return the sum of the residual's squares under the preconditioner
 double keep_asked(std::size_t count, const double* residual, double* asked);

@@ -1,6 +1,7 @@
 // The pressures of the contact model `patch`.
 
 #include <algorithm>
+#include <cmath>
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -95,7 +96,7 @@ PatchOutcome relax_pressures(const PatchProblem& problem, const PatchColumns& co
     const double stiffness = dot(count, work.step_x.data(), work.moves_x.data());
     if (stiffness <= 0.0) {
       // Nothing is left to do; or the equations have no solution, which is no small residual.
-      outcome.residual = square > 0.0 ? 1.0 : 0.0;
+      outcome.last_change = square > 0.0 ? 1.0 : 0.0;
       break;
     }
     double pull = 0.0;
@@ -106,13 +107,20 @@ PatchOutcome relax_pressures(const PatchProblem& problem, const PatchColumns& co
     before = pull > 0.0 ? 0.0 : square;
     change.largest = std::max(change.largest, pull);
     whole = std::max(whole, change.sum);
-    outcome.residual = change.largest / problem.reference;
+    outcome.last_change = change.largest / problem.reference;
     ++outcome.sweeps;
     if (ends(problem, change, whole)) {
       break;
     }
   }
   return outcome;
+}
+
+double residual_of_pressures(const PatchColumns& columns) {
+  const PressureResidual left =
+      pressure_residual(whole_lanes(columns.pressure.size()), columns.depth.data(),
+                        columns.depression.data(), columns.pressure.data());
+  return left.scale > 0.0 ? std::sqrt(left.lacking / left.scale) : 0.0;
 }
 
 }  // namespace torsion

@@ -47,7 +47,7 @@ PatchOutcome solve_in_turn(const PatchProblem& problem, const PatchColumns& colu
     }
     add_support(problem.support, {work.change_x, work.change_y, {}}, {{}, {}, columns.depression});
   }
-  return {std::max(normal.residual, tangential.residual),
+  return {0.0, std::max(normal.last_change, tangential.last_change),
           std::max(normal.sweeps, tangential.sweeps)};
 }
 
@@ -84,12 +84,14 @@ PatchOutcome solve_patch(const PatchProblem& problem, const PatchColumns& column
   for (std::uint32_t round = 0; round < rounds; ++round) {
     of_round.sweeps = std::min(problem.sweeps, problem.sweeps_of_rounds - outcome.sweeps);
     const PatchOutcome turn = solve_in_turn(of_round, columns, work);
-    outcome.residual = turn.residual;
+    outcome.last_change = turn.last_change;
     outcome.sweeps += turn.sweeps;
     if (turn.sweeps <= 1 || outcome.sweeps >= problem.sweeps_of_rounds) {
       break;
     }
   }
+  outcome.residual =
+      std::max(residual_of_pressures(columns), residual_of_tractions(problem, columns, work));
   return outcome;
 }
 

@@ -68,7 +68,11 @@ struct PatchProblem {
 
 /// What became of it.
 struct PatchOutcome {
-  double residual = 0.0;  // largest change of the last sweep over `reference`
+  // What is left of the equations, as a norm over the cells: of the gap or overlap over that of the
+  // depth, or of what slip does not have the friction that belongs to it (traction_residual) over
+  // that of friction's coefficient times depth, whichever is more.
+  double residual = 0.0;
+  double last_change = 0.0;  // the largest of the last sweep, over `reference`
   std::uint32_t sweeps = 0;
 };
 

@@ -61,4 +61,9 @@ PatchOutcome relax_pressures(const PatchProblem& problem, const PatchColumns& co
 PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& columns,
                              PatchWork& work);
 
+/// PatchOutcome::residual of the one and of the other; 0 where there is no overlap or no friction.
+double residual_of_pressures(const PatchColumns& columns);
+double residual_of_tractions(const PatchProblem& problem, const PatchColumns& columns,
+                             PatchWork& work);
+
 }  // namespace torsion

@@ -1,6 +1,7 @@
 // The tangential tractions of the contact model `patch`.
 
 #include <algorithm>
+#include <cmath>
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -123,13 +124,19 @@ double move(const PatchProblem& problem, const TractionColumns& cells, PatchWork
   return dot(cells.count, cells.step_x, cells.step_y, cells.moves_x, cells.moves_y);
 }
 
+/// Pa/m, of a cell on its own.
+double stiffness_alone(const PatchProblem& problem) {
+  const InfluenceTables& tables = problem.influences;
+  const double softest = std::max(tables.self(InfluenceKind::kXX), tables.self(InfluenceKind::kYY));
+  return 1.0 / (softest * problem.compliance);
+}
+
 }  // namespace
 
 PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& columns,
                              PatchWork& work) {
   const InfluenceTables& tables = problem.influences;
-  const double softest = std::max(tables.self(InfluenceKind::kXX), tables.self(InfluenceKind::kYY));
-  const double alone_stiffness = 1.0 / (softest * problem.compliance);  // Pa/m of a cell on its own
+  const double alone_stiffness = stiffness_alone(problem);
   const TractionColumns cells = columns_of(columns, work);
   bool outside = find_limits(cells);
   std::ranges::fill(work.step_x, 0.0);
@@ -155,7 +162,7 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
     const double stiffness = move(problem, cells, work);
     if (stiffness <= 0.0) {
       // Nothing is left to do; or the equations have no solution, which is no small residual.
-      outcome.residual = sweep.square > 0.0 ? 1.0 : 0.0;
+      outcome.last_change = sweep.square > 0.0 ? 1.0 : 0.0;
       break;
     }
     // A first step brings all tractions into their discs, so it goes all the way. Where something
@@ -168,7 +175,7 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
     const SweepChange change = change_tractions(cells, length);
     before = exact ? sweep.square : 0.0;
     whole = std::max(whole, change.sum);
-    outcome.residual = change.largest / problem.reference;
+    outcome.last_change = change.largest / problem.reference;
     ++outcome.sweeps;
     if (!alone && ends(problem, change, whole)) {
       break;
@@ -176,6 +183,15 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
   }
   keep_what_is_no_slip(cells);
   return outcome;
+}
+
+double residual_of_tractions(const PatchProblem& problem, const PatchColumns& columns,
+                             PatchWork& work) {
+  const TractionColumns cells = columns_of(columns, work);
+  find_limits(cells);
+  const TractionResidual left =
+      traction_residual(cells, columns.depth.data(), stiffness_alone(problem));
+  return left.scale > 0.0 ? std::sqrt(left.lacking / left.scale) : 0.0;
 }
 
 }  // namespace torsion

@@ -61,6 +61,24 @@ glm::dvec2 press_blocks(const Source& source, double force_in_all, RegionField& 
   return total > 0.0 ? center / total : glm::dvec2(0.0);
 }
 
+/// That of the disc with the second moment of the loaded cells about the centre, m: what turns lies
+/// farther out in a blade than in a disc of its area.
+double radius_of_moment(const Source& source, const glm::dvec2& center) {
+  double squares = 0.0;
+  double count = 0.0;
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < source.side; ++j) {
+    for (std::uint32_t i = 0; i < source.side; ++i, ++cell) {
+      if (source.tractions[cell].pressure > 0.0) {
+        const glm::dvec2 arm = cell_center(source.frame, source.side, i, j) - center;
+        squares += glm::dot(arm, arm);
+        count += 1.0;
+      }
+    }
+  }
+  return std::sqrt(2.0 * squares * inverse_of(count));  // of a disc: a^2 / 2
+}
+
 /// The region's couple on the material, about the field's centre, N m.
 double couple_of(const Source& source, const RegionField& field) {
   double couple = 0.0;
@@ -145,6 +163,9 @@ void fill_field(StepContext& context, std::uint32_t region, ContactModel model) 
   field.spread = kSpreadOverBlock * 2.0 * std::min(frame.half_size.x, frame.half_size.y) /
                  static_cast<double>(kFieldBlocks);
   field.center = press_blocks(source, world.regions.at<RegionNormal>(region).force, field);
+  if (model == ContactModel::kPatch) {
+    field.radius = std::max(field.radius, radius_of_moment(source, field.center));
+  }
   if (model == ContactModel::kMdr) {
     const std::uint32_t block = block_of(identity);
     const MdrState& state = world.regions.at<MdrState>(region);

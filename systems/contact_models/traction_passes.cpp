@@ -158,6 +158,40 @@ void keep_slips(std::size_t count, const double* __restrict traction_x,
   }
 }
 
+/// (q - P(q + k s)) / k, by which a cell's traction is not what its slip asks for.
+TORSION_WIDEST
+void find_lacking(std::size_t count, double stiffness, const double* __restrict limits,
+                  const double* __restrict traction_x, const double* __restrict traction_y,
+                  const double* __restrict target_x, const double* __restrict target_y,
+                  const double* __restrict moved_x, const double* __restrict moved_y,
+                  double* __restrict lacking_x, double* __restrict lacking_y) {
+  const double compliance = 1.0 / stiffness;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double trial_x = traction_x[k] + stiffness * (target_x[k] - moved_x[k]);
+    const double trial_y = traction_y[k] + stiffness * (target_y[k] - moved_y[k]);
+    const double square = trial_x * trial_x + trial_y * trial_y;
+    const double limit = limits[k];
+    const double rim = limit / std::sqrt(larger(square, kLeast));
+    const double share = square > limit * limit ? rim : 1.0;
+    lacking_x[k] = compliance * (traction_x[k] - share * trial_x);
+    lacking_y[k] = compliance * (traction_y[k] - share * trial_y);
+  }
+}
+
+/// Sum of (friction's coefficient times depth)^2 where there is pressure.
+TORSION_WIDEST
+double slip_scale(std::size_t count, const double* __restrict pressure,
+                  const double* __restrict friction, const double* __restrict depth) {
+  Wide sums{};
+  const Wide none{};
+  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+    const Wide deep = lanes_at(pressure + k).all > 0.0 ? lanes_at(depth + k).all : none;
+    const Wide slip = lanes_at(friction + k).all * deep;
+    sums += slip * slip;
+  }
+  return sum_of(sums);
+}
+
 }  // namespace
 
 bool find_limits(const TractionColumns& cells) {
@@ -190,6 +224,15 @@ SweepChange change_tractions(const TractionColumns& cells, double length) {
   add_scaled(cells.count, length, cells.moves_x, cells.moved_x);
   add_scaled(cells.count, length, cells.moves_y, cells.moved_y);
   return change;
+}
+
+TractionResidual traction_residual(const TractionColumns& cells, const double* depth,
+                                   double stiffness) {
+  find_lacking(cells.count, stiffness, cells.limit, cells.traction_x, cells.traction_y,
+               cells.target_x, cells.target_y, cells.moved_x, cells.moved_y, cells.residual_x,
+               cells.residual_y);
+  return {dot(cells.count, cells.residual_x, cells.residual_y, cells.residual_x, cells.residual_y),
+          slip_scale(cells.count, cells.pressure, cells.friction, depth)};
 }
 
 void keep_what_is_no_slip(const TractionColumns& cells) {

@@ -59,6 +59,19 @@ TractionStep mix_tractions(const TractionColumns& cells, const Mix& mix);
 /// Goes `length` of the step, which becomes the change.
 SweepChange change_tractions(const TractionColumns& cells, double length);
 
+/// Sums of squares over the cells, m^2.
+struct TractionResidual {
+  double lacking = 0.0;  // of the displacement by which a cell's traction q is not q = P(q + k s)
+  double scale = 0.0;    // of friction's coefficient times depth, where there is pressure
+};
+
+/// What is left of the equations of friction: with s = target - moved, any k > 0 and P onto the
+/// disc of radius mu p they are q = P(q + k s). (Alart and Curnier, Computer Methods in Applied
+/// Mechanics and Engineering 92 (1991) 353)
+/// @param stiffness  k, Pa/m
+TractionResidual traction_residual(const TractionColumns& cells, const double* depth,
+                                   double stiffness);
+
 /// Cells at their limit whose way left to go leads against their friction do not slip: to let them
 /// go there would give work. What is left is yet to be done.
 void keep_what_is_no_slip(const TractionColumns& cells);

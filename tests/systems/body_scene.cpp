@@ -188,6 +188,9 @@ std::uint32_t add_region(World& world, const RegionOnBody& region) {
   world.regions.at<RegionFriction>(row).force = -glm::dvec2(
       glm::dot(region.force_on_body, axes.first), glm::dot(region.force_on_body, axes.second));
   world.regions.at<RegionFriction>(row).couple = -region.couple_on_body;
+  // The tool has turned far enough for anything that is drawn.
+  world.regions.at<RegionMotion>(row).largest_turn = 1.0;
+  world.regions.at<RegionMotion>(row).largest_rotation = 1.0;
   return row;
 }
 

@@ -70,6 +70,8 @@ inline std::uint32_t twisting_region(World& world, double stick_turn, double sti
   world.regions.at<RegionMotion>(region) = RegionMotion{};
   world.regions.at<RegionMotion>(region).axis = kUp;
   world.regions.at<RegionMotion>(region).axis_share = 1.0;
+  world.regions.at<RegionMotion>(region).largest_turn = std::abs(stick_turn);
+  world.regions.at<RegionMotion>(region).largest_rotation = 1.0;
   world.regions.at<RegionFriction>(region).stick_turn = stick_turn;
   world.regions.at<RegionFriction>(region).stick_radius = stick_radius;
   return region;

@@ -1,5 +1,5 @@
-// How far off contact model mdr is where a contact rolls, for it knows no fresh material: what `auto`
-// says of it (choose_models.cpp), against contact model patch, which is within 1 % there
+// How far off contact model mdr is where a contact rolls, for it knows no fresh material: what
+// `auto` says of it (choose_models.cpp), against contact model patch, which is within 1 % there
 // (patch_steady_rolling_test.cpp).
 
 #include <cmath>
@@ -51,9 +51,9 @@ std::vector<glm::dvec3> roll(ContactModel model, const Roll& path) {
 
 TEST(MdrRollingTest, IsAsFarOffAsAutoSays) {
   double farthest = 0.0;  // over what is said
-  for (const Roll& path :
-       {Roll{.slide = 0.5, .turn = 0.5}, Roll{.slide = 0.9}, Roll{.turn = 2.0}, Roll{.creepage = 0.02},
-        Roll{.creepage = 0.05}, Roll{.spin = 2.0}, Roll{.spin = 8.0}, Roll{.spin = 20.0}}) {
+  for (const Roll& path : {Roll{.slide = 0.5, .turn = 0.5}, Roll{.slide = 0.9}, Roll{.turn = 2.0},
+                           Roll{.creepage = 0.02}, Roll{.creepage = 0.05}, Roll{.spin = 2.0},
+                           Roll{.spin = 8.0}, Roll{.spin = 20.0}}) {
     const std::vector<glm::dvec3> found = roll(ContactModel::kMdr, path);
     const std::vector<glm::dvec3> right = roll(ContactModel::kPatch, path);
     for (std::size_t k = 0; k < found.size(); ++k) {

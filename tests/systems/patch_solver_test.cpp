@@ -1,5 +1,6 @@
 #include "systems/contact_models/patch_solver.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -108,7 +109,8 @@ TEST(PatchSolverTest, SolutionMeetsTheLawsOfContactAndOfCoulomb) {
     Grid grid(coupled ? 0.3 : 0.5, coupled);
     grid.move(0.0, 0.0);
     const PatchOutcome outcome = grid.move(8e-5, 0.02);
-    EXPECT_LE(outcome.residual, grid.problem.skip);
+    EXPECT_LE(outcome.last_change, grid.problem.skip);
+    EXPECT_LE(outcome.residual, 1e-6);  // as way_error below
     const PatchColumns columns = grid.view();
     int stuck = 0;
     int slipping = 0;
@@ -144,6 +146,60 @@ TEST(PatchSolverTest, SolutionMeetsTheLawsOfContactAndOfCoulomb) {
     EXPECT_GT(stuck, 20);
     EXPECT_GT(slipping, 20);
   }
+}
+
+// The gap and overlap that is left over the depth, and how far a cell would have to go to have the
+// friction that its slip asks for over friction times depth: found here cell by
+// cell.
+TEST(PatchSolverTest, TheResidualIsWhatIsLeftOfTheEquations) {
+  double before = 1e300;
+  for (const std::uint32_t sweeps : {1U, 2U, 4U, 30U}) {
+    Grid grid(0.5, false);
+    grid.problem.rounds = 1;
+    grid.problem.sweeps = sweeps;
+    const PatchOutcome outcome = grid.move(8e-5, 0.02);
+    const PatchColumns columns = grid.view();
+    const InfluenceTables& tables = grid.problem.influences;
+    const double softest =
+        std::max(tables.self(InfluenceKind::kXX), tables.self(InfluenceKind::kYY));
+    const double stiffness = 1.0 / (softest * grid.problem.compliance);
+    double gaps = 0.0;
+    double lacking = 0.0;
+    double depths = 0.0;
+    double slips = 0.0;
+    for (std::uint32_t cell = 0; cell < kSide * kSide; ++cell) {
+      const double overlap = columns.depth[cell] - columns.depression[cell];
+      const bool loaded = columns.pressure[cell] > 0.0;
+      gaps += loaded || overlap > 0.0 ? overlap * overlap : 0.0;
+      depths += std::pow(std::max(columns.depth[cell], 0.0), 2);
+      slips += loaded ? std::pow(kFriction * columns.depth[cell], 2) : 0.0;
+      const double limit = kFriction * columns.pressure[cell];
+      const double asked_x =
+          columns.traction_x[cell] + stiffness * (columns.target_x[cell] - columns.moved_x[cell]);
+      const double asked_y =
+          columns.traction_y[cell] + stiffness * (columns.target_y[cell] - columns.moved_y[cell]);
+      double x = asked_x;
+      double y = asked_y;
+      if (std::hypot(x, y) > limit) {
+        const double angle = std::atan2(asked_y, asked_x);
+        x = limit * std::cos(angle);
+        y = limit * std::sin(angle);
+      }
+      lacking += std::pow((columns.traction_x[cell] - x) / stiffness, 2) +
+                 std::pow((columns.traction_y[cell] - y) / stiffness, 2);
+    }
+    const double expected = std::sqrt(std::max(gaps / depths, lacking / slips));
+    EXPECT_NEAR(outcome.residual, expected, 1e-9 * expected + 1e-14) << sweeps;
+    EXPECT_LT(outcome.residual, before) << sweeps;
+    before = outcome.residual;
+  }
+}
+
+// Influences with the wrong sign have no solution: to end is no success.
+TEST(PatchSolverTest, ABreakdownHasALargeResidual) {
+  Grid grid(0.5, false);
+  grid.problem.compliance *= -1.0;
+  EXPECT_GT(grid.move(0.0, 0.0).residual, 0.9);
 }
 
 TEST(PatchSolverTest, DisplacementsAreThoseOfTheTractions) {

@@ -1,5 +1,5 @@
 """The scenes: the three experiments of Luo & Xiao (2007) with the parameters of their Table I, each
-also with a body three hundred times softer, and two more."""
+also with a body three hundred times softer, and three more."""
 
 from . import motions, shapes
 from .gltf_writer import Gltf
@@ -7,6 +7,8 @@ from .gltf_writer import Gltf
 RUBBER = {"torsion_youngs_modulus": 3e6, "torsion_poisson_ratio": 0.5, "torsion_density": 1100.0,
           "torsion_static_friction": 0.75, "torsion_dynamic_friction": 0.75}
 SOFT = {**RUBBER, "torsion_youngs_modulus": 1e4}
+# Holds a quarter more than it has once it slips.
+STICKY = {**RUBBER, "torsion_static_friction": 0.9375}
 
 BODY_COLOR = [0.80, 0.42, 0.22, 1.0]
 TOOL_COLOR = [0.25, 0.38, 0.55, 1.0]
@@ -127,6 +129,7 @@ def all_files():
     files = {}
     files |= ball_on_cube("ball_on_cube", RUBBER, 0.0015, 40.0)
     files |= ball_on_cube("ball_on_cube_soft", SOFT, 0.010, 60.0)
+    files |= ball_on_cube("ball_on_cube_sticky", STICKY, 0.0015, 40.0)
     files |= mallet_on_ellipsoid("mallet_on_ellipsoid", RUBBER, 0.0015, 40.0)
     files |= mallet_on_ellipsoid("mallet_on_ellipsoid_soft", SOFT, 0.010, 60.0)
     files |= compass_on_ellipsoid("compass_on_ellipsoid", RUBBER, 0.0012, 20.0)

@@ -31,7 +31,10 @@ struct DrawnRun {
 class TurnSinceTouch {
  public:
   TurnSinceTouch(std::size_t bodies, std::size_t tools)
-      : tools_(tools), most_(bodies, 0.0), since_(bodies * tools), touches_(bodies * tools, false) {}
+      : tools_(tools),
+        most_(bodies, 0.0),
+        since_(bodies * tools),
+        touches_(bodies * tools, false) {}
   void see(const World& world) {
     std::vector<bool> now(touches_.size(), false);
     for (const RegionIdentity& region : world.regions.column<RegionIdentity>()) {
@@ -104,10 +107,14 @@ TEST_P(DrawnTurnTest, NoVertexTurnsFartherThanTheTools) {
 
 std::vector<DrawnRun> drawn_runs() {
   constexpr std::array kScenes = {
-      "scenes/ball_on_cube_soft.gltf",       "scenes/compass_on_ellipsoid_soft.gltf",
-      "scenes/mallet_on_ellipsoid_soft.gltf", "scenes/many_regions.gltf",
-      "scenes/two_bodies.gltf",              "scenes/blender/knob_on_pad.glb",
-      "tests/cases/driver2.glb",             "tests/cases/s2_plate.gltf",
+      "scenes/ball_on_cube_soft.gltf",
+      "scenes/compass_on_ellipsoid_soft.gltf",
+      "scenes/mallet_on_ellipsoid_soft.gltf",
+      "scenes/many_regions.gltf",
+      "scenes/two_bodies.gltf",
+      "scenes/blender/knob_on_pad.glb",
+      "tests/cases/driver2.glb",
+      "tests/cases/s2_plate.gltf",
   };
   std::vector<DrawnRun> runs;
   for (const char* const scene : kScenes) {

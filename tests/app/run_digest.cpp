@@ -15,15 +15,11 @@
 namespace torsion::test {
 namespace {
 
-constexpr const char* kPinnedScenes[] = {"ball_on_cube.gltf",
-                                         "ball_on_cube_soft.gltf",
-                                         "compass_on_ellipsoid.gltf",
-                                         "compass_on_ellipsoid_soft.gltf",
-                                         "many_regions.gltf",
-                                         "mallet_on_ellipsoid.gltf",
-                                         "mallet_on_ellipsoid_soft.gltf",
-                                         "two_bodies.gltf",
-                                         "blender/knob_on_pad.glb"};
+constexpr const char* kPinnedScenes[] = {
+    "ball_on_cube.gltf",         "ball_on_cube_soft.gltf",         "ball_on_cube_sticky.gltf",
+    "compass_on_ellipsoid.gltf", "compass_on_ellipsoid_soft.gltf", "many_regions.gltf",
+    "mallet_on_ellipsoid.gltf",  "mallet_on_ellipsoid_soft.gltf",  "two_bodies.gltf",
+    "blender/knob_on_pad.glb"};
 constexpr double kHeldSeconds = 0.3;  // after half a second's way to where it presses hardest
 
 std::uint64_t digest_of_animation(const PinnedRun& run) {

@@ -42,9 +42,10 @@ std::string test_name(const testing::TestParamInfo<std::string>& scene) {
 TEST(ShippedScenesTest, AllThatTheDesignNamesAreThere) {
   const std::vector<std::string> names = shipped_scenes();
   for (const char* name :
-       {"ball_on_cube.gltf", "ball_on_cube_soft.gltf", "compass_on_ellipsoid.gltf",
-        "compass_on_ellipsoid_soft.gltf", "many_regions.gltf", "mallet_on_ellipsoid.gltf",
-        "mallet_on_ellipsoid_soft.gltf", "two_bodies.gltf", "blender/knob_on_pad.glb"}) {
+       {"ball_on_cube.gltf", "ball_on_cube_soft.gltf", "ball_on_cube_sticky.gltf",
+        "compass_on_ellipsoid.gltf", "compass_on_ellipsoid_soft.gltf", "many_regions.gltf",
+        "mallet_on_ellipsoid.gltf", "mallet_on_ellipsoid_soft.gltf", "two_bodies.gltf",
+        "blender/knob_on_pad.glb"}) {
     EXPECT_TRUE(std::ranges::find(names, name) != names.end()) << name;
   }
 }

@@ -56,9 +56,9 @@ struct FallingCase {
 };
 
 // patch: the bounds of a twist without a fall on the way back (docs/models.md: 62 to 78 cells in
-// contact 1.3 %, 120 to 150 0.75 %), which covers the reference's own 0.1 % as well; mdr: its layers
-// are 32, and each falls at once: a twentieth of a disc's deflection, 5 %, of a quarter of the
-// couple.
+// contact 1.3 %, 120 to 150 0.75 %), which covers the reference's own 0.1 % as well; mdr: its
+// layers are 32, and each falls at once: a twentieth of a disc's deflection, 5 %, of a quarter of
+// the couple.
 class FallingFrictionTest : public testing::TestWithParam<FallingCase> {};
 
 TEST_P(FallingFrictionTest, TheTwistIsNearBoundaryElements) {

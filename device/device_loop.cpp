@@ -254,6 +254,10 @@ Wrench on_sample(void* context, const DeviceSample& sample) {
     give_roles(loop);  // a trouble may have taken it out, or brought it back
   }
   compose(loop);
+  if (leads(loop, row)) {
+    loop.whole.rate = sample.rate;
+  }
+  loop.whole.traits.period = period_of(loop.whole.traits.period, loop.whole.rate);
   turn_by_buttons(loop, sample.time);
   const bool live = loop.whole.state == DeviceState::kLive;
   if (live != was_live) {
@@ -263,7 +267,6 @@ Wrench on_sample(void* context, const DeviceSample& sample) {
   if (leads(loop, row) || live != was_live || !live) {
     loop.whole.number += 1;
     loop.whole.time = sample.time;
-    loop.whole.rate = sample.rate;
     loop.wrench = loop.sink.on_sample(loop.sink.context, loop.whole);
     loop.asked = sample.time;
   }
@@ -292,6 +295,13 @@ void occupy(DeviceLoop& loop, std::size_t row, const UsbIdentity& identity, Devi
 }
 
 }  // namespace
+
+double period_of(double said, double rate) {
+  constexpr double kSlower = 1.05;    // timers are off by less
+  constexpr double kSlowest = 20e-3;  // s: a gap, not a period
+  const double measured = rate > 0.0 ? 1.0 / rate : 0.0;
+  return measured > kSlower * said ? std::min(measured, kSlowest) : said;
+}
 
 std::size_t free_row(const DeviceLoop& loop) {
   const auto* const found = std::ranges::find(loop.rows, false, &DeviceRow::used);

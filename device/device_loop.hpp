@@ -86,4 +86,10 @@ void detach(DeviceLoop& loop, std::size_t row, double now);
 /// s: when the first device wants to be woken; kNever where none does.
 double next_wake(const DeviceLoop& loop);
 
+/// The time between two forces, s, that the coupling and the passivity controller are to reckon
+/// with: as measured, where a device is slower than its driver says.
+/// @param said  s: by the driver
+/// @param rate  Hz: as measured; 0: not yet
+double period_of(double said, double rate);
+
 }  // namespace torsion

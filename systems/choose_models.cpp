@@ -202,7 +202,8 @@ bool slides_while_turning(const World& world, std::uint32_t body, const Touch& b
 
 std::string percent(double share) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.2g %%", 100.0 * share);
+  // Two digits; %g would write a hundred with an exponent.
+  std::snprintf(text, sizeof text, share < 0.995 ? "%.2g %%" : "%.0f %%", 100.0 * share);
   return text;
 }
 

@@ -403,8 +403,8 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
     return done.error();
   }
   simulation.scratch->reserve(world);
-  simulation.schedule =
-      Schedule<StepContext>(step_systems(), StepContext{world, {}, *simulation.scratch});
+  simulation.schedule = Schedule<StepContext>(step_systems(1.0 / options.rate),
+                                              StepContext{world, {}, *simulation.scratch});
   return simulation;
 }
 

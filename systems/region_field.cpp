@@ -75,10 +75,14 @@ Profiles half_space_profiles(double r) {
   return {((2.0 - r * r) * angle + std::sqrt(r * r - 1.0)) / pi, 2.0 / pi * angle};
 }
 
+bool is_half_space(ContactModel model) {
+  return model == ContactModel::kMdr || model == ContactModel::kPatch;
+}
+
 /// The sums of a half-space model in a region; radius 0 where it has none.
 TurnedDiscs turned_discs(const Snapshot& snapshot, std::uint32_t region) {
   const RegionField& field = snapshot.regions.at<RegionField>(region);
-  const RegionFrame& frame = snapshot.regions.at<RegionFrame>(region);
+  const RegionFrame& frame = field.frame;
   TurnedDiscs discs;
   discs.center = grid_to_body(frame, {field.center, 0.0});
   discs.normal = frame.normal;
@@ -94,7 +98,7 @@ TurnedDiscs turned_discs(const Snapshot& snapshot, std::uint32_t region) {
 PressedSurface pressed_surface(const World& world, const Snapshot& snapshot, std::uint32_t region,
                                double share) {
   const RegionField& field = snapshot.regions.at<RegionField>(region);
-  const RegionFrame& frame = snapshot.regions.at<RegionFrame>(region);
+  const RegionFrame& frame = field.frame;
   const Elasticity& elasticity =
       world.bodies.at<Elasticity>(snapshot.regions.at<RegionIdentity>(region).body);
   PressedSurface pressed;
@@ -102,8 +106,9 @@ PressedSurface pressed_surface(const World& world, const Snapshot& snapshot, std
   if (field.radius <= 0.0 || normal_force <= 0.0) {
     return pressed;
   }
-  const glm::dvec3 drag =
-      tangent_to_body(frame, snapshot.regions.at<RegionFriction>(region).force) / -normal_force;
+  const glm::dvec3 drag = tangent_to_body(snapshot.regions.at<RegionFrame>(region),
+                                          snapshot.regions.at<RegionFriction>(region).force) /
+                          -normal_force;
   const double turn = glm::dot(snapshot.regions.at<RegionCarrier>(region).rotation, frame.normal);
   const double sine = std::sin(turn);
   const double cosine = std::cos(turn);
@@ -223,6 +228,12 @@ RegionTwist region_twist(const World& world, const Snapshot& snapshot, std::uint
   twist.discs = turned_discs(snapshot, region);
   if (twist.discs.radius > 0.0) {
     twist.axis.point = glm::vec4(glm::vec3(twist.discs.center), 0.0F);
+    twist.axis.direction = glm::vec4(glm::vec3(twist.discs.normal), 0.0F);
+    return twist;
+  }
+  if (is_half_space(world.bodies.at<BodyModels>(identity.body).contact)) {
+    // So new that there is no field yet: it has hardly turned anything.
+    twist.axis.point = glm::vec4(glm::vec3(contact), 0.0F);
     twist.axis.direction = glm::vec4(glm::vec3(frame.normal), 0.0F);
     return twist;
   }

@@ -1,6 +1,7 @@
 #include "systems/step.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "systems/body_models/anchor_motions.hpp"
 #include "systems/body_models/compliance.hpp"
@@ -54,8 +55,6 @@ bool any_friction(const StepContext& context) {
          });
 }
 
-constexpr std::uint32_t kFieldPeriod = 8;  // steps; frames are farther apart
-
 bool any_half_space(const StepContext& context) {
   return any_contact_model<ContactModel::kPatch>(context) ||
          any_contact_model<ContactModel::kMdr>(context);
@@ -71,7 +70,10 @@ bool any_paper_friction(const StepContext& context) {
 
 }  // namespace
 
-std::vector<System<StepContext>> step_systems() {
+std::vector<System<StepContext>> step_systems(double dt) {
+  constexpr double kFieldInterval = 8e-3;  // s; frames are farther apart
+  const auto field_period =
+      static_cast<std::uint32_t>(std::clamp(std::round(kFieldInterval / dt), 1.0, 1e6));
   // The paper's Fig. 4, top to bottom.
   return {
       {"couple_tools", "takes the tools' poses and their motion", "a tool", nullptr, couple_tools},
@@ -100,15 +102,15 @@ std::vector<System<StepContext>> step_systems() {
       {"paper_friction_forces", "friction and contact torque, equations (2)-(9), (14)",
        "a body with contact model paper and friction", any_paper_friction, paper_friction_forces},
       {"region_fields", "what a region does to the surface around it, for those who draw it",
-       "a body with contact model mdr or patch", any_half_space, region_fields, kFieldPeriod},
+       "a body with contact model mdr or patch", any_half_space, region_fields, field_period},
       {"region_wrenches", "force and torque of every region, equation (1)", "a tool and a body",
        any_tool_and_body, region_wrenches},
       {"skeleton", "beam skeleton: displacement of the anchors, for those who draw it",
-       "a body with body model skeleton", any_skeleton, skeleton, kFieldPeriod},
+       "a body with body model skeleton", any_skeleton, skeleton, field_period},
       {"compliance", "the whole body's deformation under its regions",
        "a body with body model compliance", any_compliance, compliance},
       {"anchor_motions", "the whole body's deformation at its anchors, for those who draw it",
-       "a body with body model compliance", any_compliance, anchor_motions, kFieldPeriod},
+       "a body with body model compliance", any_compliance, anchor_motions, field_period},
       {"sum_wrenches", "the wrench on every tool, faults, work", "a tool", nullptr, sum_wrenches},
   };
 }

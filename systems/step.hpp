@@ -22,8 +22,10 @@ struct StepContext {
   Scratch& scratch;
 };
 
-/// The systems of one step in the order of the paper's Fig. 4.
-std::vector<System<StepContext>> step_systems();
+/// The systems of one step in the order of the paper's Fig. 4. What is made for those who draw is
+/// made every 8 ms, or in every step where those are longer.
+/// @param dt  s
+std::vector<System<StepContext>> step_systems(double dt);
 
 /// Models of one body and why these, in words that follow "contact model patch (".
 struct ModelChoice {

@@ -195,6 +195,7 @@ struct PressedBlock {
 /// bonded discs turned by small angles, and forces. Their exact fields add up to that of the
 /// region. Written by: region_fields; all zero for contact model `paper`.
 struct RegionField {
+  RegionFrame frame;              // of the step in which it was made: what "grid" means here
   glm::dvec2 center{0.0};         // m, grid: of the discs
   double radius = 0.0;            // m: of the largest disc; 0: there is no such field
   double spread = 0.0;            // m: width over which the force of a block is spread

@@ -91,7 +91,7 @@ struct NewtonStep {
 
 /// What the other regions are to have to do with such a region's motion: Newton's change du is that
 /// by them less what its own load gives way by it, (I + C K) du, less what the others' answer to
-/// its own change will be (RegionReaction).
+/// its own change will be (RegionReaction), and less what its own load's place does (add_sway).
 /// @param scaled  y of fill_equations
 void move_by_others(const CompliantBody& body, std::size_t i, const NewtonStep& newton,
                     const Vector6& scaled) {

@@ -156,6 +156,7 @@ void fill_field(StepContext& context, std::uint32_t region, ContactModel model) 
   const Source source{frame, side, cell.x * cell.y, world.cells.rows<CellTraction>(identity.cells)};
   RegionField& field = world.regions.at<RegionField>(region);
   field = RegionField{};
+  field.frame = frame;
   field.radius = world.regions.at<RegionGeometry>(region).radius;
   if (field.radius <= 0.0) {
     return;

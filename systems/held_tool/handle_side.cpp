@@ -19,7 +19,6 @@ constexpr double kLongestPeriod = 20e-3;  // s: a gap, not a period
 void begin_epoch(HandleSide& side, const DeviceSample& sample, const Pose& tool) {
   side.epoch = sample.epoch;
   side.coupling = choose_coupling(sample.traits).coupling;
-  side.passivity = choose_passivity(sample.traits);
   side.books = {};
   side.guard = {};
   side.limits.largest_force = side.coupling.largest_force;
@@ -58,6 +57,7 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
   if (begins) {
     begin_epoch(side, sample, tool);
   }
+  side.passivity = choose_passivity(sample.traits);  // the rate is measured all the time
   const bool waits = live && side.guard.state == GuardState::kWaiting;
   const double period =
       waits ? kUsualPeriod : std::clamp(now - side.last_time, 1e-5, kLongestPeriod);

@@ -9,6 +9,10 @@ namespace torsion {
 namespace {
 
 constexpr double kStill = 1e-9;  // m or rad a sample: slower, damping would divide by nothing
+// Where a device's are not known: a small handle alone, 50 g on 20 mm. Mechanism and fingers only
+// add to it, and the more there is, the more a late damper may do.
+constexpr double kLightMass = 0.05;     // kg
+constexpr double kLightInertia = 1e-5;  // kg m^2
 
 /// @param held  force on the hand over the interval that has passed
 /// @param way   of the handle over it
@@ -38,9 +42,10 @@ PassivityLimits choose_passivity(const DeviceTraits& device) {
     return count > 0.0 ? std::min(most, kShareOfForce * largest * device.period / count) : most;
   };
   PassivityLimits limits;
-  limits.largest_damping = damping(device.mass, device.largest_force, device.encoder_step);
-  limits.largest_turn_damping =
-      damping(device.inertia, device.largest_torque, device.encoder_turn_step);
+  limits.largest_damping = damping(device.mass > 0.0 ? device.mass : kLightMass,
+                                   device.largest_force, device.encoder_step);
+  limits.largest_turn_damping = damping(device.inertia > 0.0 ? device.inertia : kLightInertia,
+                                        device.largest_torque, device.encoder_turn_step);
   limits.delay = static_cast<std::uint32_t>(
       std::clamp(std::round(device.delay / device.period), 0.0, 1.0 * kLongestDelay));
   return limits;

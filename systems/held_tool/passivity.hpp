@@ -38,6 +38,7 @@ struct PassivityLimits {
 /// What the controller may do on a device. A damper that is sampled and late is itself passive only
 /// up to about m / (T + 2 t_d), half of which is taken; and one count of the encoders, which looks
 /// like a speed of a count in a sample, must not make more than a fiftieth of the device's force.
+/// A device whose mass or inertia is not known is taken for a light one.
 PassivityLimits choose_passivity(const DeviceTraits& device);
 
 /// One sample.

@@ -1,5 +1,5 @@
-// The shipped scene whose friction falls where it slips, against boundary elements with the same law:
-// tests/reference/boundary_elements/falling_friction.cpp.
+// The shipped scene whose friction falls where it slips, against boundary elements with the same
+// law: tests/reference/boundary_elements/falling_friction.cpp.
 
 #include <algorithm>
 #include <cmath>
@@ -51,9 +51,9 @@ double couple_at(const std::vector<CurvePoint>& curve, double turn) {
   return before->couple + share * (after->couple - before->couple);
 }
 
-// Until the twist turns back. The ball is pressed a fifth of its radius wide, where a sphere's couple
-// is 0.6 % off a paraboloid's (1 + 2 / 45 (a / R)^2 of the largest, and 0.3 % of its stiffness);
-// cells and steps as in falling_friction_test.cpp.
+// Until the twist turns back. The ball is pressed a fifth of its radius wide, where a sphere's
+// couple is 0.6 % off a paraboloid's (1 + 2 / 45 (a / R)^2 of the largest, and 0.3 % of its
+// stiffness); cells and steps as in falling_friction_test.cpp.
 TEST(StickySceneTest, ItsFirstTwistIsNearBoundaryElements) {
   PrepareOptions options;
   options.contact_model = ContactModel::kPatch;

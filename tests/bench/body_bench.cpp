@@ -135,6 +135,7 @@ void surface_field_of_half_space(benchmark::State& state) {
   }
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
     RegionField& field = world.regions.at<RegionField>(region);
+    field.frame = world.regions.at<RegionFrame>(region);
     field.radius = world.regions.at<RegionGeometry>(region).radius;
     field.spread = 0.1 * field.radius;
     std::ranges::fill(field.turn, 0.01);

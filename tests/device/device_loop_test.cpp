@@ -57,6 +57,21 @@ TEST(DeviceLoopTest, AFalconMovesAndASpaceMouseTurns) {
   EXPECT_GT(client.last.pose.rotation.x, 0.0);
 }
 
+// Stability asks for the period that there is, not for the one that a driver means to keep.
+TEST(DeviceLoopTest, ThePeriodIsTheMeasuredOneWhereThatIsLonger) {
+  EXPECT_EQ(period_of(1e-3, 0.0), 1e-3);
+  EXPECT_EQ(period_of(1e-3, 1250.0), 1e-3);
+  EXPECT_EQ(period_of(1e-3, 990.0), 1e-3);
+  EXPECT_EQ(period_of(1e-3, 125.0), 8e-3);
+  EXPECT_EQ(period_of(1e-3, 1.0), 20e-3);
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  bus.plug(EmulatedFalcon{});
+  bus.run(kStartTime);
+  ASSERT_EQ(client.last.state, DeviceState::kLive);
+  EXPECT_EQ(client.last.traits.period, period_of(1e-3, client.last.rate));
+}
+
 TEST(DeviceLoopTest, TwoButtonsOfAFalconTurnTheTool) {
   DeviceClient client;
   LoopOptions options;

@@ -133,7 +133,7 @@ TEST(ChooseModelsTest, ARollingContactIsPatchs) {
   EXPECT_EQ(chosen(contact, 0.05).contact_why,
             "auto: one round contact that rolls, error of mdr 9.8 %, tolerance 5 %");
   contact.rolled = 50.0;
-  EXPECT_NE(chosen(contact, 0.05).contact_why.find("error of mdr 1e+02 %"), std::string::npos);
+  EXPECT_NE(chosen(contact, 0.05).contact_why.find("error of mdr 100 %"), std::string::npos);
 }
 
 TEST(ChooseModelsTest, ALongContactGetsMoreCells) {

@@ -108,6 +108,7 @@ class LargeTurnTest : public ::testing::Test {
     friction.couple = -couple;
     RegionField& field = world.regions.at<RegionField>(0);
     field = RegionField{};
+    field.frame = world.regions.at<RegionFrame>(0);
     field.radius = kContact;  // a bonded disc: Reissner and Sagoci, 1944
     field.turn[kFieldDiscs - 1] =
         couple / (16.0 / 3.0 * kSoftShearModulus * std::pow(kContact, 3.0));

@@ -62,7 +62,10 @@ std::vector<std::string> notes_of(const ListedDevice& device) {
           "together, or with an ODrive knob");
       break;
     case DeviceKind::kWoodenHaptics:
-      notes.emplace_back("measures six axes, displays force; torque is not displayed");
+      notes.emplace_back("measures and displays translation; torque is not displayed");
+      notes.emplace_back(
+          "has the id of every mbed board that nobody gave another: --device usb leaves it alone, "
+          "--device usb:woodenhaptics takes it");
       break;
     case DeviceKind::kOdrive:
       notes.emplace_back("measures and displays torque about the twist axis");

@@ -35,6 +35,7 @@ bool counts(const DeviceRow& row) {
     case DeviceTrouble::kHeldElsewhere:
     case DeviceTrouble::kNoFirmware:
     case DeviceTrouble::kBadFirmware:
+    case DeviceTrouble::kWrongFirmware:
     case DeviceTrouble::kNotUnderstood:
       return false;
     default:
@@ -75,14 +76,12 @@ void give_roles(DeviceLoop& loop) {
     DeviceRow* const wooden = first_of(loop, DeviceKind::kWoodenHaptics);
     DeviceRow* const mouse = first_of(loop, DeviceKind::kSpaceMouse);
     DeviceRow* const knob = first_of(loop, DeviceKind::kOdrive);
-    DeviceRow* const turner = wooden != nullptr ? wooden : mouse;
-    if (falcon != nullptr) {
-      falcon->role = DeviceRole::kTranslation;
-      if (turner != nullptr) {
-        turner->role = DeviceRole::kRotation;
-      }
-    } else if (turner != nullptr) {
-      turner->role = DeviceRole::kTranslationAndRotation;
+    DeviceRow* const mover = falcon != nullptr ? falcon : wooden;
+    if (mover != nullptr) {
+      mover->role = DeviceRole::kTranslation;
+    }
+    if (mouse != nullptr) {
+      mouse->role = mover != nullptr ? DeviceRole::kRotation : DeviceRole::kTranslationAndRotation;
     }
     if (knob != nullptr) {
       knob->role = DeviceRole::kTwist;
@@ -217,8 +216,14 @@ bool leads(const DeviceLoop& loop, std::size_t row) {
   return leader == loop.rows.end() || static_cast<std::size_t>(leader - loop.rows.begin()) == row;
 }
 
-/// A device's part of the wrench. A knob's is its torque about y.
-Wrench share_of(const DeviceLoop& loop, const DeviceRow& row) {
+/// No longer than `largest`, in the same direction.
+glm::dvec3 limited(const glm::dvec3& vector, double largest) {
+  const double length = glm::length(vector);
+  return length > largest ? vector * (largest / length) : vector;
+}
+
+/// A device's part of the wrench, before its own limits. A knob's is its torque about y.
+Wrench part_of(const DeviceLoop& loop, const DeviceRow& row) {
   const DeviceSample& whole = loop.whole;
   switch (row.role) {
     case DeviceRole::kTranslation:
@@ -242,6 +247,13 @@ Wrench share_of(const DeviceLoop& loop, const DeviceRow& row) {
     default:
       return {};
   }
+}
+
+/// Likewise, with no more than the device itself can do: several together can do more than one.
+Wrench share_of(const DeviceLoop& loop, const DeviceRow& row) {
+  const DeviceTraits& traits = row.report.sample.traits;
+  const Wrench part = part_of(loop, row);
+  return {limited(part.force, traits.largest_force), limited(part.torque, traits.largest_torque)};
 }
 
 /// Where all drivers' samples arrive.

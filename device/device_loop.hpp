@@ -32,7 +32,7 @@ struct TurnButtons {
 struct LoopOptions {
   DriverOptions drivers;
   TurnButtons turn_buttons;
-  std::uint32_t kinds = ~0U;             // bits 1 << DeviceKind: which may be used
+  std::uint32_t kinds = kUsualDevices;   // bits 1 << DeviceKind: which may be used
   glm::dvec3 twist_axis{0.0, 1.0, 0.0};  // world, at rest: what a knob turns about
   double spacing = 0.2;                  // m: between devices that carry a tool together
 };

@@ -16,9 +16,13 @@ std::string trouble_text(const DeviceSample& sample) {
       return "it has no firmware; give the file of its maker with --falcon-firmware FILE";
     case DeviceTrouble::kBadFirmware:
       return "it did not take the firmware file; is it the right one? Unplug it and plug it in";
+    case DeviceTrouble::kWrongFirmware:
+      return "its firmware is another version than Torsion speaks to (ODrive: 0.5.4 to 0.5.6); "
+             "update it with its maker's tool, then unplug it and plug it in";
     case DeviceTrouble::kNotHomed:
-      return "it does not know its zero yet; move it through its whole range (a WoodenHaptics: let "
-             "go of its calibration button)";
+      return "it does not know its zero yet; move it through its whole range (a WoodenHaptics: "
+             "hold its first two bodies upright and forward, the third level, and press and let go "
+             "of its calibration button)";
     case DeviceTrouble::kSilent:
       return "it does not answer; is its power on?";
     case DeviceTrouble::kNotUnderstood:

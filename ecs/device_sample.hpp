@@ -29,6 +29,7 @@ enum class DeviceTrouble : std::uint8_t {
   kHeldElsewhere,  // another program has it
   kNoFirmware,     // it needs a file that the user must give
   kBadFirmware,    // it did not take that file
+  kWrongFirmware,  // it has another version than those that are understood
   kNotHomed,       // the user must move it through its range
   kSilent,         // it does not answer
   kNotUnderstood,  // it answers something else

@@ -42,7 +42,7 @@ Result<std::vector<std::uint8_t>> load_firmware(const std::filesystem::path& cho
 
 Result<std::uint32_t> kinds_of(const std::string& what) {
   if (what == kUsb) {
-    return ~std::uint32_t{0};
+    return kUsualDevices;
   }
   const Error wrong{fmt::format(
       "--device {}: expected usb, or usb: and some of spacemouse, falcon, woodenhaptics, odrive "

@@ -15,7 +15,6 @@ struct Ids {
 constexpr Ids kFalconIds{0x0403, 0xCB48};
 constexpr Ids kOdriveIds{0x1209, 0x0D32};
 constexpr Ids kWoodenMbed{0x1234, 0x0006};
-constexpr Ids kWoodenTeensy{0x16C0, 0x0486};
 constexpr std::uint16_t k3Dconnexion = 0x256F;
 constexpr std::uint8_t kHid = 3;
 
@@ -61,7 +60,7 @@ std::optional<DeviceKind> kind_of(const UsbIdentity& identity) {
   if (ids == kOdriveIds) {
     return DeviceKind::kOdrive;
   }
-  if (ids == kWoodenMbed || ids == kWoodenTeensy) {
+  if (ids == kWoodenMbed) {
     return DeviceKind::kWoodenHaptics;
   }
   if (is_not_a_space_mouse(ids.vendor, ids.product)) {

@@ -15,6 +15,11 @@ enum class DeviceKind : std::uint8_t { kSpaceMouse, kFalcon, kWoodenHaptics, kOd
 
 inline constexpr std::uint32_t kDeviceKinds = 4;
 
+/// Bits 1 << DeviceKind: those whose ids are their own. A WoodenHaptics has that of every mbed
+/// board that nobody gave another, so it has to be asked for by name.
+inline constexpr std::uint32_t kUsualDevices =
+    ~(1U << static_cast<std::uint32_t>(DeviceKind::kWoodenHaptics));
+
 /// For a person, and as a word in options.
 std::string_view name_of(DeviceKind kind);
 std::string_view word_of(DeviceKind kind);

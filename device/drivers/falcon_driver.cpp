@@ -206,7 +206,7 @@ void begin(FalconDriver& driver, DriverCall& call) {
   sample.actuated = kTranslationAxes;
   sample.traits = {};
   sample.traits.encoder_step = 64e-6;  // m: 0.0364 degrees of a joint at 0.1 m
-  sample.traits.largest_force = 9.0;   // N
+  sample.traits.largest_force = 8.0;   // N, as CHAI3D has it
   if (call.identity.interfaces.empty()) {
     give_up(driver, call, DeviceTrouble::kNotUnderstood);
     return;
@@ -256,15 +256,15 @@ void wake(FalconDriver& driver, DriverCall& call) {
       }
       break;
     case FalconPhase::kGreeting:
-    case FalconPhase::kReady:
       if (driver.tries < kGreetings) {
-        say(driver, call, driver.phase == FalconPhase::kGreeting ? kFalconGreeting : kFalconReady);
+        say(driver, call, kFalconGreeting);
       } else {
         load_firmware(driver, call);
       }
       break;
-    case FalconPhase::kWriting:
-      load_firmware(driver, call);  // it did not send the piece back
+    case FalconPhase::kReady:    // said once only: a second one would be the firmware's first byte
+    case FalconPhase::kWriting:  // it did not send the piece back
+      load_firmware(driver, call);
       break;
     case FalconPhase::kNormalSetUp:
     case FalconPhase::kLoadingSetUp:

@@ -87,7 +87,25 @@ void take_status(OdriveDriver& driver, DriverCall& call, const OdriveStatus& sta
   }
 }
 
+/// Its firmware's version, before a line that another one might read otherwise.
+void take_version(OdriveDriver& driver, DriverCall& call, Bytes bytes) {
+  const auto version = take_odrive_version(driver.stream, text_of(bytes));
+  if (version && is_understood(*version)) {
+    driver.stream = {};
+    driver.phase = OdrivePhase::kSettingUp;
+    driver.heard_at = call.now;
+    write(driver, call, kSetUp[driver.at++]);
+    call.report.wake_at = call.now + kLost;
+  } else if (version) {
+    give_up(driver, call, DeviceTrouble::kWrongFirmware);
+  }
+}
+
 void take_bytes(OdriveDriver& driver, DriverCall& call, Bytes bytes) {
+  if (driver.phase == OdrivePhase::kAskingVersion) {
+    take_version(driver, call, bytes);
+    return;
+  }
   const auto feedback = take_odrive_bytes(driver.stream, text_of(bytes));
   const auto status = std::exchange(driver.stream.status, std::nullopt);
   if (status && driver.phase == OdrivePhase::kLive) {
@@ -109,10 +127,10 @@ void take_claim(OdriveDriver& driver, DriverCall& call, const UsbEvent& event) {
     driver.phase = OdrivePhase::kClaimingData;
     claim_usb(call.requests, driver.data);
   } else {
-    driver.phase = OdrivePhase::kSettingUp;
+    driver.phase = OdrivePhase::kAskingVersion;
     driver.heard_at = call.now;
     keep_reading(driver.reads, call);
-    write(driver, call, kSetUp[driver.at++]);
+    write(driver, call, kOdriveVersionQuestion);
     call.report.wake_at = call.now + kLost;
   }
 }

@@ -8,7 +8,14 @@
 
 namespace torsion {
 
-enum class OdrivePhase : std::uint8_t { kClaiming, kClaimingData, kSettingUp, kLive, kNone };
+enum class OdrivePhase : std::uint8_t {
+  kClaiming,
+  kClaimingData,
+  kAskingVersion,
+  kSettingUp,
+  kLive,
+  kNone
+};
 
 struct OdriveDriver {
   OdrivePhase phase = OdrivePhase::kClaiming;

@@ -58,6 +58,7 @@ void start_reading(SpaceMouseDriver& driver, DriverCall& call, const SpaceMouseL
   const UsbEndpoint* endpoint =
       find_endpoint(interface_of(driver, call), UsbEndpointKind::kInterrupt, kUsbIn);
   driver.layout = layout;
+  driver.layout.oldest_axes = has_oldest_axes(call.identity.vendor, call.identity.product);
   driver.state = {};
   driver.phase = SpaceMousePhase::kReading;
   driver.reads.endpoint = endpoint->address;
@@ -155,7 +156,7 @@ void take(SpaceMouseDriver& driver, DriverCall& call, const UsbEvent& event) {
     case ReadOutcome::kData:
       if (take_space_mouse_report(driver.layout, event.bytes, driver.state)) {
         driver.reported_at = call.now;
-      } else {
+      } else if (!driver.layout.numbered || !is_other_report(event.bytes)) {
         call.report.counts.garbage += 1;
       }
       keep_reading(driver.reads, call);

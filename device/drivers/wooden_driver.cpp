@@ -2,8 +2,12 @@
 
 #include <algorithm>
 
+#include <glm/gtc/quaternion.hpp>
+
 namespace torsion {
 namespace {
+
+constexpr double kLetGoOfButton = 0.1;  // s: then it is pressed no longer
 
 const UsbInterface* interface_of(const UsbIdentity& identity) {
   const auto found = std::ranges::find_if(identity.interfaces, [](const UsbInterface& interface) {
@@ -13,18 +17,21 @@ const UsbInterface* interface_of(const UsbIdentity& identity) {
   return found != identity.interfaces.end() ? &*found : nullptr;
 }
 
+/// Its encoders count from where it was switched on, wherever that was: it has no force before
+/// somebody has held it at home and pressed its button.
 void take_packet(WoodenDriver& driver, DriverCall& call, const WoodenInput& input) {
   heard(driver, call);
-  const bool button = input.info == 1;
-  if (button && !driver.calibrating) {
-    // It is held where its encoders are to be zero: they count from there, without force.
-    driver.calibrating = true;
+  if (input.info == 1) {
+    // The firmware says so until it is told to set its encoders; one packet may have been lost.
+    driver.calibrated = true;
+    driver.pressed_at = call.now;
+    driver.phase = WoodenPhase::kAsking;
     set_state(call, DeviceState::kStarting, DeviceTrouble::kNotHomed);
-    write_through(driver.writes, call, encode_wooden_calibration({}));
+    write_through(driver.writes, call, encode_wooden_calibration(driver.geometry.home));
     return;
   }
-  driver.calibrating = button;
-  if (button) {
+  if (!driver.calibrated || call.now - driver.pressed_at < kLetGoOfButton) {
+    set_state(call, DeviceState::kStarting, DeviceTrouble::kNotHomed);
     let_go(driver, call);
     return;
   }
@@ -32,7 +39,7 @@ void take_packet(WoodenDriver& driver, DriverCall& call, const WoodenInput& inpu
   set_state(call, DeviceState::kLive);
   const glm::dvec3 angles = wooden_body_angles(driver.geometry, input);
   const Pose pose{wooden_to_world(wooden_position(driver.geometry, angles)),
-                  wooden_to_world(wooden_rotation(driver.geometry, input))};
+                  glm::dquat(1.0, 0.0, 0.0, 0.0)};
   const Wrench wrench = publish_pose(call, pose, 0);
   write_through(driver.writes, call,
                 encode_wooden_currents(
@@ -49,10 +56,6 @@ glm::dvec3 world_to_wooden(const glm::dvec3& world) {
   return {world.z, world.x, world.y};
 }
 
-glm::dquat wooden_to_world(const glm::dquat& base) {
-  return {base.w, base.y, base.z, base.x};
-}
-
 void let_go(WoodenDriver& driver, DriverCall& call) {
   let_go_through(driver.writes, call, encode_wooden_currents({}));
 }
@@ -64,15 +67,16 @@ void again_later(WoodenDriver& driver, DriverCall& call, DeviceTrouble trouble) 
 }
 
 void begin(WoodenDriver& driver, DriverCall& call) {
+  const bool calibrated = driver.calibrated;
   driver = fresh(driver);
+  driver.calibrated = calibrated;
   DeviceSample& sample = call.report.sample;
-  sample.sensed = kTranslationAxes | kRotationAxes;
+  sample.sensed = kTranslationAxes;
   sample.actuated = kTranslationAxes;
   sample.traits = {};
-  sample.traits.encoder_step = 50e-6;      // m: a count of a motor at the end of the arm
-  sample.traits.largest_force = 5.0;       // N, as its makers say of the build of 2015
-  sample.traits.largest_stiffness = 1e3;   // N/m, likewise
-  sample.traits.encoder_turn_step = 6e-3;  // rad: a count of the wrist
+  sample.traits.encoder_step = 50e-6;     // m: a count of a motor at the end of the arm
+  sample.traits.largest_force = 5.0;      // N, as its makers say of the build of 2015
+  sample.traits.largest_stiffness = 1e3;  // N/m, likewise
   const UsbInterface* interface = interface_of(call.identity);
   if (interface == nullptr) {
     give_up(driver, call, DeviceTrouble::kNotUnderstood);

@@ -14,7 +14,8 @@ struct WoodenDriver {
   WoodenPhase phase = WoodenPhase::kClaiming;
   WoodenGeometry geometry = wooden_haptics_2015();
   WriteGate writes;
-  bool calibrating = false;  // its button is down, and the encoders have been set
+  bool calibrated = false;  // since it was plugged in; without force before
+  double pressed_at = 0.0;  // s: when it last said that its button was pressed
   ReadQueue reads;
   double heard_at = 0.0;  // s
 };
@@ -29,6 +30,5 @@ void again_later(WoodenDriver& driver, DriverCall& call, DeviceTrouble trouble);
 /// The base's axes (x to the user, y to the right, z up) to the world's.
 glm::dvec3 wooden_to_world(const glm::dvec3& base);
 glm::dvec3 world_to_wooden(const glm::dvec3& world);
-glm::dquat wooden_to_world(const glm::dquat& base);
 
 }  // namespace torsion

@@ -29,8 +29,11 @@ constexpr std::array<double, 3> kPhi = {pi / 2.0 + pi / 12.0, -pi / 6.0 + pi / 1
 constexpr double kCountsPerTurn = 4.0 * 320.0;
 constexpr double kGear = 0.110 / 0.01425;  // diameters of the motor's drum and of its shaft
 constexpr double kZeroAngle = 35.0 * pi / 180.0;
-constexpr double kMotorPerTorque = -10000.0;  // per N m, nominal
-constexpr double kExact = 1e-12;              // rad
+// Per N m. Nominal: libnifalcon's own scale is -10000, but the packets of the maker's kit that it
+// keeps (util/translate_packet.py) have 0.36 to 0.44 of that for the same force. The smaller one
+// makes no force larger than was asked for.
+constexpr double kMotorPerTorque = -4000.0;
+constexpr double kExact = 1e-12;  // rad
 
 /// The three angles of one leg: of the motor, of the forearm in the leg's plane, and out of it.
 struct LegAngles {

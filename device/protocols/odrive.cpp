@@ -127,6 +127,31 @@ std::optional<OdriveFeedback> take_odrive_bytes(OdriveStream& stream, std::strin
   return last;
 }
 
+bool is_understood(const OdriveVersion& version) {
+  return version.major == 0 && version.minor == 5 && version.revision >= 4;
+}
+
+std::optional<OdriveVersion> take_odrive_version(OdriveStream& stream, std::string_view bytes) {
+  for (const char byte : bytes) {
+    if (byte != '\n') {
+      if (stream.line.size < stream.line.text.size()) {
+        stream.line.text[stream.line.size++] = byte;
+      }
+      continue;
+    }
+    const auto number = decode_number(stream.line.view());
+    stream.line.size = 0;
+    if (!number) {
+      return OdriveVersion{};
+    }
+    stream.version[stream.version_lines++] = *number;
+    if (stream.version_lines == stream.version.size()) {
+      return OdriveVersion{stream.version[0], stream.version[1], stream.version[2]};
+    }
+  }
+  return std::nullopt;
+}
+
 std::string odrive_error_text(std::uint32_t errors) {
   std::string names;
   const char* cure = kItsTool;

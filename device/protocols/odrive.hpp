@@ -40,6 +40,20 @@ OdriveLine encode_odrive_step(int axis, double torque, bool asks_status = false)
 /// @return nothing for anything but two finite numbers
 std::optional<OdriveFeedback> decode_odrive_feedback(std::string_view line);
 
+struct OdriveVersion {
+  std::uint32_t major = 0;
+  std::uint32_t minor = 0;
+  std::uint32_t revision = 0;
+};
+
+/// Asks for it, a line each.
+inline constexpr std::string_view kOdriveVersionQuestion =
+    "r fw_version_major\nr fw_version_minor\nr fw_version_revision\n";
+
+/// Whether these lines mean there what they mean here: 0.5 from its revision 4 on. Older ones do
+/// not read all properties, 0.6 has other names for some.
+bool is_understood(const OdriveVersion& version);
+
 /// Puts lines together from what the transfers bring. A status is two lines with a number each,
 /// errors and state, after a feedback.
 struct OdriveStream {
@@ -48,7 +62,13 @@ struct OdriveStream {
   std::uint32_t numbers = 0;  // lines with one number since the last feedback
   OdriveStatus coming;
   std::optional<OdriveStatus> status;  // the last whole one; whoever reads it takes it away
+  std::array<std::uint32_t, 3> version{};
+  std::size_t version_lines = 0;
 };
+
+/// The answers to kOdriveVersionQuestion.
+/// @return nothing before the last of them has come; zeros where one is no number
+std::optional<OdriveVersion> take_odrive_version(OdriveStream& stream, std::string_view bytes);
 
 /// @return the last feedback whose line ends in `bytes`, if any
 std::optional<OdriveFeedback> take_odrive_bytes(OdriveStream& stream, std::string_view bytes);

@@ -21,13 +21,14 @@ HidField usual_axis(std::uint32_t axis) {
           kUsualDeflection};
 }
 
-/// The devices have x to the right, y towards the user and z down.
-glm::dvec3 y_up(const glm::dvec3& raw) {
-  return {raw.x, -raw.z, raw.y};
+/// The devices have x to the right, y towards the user and z down; the oldest y up and z away.
+glm::dvec3 y_up(const SpaceMouseLayout& layout, const glm::dvec3& raw) {
+  return layout.oldest_axes ? glm::dvec3(raw.x, raw.y, -raw.z) : glm::dvec3(raw.x, -raw.z, raw.y);
 }
 
-glm::dvec3 raw_axes(const glm::dvec3& y_up) {
-  return {y_up.x, y_up.z, -y_up.y};
+glm::dvec3 raw_axes(const SpaceMouseLayout& layout, const glm::dvec3& y_up) {
+  return layout.oldest_axes ? glm::dvec3(y_up.x, y_up.y, -y_up.z)
+                            : glm::dvec3(y_up.x, y_up.z, -y_up.y);
 }
 
 double share_of(const HidField& axis, std::int32_t value) {
@@ -78,8 +79,8 @@ SpaceMouseLayout usual_space_mouse_layout() {
 
 bool take_space_mouse_report(const SpaceMouseLayout& layout, Bytes report, SpaceMouseState& state) {
   std::array<double, 6> raw{};
-  const glm::dvec3 translation = raw_axes(state.translation);
-  const glm::dvec3 rotation = raw_axes(state.rotation);
+  const glm::dvec3 translation = raw_axes(layout, state.translation);
+  const glm::dvec3 rotation = raw_axes(layout, state.rotation);
   for (std::size_t i = 0; i < 3; ++i) {
     raw[i] = translation[static_cast<glm::length_t>(i)];
     raw[i + 3] = rotation[static_cast<glm::length_t>(i)];
@@ -110,10 +111,20 @@ bool take_space_mouse_report(const SpaceMouseLayout& layout, Bytes report, Space
       any = true;
     }
   }
-  state.translation = y_up({raw[0], raw[1], raw[2]});
-  state.rotation = y_up({raw[3], raw[4], raw[5]});
+  state.translation = y_up(layout, {raw[0], raw[1], raw[2]});
+  state.rotation = y_up(layout, {raw[3], raw[4], raw[5]});
   state.buttons = buttons;
   return any;
+}
+
+bool is_other_report(Bytes report) {
+  constexpr std::uint8_t kBattery = 0x17;
+  constexpr std::uint8_t kReceiver = 0x1C;
+  return !report.empty() && (report[0] == kBattery || report[0] == kReceiver);
+}
+
+bool has_oldest_axes(std::uint16_t vendor, std::uint16_t product) {
+  return vendor == kLogitech && (product == 0xC603 || product == 0xC606);
 }
 
 bool is_not_a_space_mouse(std::uint16_t vendor, std::uint16_t product) {

@@ -19,6 +19,7 @@ struct SpaceMouseLayout {
   std::array<HidField, 32> buttons;
   std::uint32_t button_count = 0;
   bool numbered = true;
+  bool oldest_axes = false;  // x right, y up, z away from the user; else y to the user and z down
 };
 
 /// What the device's own report descriptor says.
@@ -44,6 +45,14 @@ bool take_space_mouse_report(const SpaceMouseLayout& layout, Bytes report, Space
 
 /// True for vendor and product ids that 3Dconnexion gives to what has no six axes.
 bool is_not_a_space_mouse(std::uint16_t vendor, std::uint16_t product);
+
+/// True for a report that such devices send of something else than axes and buttons: of their
+/// battery (0x17) or of their receiver (0x1C).
+bool is_other_report(Bytes report);
+
+/// True for those whose raw axes are x right, y up and z away from the user (spacenavd bac572a: no
+/// flags).
+bool has_oldest_axes(std::uint16_t vendor, std::uint16_t product);
 
 /// True for known ids of the family.
 bool is_space_mouse(std::uint16_t vendor, std::uint16_t product);

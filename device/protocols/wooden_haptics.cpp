@@ -14,10 +14,6 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 
 enum class Command : std::int16_t { kCurrents = 0, kSetEncoders = 1 };
 
-glm::dquat about(const glm::dvec3& axis, double angle) {
-  return glm::angleAxis(angle, axis);
-}
-
 }  // namespace
 
 std::optional<WoodenInput> decode_wooden(Bytes packet) {
@@ -61,11 +57,11 @@ WoodenGeometry wooden_haptics_2015() {
           0.245,
           glm::dvec3(0.010),
           {0.160, 0.120, 0.120},
-          glm::dvec3(-1.0),
+          glm::dvec3(1.0),
           {0.220, 0.0, 0.080},
           glm::dvec3(0.0259),
           2000.0,
-          1024.0};
+          {0, 0, 6000, 0, 0, 0}};
 }
 
 glm::dvec3 wooden_body_angles(const WoodenGeometry& geometry, const WoodenInput& input) {
@@ -94,17 +90,6 @@ glm::dmat3 wooden_jacobian(const WoodenGeometry& geometry, const glm::dvec3& bod
   return {glm::dvec3(-sin_a * out, cos_a * out, 0.0),
           glm::dvec3(cos_a * along_b, sin_a * along_b, -across_b),
           glm::dvec3(cos_a * along_c, sin_a * along_c, across_c)};
-}
-
-glm::dquat wooden_rotation(const WoodenGeometry& geometry, const WoodenInput& input) {
-  const glm::dvec3 body = wooden_body_angles(geometry, input);
-  const glm::dvec3 counts(input.encoders[3], input.encoders[4], input.encoders[5]);
-  const glm::dvec3 wrist = counts * (kTurn / geometry.wrist_counts_per_turn);
-  const glm::dvec3 x(1.0, 0.0, 0.0);
-  const glm::dvec3 y(0.0, 1.0, 0.0);
-  const glm::dvec3 z(0.0, 0.0, 1.0);
-  return about(z, body.x) * about(y, kTurn / 4.0 - body.z) * about(x, wrist.x) * about(y, wrist.y) *
-         about(x, wrist.z);
 }
 
 std::array<std::int16_t, 3> wooden_currents(const WoodenGeometry& geometry,

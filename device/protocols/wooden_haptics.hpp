@@ -1,13 +1,13 @@
 #pragma once
 
-// WoodenHaptics and Polhem by J. Forsslund: three motors, six encoders, packets of 14 bytes by HID
-// or raw HID, 1 kHz. The stage switches itself off when it hears nothing for half a second.
+// WoodenHaptics by J. Forsslund, the build of 2015: three motors with encoders, packets of 14 bytes
+// by HID, 1 kHz. The stage switches itself off when it hears nothing for half a second. Numbers and
+// signs as in haptikfabrikenapi b8d6c94, "woodenhaptics_v2015".
 
 #include <array>
 #include <cstdint>
 #include <optional>
 
-#include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
@@ -18,8 +18,8 @@ namespace torsion {
 inline constexpr std::size_t kWoodenPacket = 14;
 
 struct WoodenInput {
-  std::array<std::int16_t, 6> encoders{};  // counts: body a, b, c; wrist d, e, f
-  std::int16_t info = 0;                   // 1: the calibration button is pressed
+  std::array<std::int16_t, 6> encoders{};  // counts: body a, b, c; three more that this build lacks
+  std::int16_t info = 0;  // 1: its calibration button was pressed, until its encoders are set
 };
 
 /// @param packet  at least 14 bytes; raw HID pads to 64
@@ -44,7 +44,7 @@ struct WoodenGeometry {
   glm::dvec3 origin;                    // m: of the workspace, in the base's axes
   glm::dvec3 torque_constant;           // N m/A
   double counts_per_turn;               // of the motors' encoders
-  double wrist_counts_per_turn;
+  std::array<std::int16_t, 6> home;     // counts: where it is held when it is calibrated
 };
 
 /// The build of 2015.
@@ -58,9 +58,6 @@ glm::dvec3 wooden_position(const WoodenGeometry& geometry, const glm::dvec3& bod
 
 /// d(position)/d(body angles), m/rad.
 glm::dmat3 wooden_jacobian(const WoodenGeometry& geometry, const glm::dvec3& body_angles);
-
-/// Rotation of the handle.
-glm::dquat wooden_rotation(const WoodenGeometry& geometry, const WoodenInput& input);
 
 /// Currents for a force [N, base axes], made smaller all alike where one is too large.
 std::array<std::int16_t, 3> wooden_currents(const WoodenGeometry& geometry,

@@ -196,5 +196,24 @@ TEST(DeviceLoopTest, AThousandTimesPulledOutAtRandomMoments) {
   EXPECT_EQ(bus.without_force_for(falcon), 0.0);
 }
 
+TEST(DeviceLoopTest, NoDeviceIsAskedForMoreThanItsOwnLimit) {
+  DeviceClient client;
+  // 16 N and 1.6 N m are what the two can do together: both at once would ask one for 16 N.
+  client.wanted = {{0.0, 0.0, 16.0}, {0.0, 1.6, 0.0}};
+  FakeBus bus({}, client.sink());
+  const std::size_t left = bus.plug(EmulatedFalcon{});
+  const std::size_t right = bus.plug(EmulatedFalcon{});
+  bus.run(kStartTime);
+  ASSERT_EQ(client.last.state, DeviceState::kLive);
+  const glm::dvec3 place(0.0, 0.0, 0.115);
+  const auto most = falcon_motors(place, {0.0, 0.0, 8.0});
+  for (const std::size_t row : {left, right}) {
+    for (std::size_t motor = 0; motor < 3; ++motor) {
+      EXPECT_LE(std::abs(int{bus.device<EmulatedFalcon>(row).motors[motor]}),
+                std::abs(int{most[motor]}) + 1);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace torsion

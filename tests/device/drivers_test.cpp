@@ -64,6 +64,20 @@ TEST(SpaceMouseDriverTest, ReadsAKnownOneThatDoesNotSayWhatItIs) {
   EXPECT_GT(client.last.pose.rotation.y, 0.0);
 }
 
+TEST(SpaceMouseDriverTest, ReportsOfItsBatteryAreNoGarbage) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  const std::size_t row = bus.plug(EmulatedSpaceMouse{});
+  bus.run(0.1);
+  bus.send(row, {0x17, 80, 0});
+  bus.send(row, {0x1C, 1});
+  bus.run(0.05);
+  EXPECT_EQ(bus.loop().rows[row].report.counts.garbage, 0U);
+  bus.send(row, {0x55, 1, 2, 3});
+  bus.run(0.05);
+  EXPECT_EQ(bus.loop().rows[row].report.counts.garbage, 1U);
+}
+
 TEST(FalconDriverTest, SaysItsPlaceAndTakesForce) {
   DeviceClient client;
   FakeBus bus({}, client.sink());
@@ -115,6 +129,22 @@ TEST(FalconDriverTest, WritesTheFirmwareByteForByteAndGoesOn) {
   EXPECT_EQ(client.last.state, DeviceState::kLive);
 }
 
+TEST(FalconDriverTest, SaysItIsReadyOnceInEachTry) {
+  const Buffer firmware = made_up_firmware();
+  DeviceClient client;
+  LoopOptions options;
+  options.drivers.falcon_firmware = firmware;
+  FakeBus bus(options, client.sink());
+  EmulatedFalcon falcon;
+  falcon.has_firmware = false;
+  falcon.loses_ready = 1;
+  falcon.firmware_size = firmware.size();
+  const std::size_t row = bus.plug(falcon);
+  bus.run(4.0);
+  EXPECT_EQ(bus.device<EmulatedFalcon>(row).firmware, firmware);  // no byte of "ready" in it
+  EXPECT_EQ(client.last.state, DeviceState::kLive);
+}
+
 TEST(FalconDriverTest, GivesUpOnFirmwareThatComesBackWrong) {
   const Buffer firmware = made_up_firmware();
   DeviceClient client;
@@ -150,37 +180,56 @@ TEST(WoodenDriverTest, PushesInTheWorldsAxes) {
   DeviceClient client;
   client.wanted = {{0.0, 1.0, 0.0}, glm::dvec3(0.0)};  // up
   FakeBus bus({}, client.sink());
-  EmulatedWooden wooden;
-  wooden.encoders = {0, 300, 300, 0, 0, 0};
-  const std::size_t row = bus.plug(wooden);
+  const std::size_t row = bus.plug(EmulatedWooden{});
   bus.run(kStartTime);
+  bus.device<EmulatedWooden>(row).encoders = {0, 300, 5700, 0, 0, 0};
+  bus.run(0.1);
   ASSERT_EQ(client.last.state, DeviceState::kLive);
-  EXPECT_EQ(client.last.sensed, kTranslationAxes | kRotationAxes);
+  EXPECT_EQ(client.last.sensed, kTranslationAxes);
   EXPECT_GT(client.last.rate, 900.0);
   const WoodenGeometry geometry = wooden_haptics_2015();
-  const glm::dvec3 angles = wooden_body_angles(geometry, {wooden.encoders, 0});
+  const glm::dvec3 angles = wooden_body_angles(geometry, {{0, 300, 5700, 0, 0, 0}, 0});
   // Of the base: z is up.
   EXPECT_EQ(bus.device<EmulatedWooden>(row).currents,
             wooden_currents(geometry, angles, {0.0, 0.0, 1.0}));
   EXPECT_NEAR(client.last.pose.position.y, wooden_position(geometry, angles).z, 1e-12);
+  EXPECT_EQ(client.last.pose.rotation, glm::dquat(1.0, 0.0, 0.0, 0.0));  // it has no wrist
 }
 
-TEST(WoodenDriverTest, SetsItsEncodersOnceWhenTheButtonIsPressed) {
+TEST(WoodenDriverTest, HasNoForceBeforeItIsCalibrated) {
   DeviceClient client;
   FakeBus bus({}, client.sink());
   EmulatedWooden wooden;
   wooden.encoders = {10, 20, 30, 40, 50, 60};
+  wooden.says_pressed = false;
   const std::size_t row = bus.plug(wooden);
   bus.run(kStartTime);
+  EXPECT_EQ(client.last.state, DeviceState::kStarting);
+  EXPECT_EQ(client.last.trouble, DeviceTrouble::kNotHomed);
+  EXPECT_GT(bus.without_force_for(row), 0.9 * kStartTime);
+  EXPECT_GT(bus.writes(row), 90U);  // it is asked all the same
+  bus.device<EmulatedWooden>(row).says_pressed = true;
+  bus.device<EmulatedWooden>(row).loses = 3;
+  bus.run(0.2);
+  EXPECT_EQ(client.last.state, DeviceState::kLive);
+  EXPECT_EQ(bus.device<EmulatedWooden>(row).calibrations, 1U);
+  EXPECT_EQ(bus.device<EmulatedWooden>(row).encoders, wooden_haptics_2015().home);
+  EXPECT_EQ(bus.without_force_for(row), 0.0);
+}
+
+TEST(WoodenDriverTest, HasNoForceWhileItsButtonIsPressed) {
+  DeviceClient client;
+  FakeBus bus({}, client.sink());
+  const std::size_t row = bus.plug(EmulatedWooden{});
+  bus.run(kStartTime);
   const std::uint32_t epoch = client.last.epoch;
+  ASSERT_EQ(client.last.state, DeviceState::kLive);
   bus.device<EmulatedWooden>(row).button = true;
   bus.run(0.2);
   EXPECT_EQ(client.last.trouble, DeviceTrouble::kNotHomed);
   EXPECT_GT(bus.without_force_for(row), 0.19);
   bus.device<EmulatedWooden>(row).button = false;
-  bus.run(0.1);
-  EXPECT_EQ(bus.device<EmulatedWooden>(row).calibrations, 1U);
-  EXPECT_EQ(bus.device<EmulatedWooden>(row).encoders, (std::array<std::int16_t, 6>{}));
+  bus.run(0.2);
   EXPECT_EQ(client.last.state, DeviceState::kLive);
   EXPECT_NE(client.last.epoch, epoch);  // its pose has jumped
 }
@@ -206,6 +255,25 @@ TEST(OdriveDriverTest, TurnsTheTwistAxisAndTakesTorqueUpToItsLimit) {
   bus.run(0.01);
   EXPECT_EQ(bus.device<EmulatedOdrive>(row).torque, 0.0);
   EXPECT_FALSE(bus.device<EmulatedOdrive>(row).closed_loop);
+}
+
+TEST(OdriveDriverTest, IsToldNothingWhereItsFirmwareReadsTheLinesOtherwise) {
+  // 0.5.3, 0.6, and an old one that reads no such property.
+  for (const auto& version :
+       {std::array<const char*, 3>{"0", "5", "3"}, std::array<const char*, 3>{"0", "6", "8"},
+        std::array<const char*, 3>{"0d", "4d", "12d"}}) {
+    DeviceClient client;
+    FakeBus bus({}, client.sink());
+    EmulatedOdrive knob;
+    knob.version = version;
+    const std::size_t row = bus.plug(knob);
+    bus.run(kStartTime);
+    EXPECT_EQ(client.last.state, DeviceState::kStarting) << version[1];
+    EXPECT_EQ(client.last.trouble, DeviceTrouble::kWrongFirmware);
+    EXPECT_FALSE(bus.device<EmulatedOdrive>(row).watched);
+    EXPECT_FALSE(bus.device<EmulatedOdrive>(row).closed_loop);
+    EXPECT_EQ(bus.writes(row), 1U);
+  }
 }
 
 TEST(OdriveDriverTest, AnErrorOfItsAxisEndsTheTorqueUntilItIsPluggedInAgain) {
@@ -353,10 +421,8 @@ TEST(DriversTest, ASilentDeviceIsToldToLetGoAndComesBack) {
   for (const int kind : {1, 2, 3}) {
     DeviceClient client;
     FakeBus bus({}, client.sink());
-    EmulatedWooden wooden;
-    wooden.encoders = {0, 300, 300, 0, 0, 0};
     const std::size_t row = kind == 1   ? bus.plug(EmulatedFalcon{})
-                            : kind == 2 ? bus.plug(wooden)
+                            : kind == 2 ? bus.plug(EmulatedWooden{})
                                         : bus.plug(EmulatedOdrive{});
     bus.run(kStartTime);
     SCOPED_TRACE(kind);

@@ -56,12 +56,19 @@ std::int16_t counts_of(double angle) {
 
 Buffer load(EmulatedFalcon& device, Bytes packet) {
   if (device.baud == kGreetingBaud && packet.size() == 3 && packet[1] == 0x43) {
+    device.is_ready = false;
+    device.firmware.clear();
     return ftdi({0x00, 0x0A, 0x44, 0x2C, 0x0D});
   }
   if (device.baud != kLoadingBaud) {
     return {};
   }
-  if (device.firmware.empty() && packet.size() == 1 && packet[0] == 0x41) {
+  if (!device.is_ready && packet.size() == 1 && packet[0] == 0x41) {
+    device.is_ready = true;
+    if (device.loses_ready > 0) {
+      device.loses_ready -= 1;
+      return {};
+    }
     return ftdi({0x41});
   }
   append(device.firmware, packet);
@@ -102,8 +109,12 @@ Buffer told(EmulatedWooden& device, Bytes packet) {
   if (packet.size() < kWoodenPacket) {
     return {};
   }
-  if (int16_at(packet, 6) == 1) {
+  device.says_pressed = device.says_pressed || device.button;
+  if (int16_at(packet, 6) == 1 && device.loses > 0) {
+    device.loses -= 1;
+  } else if (int16_at(packet, 6) == 1) {
     device.calibrations += 1;
+    device.says_pressed = false;
     for (std::size_t i = 0; i < 3; ++i) {
       device.encoders[i] = int16_at(packet, 8 + 2 * i);
       device.encoders[3 + i] = int16_at(packet, 2 * i);
@@ -117,7 +128,7 @@ Buffer told(EmulatedWooden& device, Bytes packet) {
   for (std::size_t i = 0; i < 6; ++i) {
     put_int16(answer, 2 * i, device.encoders[i]);
   }
-  put_int16(answer, 12, device.button ? std::int16_t{1} : std::int16_t{0});
+  put_int16(answer, 12, device.says_pressed ? std::int16_t{1} : std::int16_t{0});
   return answer;
 }
 
@@ -138,6 +149,9 @@ void obey(EmulatedOdrive& device, const std::string& line, std::string& answer) 
     device.fed = true;
   } else if (line == "w axis0.config.enable_watchdog 1") {
     device.watched = true;
+  } else if (line.rfind("r fw_version_", 0) == 0) {
+    const char part = line[13];
+    answer += device.version[part == 'r' ? 2 : line[14] == 'a' ? 0 : 1] + std::string("\r\n");
   } else if (line == "f 0") {
     answer += std::to_string(device.turns) + " 0.0\r\n";
   } else if (line == "r axis0.error") {
@@ -214,6 +228,12 @@ UsbInterface interface(std::uint8_t number, std::uint8_t device_class,
 }
 
 }  // namespace
+
+void switch_on(EmulatedDevice& device) {
+  if (auto* const wooden = std::get_if<EmulatedWooden>(&device)) {
+    wooden->says_pressed = EmulatedWooden{}.says_pressed;
+  }
+}
 
 Buffer told(EmulatedDevice& device, Bytes packet) {
   return std::visit([&](auto& one) { return told(one, packet); }, device);

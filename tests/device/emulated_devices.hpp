@@ -31,13 +31,19 @@ struct EmulatedFalcon {
   Buffer firmware;                       // as it arrived
   std::size_t firmware_size = 0;         // how long it is to be
   bool echoes_wrongly = false;
+  std::uint32_t loses_ready = 0;  // so many echoes of "ready" get lost; a second "ready" is a byte
+                                  // of firmware
+  bool is_ready = false;
   std::uint32_t baud = 0;     // divisor
   std::uint64_t packets = 0;  // told so far
 };
 
+/// Held at home, and its button pressed, when it is plugged in.
 struct EmulatedWooden {
   std::array<std::int16_t, 6> encoders{};
   bool button = false;
+  bool says_pressed = true;                // its firmware does until command 1 arrives
+  std::uint32_t loses = 0;                 // so many commands 1 get lost
   std::array<std::int16_t, 3> currents{};  // mA, as told last
   std::uint32_t calibrations = 0;
 };
@@ -51,12 +57,16 @@ struct EmulatedOdrive {
   double found_torque = 0.3;  // N m, that another program has left; with `torque` once it obeys
   bool fed = false;           // its watchdog counts since it was
   bool watched = false;       // its watchdog is on
-  bool armed_with_torque = false;  // it obeyed while a torque was left
+  bool armed_with_torque = false;                     // it obeyed while a torque was left
+  std::array<const char*, 3> version{"0", "5", "6"};  // as it answers: major, minor, revision
   Buffer line;
 };
 
 using EmulatedDevice =
     std::variant<EmulatedSpaceMouse, EmulatedFalcon, EmulatedWooden, EmulatedOdrive>;
+
+/// What it does not remember when it was without power.
+void switch_on(EmulatedDevice& device);
 
 /// Takes a packet on the OUT endpoint.
 /// @return what the device puts on its IN endpoint, one USB packet; empty: nothing

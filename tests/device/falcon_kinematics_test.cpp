@@ -66,9 +66,8 @@ TEST(FalconKinematicsTest, JacobianIsTheDerivative) {
 
 TEST(FalconKinematicsTest, MotorsHaveThePowerOfTheForce) {
   const glm::dvec3 middle(0.0, 0.0, 0.11);
-  // 1 N along z is 0.02418 N m in each joint, and 10000 motor values are 1 N m.
-  EXPECT_EQ(falcon_motors(middle, {0.0, 0.0, 1.0}),
-            (std::array<std::int16_t, 3>{-242, -242, -242}));
+  // 1 N along z is 0.02418 N m in each joint, and 4000 motor values are 1 N m.
+  EXPECT_EQ(falcon_motors(middle, {0.0, 0.0, 1.0}), (std::array<std::int16_t, 3>{-97, -97, -97}));
 }
 
 TEST(FalconKinematicsTest, KeepsTheDirectionOfForcesThatAreTooLarge) {

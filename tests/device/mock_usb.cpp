@@ -81,6 +81,7 @@ void MockDevice::plug() {
     driver_ = own_driver_;
     gone_ = false;
     packets_.clear();
+    switch_on(device_);
   }
   if (!bound_) {
     // Before the device shows: its uevent may have it opened at once.

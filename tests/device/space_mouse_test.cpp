@@ -114,5 +114,23 @@ TEST(SpaceMouseTest, KnowsTheFamilyAndWhatIsNotOfIt) {
   EXPECT_FALSE(is_not_a_space_mouse(0x256F, 0xC6FF));  // unknown: its descriptor decides
 }
 
+TEST(SpaceMouseTest, TheOldestHaveYUp) {
+  SpaceMouseLayout layout = usual_space_mouse_layout();
+  layout.oldest_axes = has_oldest_axes(0x046D, 0xC603);
+  EXPECT_FALSE(has_oldest_axes(0x046D, 0xC626));
+  SpaceMouseState state;
+  // Twice: what a report leaves alone stays as it was.
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(take_space_mouse_report(
+        layout, std::array<std::uint8_t, 7>{1, 35, 0, 70, 0, 105, 0}, state));
+    EXPECT_NEAR(state.translation.x, 0.1, 1e-12);
+    EXPECT_NEAR(state.translation.y, 0.2, 1e-12);
+    EXPECT_NEAR(state.translation.z, -0.3, 1e-12);
+    ASSERT_TRUE(
+        take_space_mouse_report(layout, std::array<std::uint8_t, 7>{2, 0, 0, 0, 0, 35, 0}, state));
+    EXPECT_NEAR(state.rotation.z, -0.1, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace torsion

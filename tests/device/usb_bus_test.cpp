@@ -43,9 +43,15 @@ struct Client {
   }
 };
 
+UsbBusOptions with_all_kinds() {
+  UsbBusOptions options;
+  options.loop.kinds = ~0U;
+  return options;
+}
+
 class UsbBusTest : public testing::Test {
  protected:
-  void start(const UsbBusOptions& options = {}) {
+  void start(const UsbBusOptions& options = with_all_kinds()) {
     auto started = UsbBus::start(options, {&client_, Client::on_sample});
     ASSERT_TRUE(started) << started.error().text;
     bus_ = std::move(started).value();
@@ -67,15 +73,13 @@ class UsbBusTest : public testing::Test {
 };
 
 test::EmulatedDevice device_of(int kind) {
-  EmulatedWooden wooden;
-  wooden.encoders = {0, 300, 300, 0, 0, 0};
   switch (kind) {
     case 0:
       return EmulatedSpaceMouse{};
     case 1:
       return EmulatedFalcon{};
     case 2:
-      return wooden;
+      return EmulatedWooden{};
     default:
       return EmulatedOdrive{};
   }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
+#include "app/scene_warnings.hpp"
 #include "app/session.hpp"
 #include "ecs/model_names.hpp"
 #include "scenes/load_gltf.hpp"
@@ -111,9 +112,16 @@ void print_tool(const ToolDescription& tool, std::uint32_t samples) {
   }
 }
 
-void print_scene(const SceneDescription& scene, const Simulation& simulation) {
+void print_scene(const SceneDescription& scene, const Simulation& simulation,
+                 const std::vector<std::string>& warnings) {
   const World& world = simulation.world;
-  fmt::print("{}: no problems\n", scene.path);
+  fmt::print("{}: no problems{}\n", scene.path,
+             warnings.empty()
+                 ? ""
+                 : fmt::format(", {} warning{}", warnings.size(), warnings.size() == 1 ? "" : "s"));
+  for (const std::string& warning : warnings) {
+    fmt::print("warning: {}\n", warning);
+  }
   for (std::uint32_t row = 0; row < scene.bodies.size(); ++row) {
     print_body(report_of(scene, simulation, row));
   }
@@ -135,10 +143,12 @@ void print_systems(const Schedule<StepContext>& schedule) {
   }
 }
 
-nlohmann::ordered_json scene_json(const SceneDescription& scene, const Simulation& simulation) {
+nlohmann::ordered_json scene_json(const SceneDescription& scene, const Simulation& simulation,
+                                  const std::vector<std::string>& warnings) {
   const World& world = simulation.world;
   nlohmann::ordered_json json = {{"scene", scene.path},
                                  {"problems", nlohmann::json::array()},
+                                 {"warnings", warnings},
                                  {"duration_s", scene.duration},
                                  {"physics_bytes", memory_of(world)}};
   for (std::uint32_t row = 0; row < scene.bodies.size(); ++row) {
@@ -181,10 +191,12 @@ int check(const CheckOptions& options) {
     return report_problems({{options.scene.scene, "", "", "", prepared.error().text, ""}},
                            options.json);
   }
+  const std::vector<std::string> warnings =
+      scene_warnings(*loaded.scene, prepared.value(), chosen.expected_poses, chosen);
   if (options.json) {
-    fmt::print("{}\n", scene_json(*loaded.scene, prepared.value()).dump(2));
+    fmt::print("{}\n", scene_json(*loaded.scene, prepared.value(), warnings).dump(2));
   } else {
-    print_scene(*loaded.scene, prepared.value());
+    print_scene(*loaded.scene, prepared.value(), warnings);
     print_systems(prepared.value().schedule);
   }
   return kDone;

@@ -31,6 +31,7 @@ struct DrawMesh {
   std::vector<glm::uvec3> triangles;
   std::vector<bool> fixed;  // bodies only: vertices of the fixed region; one for each position
   glm::vec4 color{0.8F, 0.8F, 0.8F, 1.0F};  // linear RGB and alpha of the first material
+  bool textured = false;  // a material has a texture of its base colour, which is not drawn
 };
 
 struct BodyDescription {

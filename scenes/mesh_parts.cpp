@@ -112,6 +112,11 @@ glm::vec4 color_of(const tinygltf::Model& model, const tinygltf::Primitive& prim
   return color;
 }
 
+bool is_textured(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
+  return primitive.material >= 0 && model.materials[static_cast<std::size_t>(primitive.material)]
+                                            .pbrMetallicRoughness.baseColorTexture.index >= 0;
+}
+
 /// Faces' normals weighted by area, summed at each vertex.
 std::vector<glm::dvec3> averaged_normals(const MeshTriangles& mesh) {
   std::vector<glm::dvec3> normals(mesh.positions.size(), glm::dvec3(0.0));
@@ -148,6 +153,7 @@ MeshTriangles read_mesh(const tinygltf::Model& model, const tinygltf::Mesh& mesh
     if (part == 0) {
       read.color = color_of(model, primitive);
     }
+    read.textured = read.textured || is_textured(model, primitive);
     const std::size_t before = read.positions.size();
     append_attributes(model, primitive, to_owner, read);
     append_triangles(model, primitive, static_cast<std::uint32_t>(read.positions.size() - before),
@@ -161,6 +167,7 @@ void append_draw_mesh(const MeshTriangles& mesh, DrawMesh& draw) {
   if (first == 0) {
     draw.color = mesh.color;
   }
+  draw.textured = draw.textured || mesh.textured;
   const bool has_normals = mesh.normals.size() == mesh.positions.size();
   const std::vector<glm::dvec3> normals = has_normals ? mesh.normals : averaged_normals(mesh);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {

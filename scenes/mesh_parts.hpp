@@ -17,6 +17,7 @@ struct MeshTriangles {
   std::vector<double> fixed;          // the _FIXED attribute, as many as positions, or none
   std::vector<glm::uvec3> triangles;  // counter-clockwise seen from outside
   glm::vec4 color{0.8F, 0.8F, 0.8F, 1.0F};  // of the first primitive's material
+  bool textured = false;                    // one of their materials has a texture
 };
 
 /// All primitives of a mesh: lists, strips and fans of triangles. Points and lines are problems. A

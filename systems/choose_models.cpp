@@ -269,7 +269,11 @@ ExpectedContact expect_contact(const World& world, std::uint32_t body,
     Touch touch = touch_with_tools(world, body, poses[time], last.places);
     if (!touch.points.empty()) {
       const auto [radius, regions] = extent_of_groups(touch.points, threshold);
-      contact.any = true;
+      for (const glm::dvec3& point : touch.points) {
+        contact.touched.lowest = contact.any ? glm::min(contact.touched.lowest, point) : point;
+        contact.touched.highest = contact.any ? glm::max(contact.touched.highest, point) : point;
+        contact.any = true;
+      }
       contact.single = contact.single && regions == 1;
       contact.smooth = contact.smooth && touch.smooth;
       contact.round = contact.round && touch.round && !body_is_long;
@@ -300,10 +304,34 @@ double mdr_error(const ExpectedContact& contact, double poisson_ratio) {
   return std::min(1.0, in_place + rolling_error(contact));
 }
 
+std::optional<double> model_error(const ModelChoice& choice, const ExpectedContact& contact,
+                                  double poisson_ratio) {
+  // docs/models.md, "Which model": at the 12 and at the 16 cells a side of choose_grid_side.
+  constexpr double kPatchError = 0.013;
+  constexpr double kFinePatchError = 0.0075;
+  if (choice.models.contact == ContactModel::kMdr) {
+    return contact.smooth ? std::optional(mdr_error(contact, poisson_ratio)) : std::nullopt;
+  }
+  if (choice.models.contact != ContactModel::kPatch) {
+    return std::nullopt;
+  }
+  if (contact.elongation > kLongContact) {
+    return contact.elongation > kSlender ? kSlenderEdgedError : kLongEdgedError;
+  }
+  return choice.models.tolerance < 0.02 ? kFinePatchError : kPatchError;
+}
+
 ModelChoice choose_models(const BodyModels& scene, const PrepareOptions& options,
                           const ExpectedContact& contact, double poisson_ratio) {
-  ModelChoice choice{scene, "the scene says so", "the scene says so", false,
-                     contact.elongation > kLongContact};
+  ModelChoice choice;
+  choice.models = scene;
+  choice.contact_why = "the scene says so";
+  choice.body_why = "the scene says so";
+  choice.long_contact = contact.elongation > kLongContact;
+  if (contact.any) {
+    choice.place = {true, 0.5 * (contact.touched.lowest + contact.touched.highest),
+                    0.5 * glm::distance(contact.touched.lowest, contact.touched.highest)};
+  }
   if (options.contact_model != ContactModel::kAuto) {
     choice.models.contact = options.contact_model;
     choice.contact_why = "the command line says so";

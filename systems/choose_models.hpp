@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct ExpectedContact {
   double depth = 0.0;       // m, largest
   double radius = 0.0;      // m: largest of the overlap
   double body_depth = 0.0;  // m: from the contact to what holds the body, the least
+  Bounds touched;           // m, body: around all points that are touched, where there are any
 };
 
 /// Looks where the samples of all tools come to lie in `body` on their expected poses.
@@ -32,6 +34,13 @@ ExpectedContact expect_contact(const World& world, std::uint32_t body,
 /// What contact model mdr misses of the torque, over its largest, on such a contact of a body with
 /// body model compliance, as measured. @pre known, any and smooth
 double mdr_error(const ExpectedContact& contact, double poisson_ratio);
+
+/// The largest known error of the torque, over its largest, of the chosen contact model at such
+/// contacts and the cells that it is given; nothing where it was not measured: of `paper`, and of
+/// mdr where a contact has edges.
+/// @pre known and any
+std::optional<double> model_error(const ModelChoice& choice, const ExpectedContact& contact,
+                                  double poisson_ratio);
 
 /// What runs for a body: what `options` insist on, else what the scene says, else the cheapest
 /// models whose known errors (docs/models.md) are within the body's tolerance.

@@ -221,8 +221,8 @@ Result<std::vector<PreparedCompliance>> build_compliances(const World& world,
   };
   for (std::uint32_t row = 0; row < choices.size(); ++row) {
     if (choices[row].models.body == BodyModel::kCompliance) {
-      Result<PreparedCompliance> built =
-          prepare_compliance(scene.bodies[row], world, row, options.use_cache, progress);
+      Result<PreparedCompliance> built = prepare_compliance(
+          scene.bodies[row], world, row, choices[row].place, options.use_cache, progress);
       done += 1.0;
       if (!built && choices[row].body_is_auto) {
         choices[row].models.body = BodyModel::kSkeleton;

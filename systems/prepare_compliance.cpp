@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
+#include <string>
 #include <thread>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "systems/body_models/smooth_compliance.hpp"
+#include "systems/body_models/solid_surface.hpp"
 #include "systems/distance.hpp"
 #include "systems/fixed_volume.hpp"
 #include "systems/prepare_anchors.hpp"
@@ -113,26 +116,105 @@ void append_values(const Eigen::MatrixXd& matrix, std::size_t rows,
   }
 }
 
+constexpr double kFewestCells = 8.0;  // along any side (build_solid_grid)
+
+/// Cells of a lattice over the bounds, in all.
+double cells_of(const glm::dvec3& extent, std::uint32_t along) {
+  const double longest = std::max({extent.x, extent.y, extent.z});
+  const glm::dvec3 cells = glm::max(extent * (along / longest), glm::dvec3(kFewestCells));
+  return cells.x * cells.y * cells.z;
+}
+
+/// Elements through a wall, whichever way it stands: along the lattice's coarsest axis but those in
+/// which the body is no thicker than the wall and has eight.
+double across_wall(const glm::dvec3& extent, std::uint32_t elements, double wall) {
+  const double longest = std::max({extent.x, extent.y, extent.z});
+  double coarsest = 0.0;  // m
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cells = std::max(kFewestCells, elements * extent[axis] / longest);
+    if (extent[axis] > 1.5 * wall) {
+      coarsest = std::max(coarsest, extent[axis] / cells);
+    }
+  }
+  return coarsest > 0.0 ? wall / coarsest : kFewestCells;
+}
+
+/// Of the bounds' volume, what is in the solid.
+double filled_share(const ElasticSolid& solid) {
+  constexpr int kAlong = 16;
+  int inside = 0;
+  for (int i = 0; i < kAlong * kAlong * kAlong; ++i) {
+    const glm::dvec3 share =
+        (glm::dvec3(i % kAlong, i / kAlong % kAlong, i / (kAlong * kAlong)) + 0.5) /
+        static_cast<double>(kAlong);
+    const glm::dvec3 point =
+        solid.bounds.lowest + share * (solid.bounds.highest - solid.bounds.lowest);
+    inside += solid.signed_distance(point).value < 0.0 ? 1 : 0;
+  }
+  return static_cast<double>(inside) / (kAlong * kAlong * kAlong);
+}
+
+/// More elements where walls are thin, so that three are in a wall, as long as that makes no more
+/// than 12000.
+std::uint32_t elements_for_walls(const ElasticSolid& solid, double wall, std::uint32_t elements) {
+  constexpr double kAcrossWall = 3.0;
+  constexpr double kInAll = 12000.0;
+  constexpr std::uint32_t kMost = 64;
+  const glm::dvec3 extent = solid.bounds.highest - solid.bounds.lowest;
+  const double filled = filled_share(solid);
+  while (elements < kMost && across_wall(extent, elements, wall) < kAcrossWall &&
+         filled * cells_of(extent, elements + 1) <= kInAll) {
+    ++elements;
+  }
+  return elements;
+}
+
+/// With three digits.
+std::string text_of(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+/// Whether elements and ports are fine enough for a body's walls.
+/// @return what to do where they are not
+Result<Done> holds_walls(const ElasticSolid& solid, double wall, std::uint32_t elements,
+                         std::span<const Port> ports, const ExpectedPlace& place) {
+  constexpr double kFewestAcross = 1.4;    // elements: with fewer, walls have holes
+  constexpr double kFarthestApart = 1.25;  // over the thickness
+  const double across = across_wall(solid.bounds.highest - solid.bounds.lowest, elements, wall);
+  if (across < kFewestAcross) {
+    return Error{"the body's walls are " + text_of(1e3 * wall) + " mm thick, " + text_of(across) +
+                 " of its finite elements, which is too few: make them thicker, or take body model "
+                 "skeleton or none"};
+  }
+  const double apart = port_distance_over_thickness(solid, ports, place);
+  if (apart > kFarthestApart) {
+    return Error{"the body's walls are " + text_of(1e3 * wall) +
+                 " mm thick, and the points at which its compliance is known are up to " +
+                 text_of(apart) + " times as far apart as it is thick" +
+                 (place.known ? " where contacts are expected"
+                              : "; an animation of the tool says where they are needed") +
+                 ": make the walls thicker, or take body model skeleton or none"};
+  }
+  return Done{};
+}
+
 }  // namespace
 
 std::uint32_t compliance_elements(const Bounds& bounds) {
   constexpr double kInAll = 4500.0;
-  constexpr double kFewest = 8.0;  // along any side (build_solid_grid)
   const glm::dvec3 extent = bounds.highest - bounds.lowest;
-  const double longest = std::max({extent.x, extent.y, extent.z});
   std::uint32_t elements = 16;
-  const auto in_all = [&](std::uint32_t along) {
-    const glm::dvec3 cells = glm::max(extent * (along / longest), glm::dvec3(kFewest));
-    return cells.x * cells.y * cells.z;
-  };
-  while (elements < 40 && in_all(elements + 1) <= kInAll) {
+  while (elements < 40 && cells_of(extent, elements + 1) <= kInAll) {
     ++elements;
   }
   return elements;
 }
 
 Result<PreparedCompliance> prepare_compliance(const BodyDescription& description,
-                                              const World& world, std::uint32_t row, bool use_cache,
+                                              const World& world, std::uint32_t row,
+                                              const ExpectedPlace& place, bool use_cache,
                                               const std::function<void(double)>& progress) {
   const Range parts = world.bodies.at<OwnedRows>(row).parts;
   ElasticSolid solid;
@@ -144,7 +226,8 @@ Result<PreparedCompliance> prepare_compliance(const BodyDescription& description
     return is_clamped(world, row, point);
   };
   solid.elasticity = world.bodies.at<Elasticity>(row);
-  const std::vector<Port> ports = choose_ports(solid, kPortsPerBody);
+  const double wall = wall_thickness(solid, sample_solid_surface(solid));
+  const std::vector<Port> ports = choose_ports(solid, kPortsPerBody, place);
   PreparedCompliance prepared;
   if (ports.size() <= kFewestPorts) {
     return prepared;
@@ -152,7 +235,10 @@ Result<PreparedCompliance> prepare_compliance(const BodyDescription& description
   SmoothComplianceOptions options;
   options.progress = progress;
   options.couples = false;
-  options.elements = compliance_elements(solid.bounds);
+  options.elements = elements_for_walls(solid, wall, compliance_elements(solid.bounds));
+  if (const Result<Done> fits = holds_walls(solid, wall, options.elements, ports, place); !fits) {
+    return Error{"node '" + description.node + "', body model compliance: " + fits.error().text};
+  }
   options.threads = std::max(1U, std::thread::hardware_concurrency());
   const Result<SmoothCompliance> built =
       use_cache ? load_or_build_smooth_compliance(solid, identity_of(description), ports, options)

@@ -10,6 +10,7 @@
 #include "ecs/scene_description.hpp"
 #include "ecs/schedule.hpp"
 #include "ecs/world.hpp"
+#include "systems/expected_place.hpp"
 
 namespace torsion {
 
@@ -34,6 +35,7 @@ struct ModelChoice {
   std::string body_why;
   bool body_is_auto = false;
   bool long_contact = false;  // with edges, expected: contact model patch needs more cells for it
+  ExpectedPlace place;        // of its contacts
 };
 
 /// A world with the schedule that moves it and the memory that the schedule needs.

@@ -43,19 +43,22 @@ BodyDescription body_of(const Material& material) {
 }
 
 /// A block of the width and height whose top is y = 0, held at its bottom.
-BodyDescription block(double width, double height, const Material& material, double drawn_width) {
+/// @param across  m: its other width, along z
+BodyDescription block(double width, double across, double height, const Material& material,
+                      double drawn_width) {
   BodyDescription body = body_of(material);
   body.fixed.kind = FixedKind::kFace;
   body.fixed.point = {0.0, -height, 0.0};
   body.fixed.normal = {0.0, 1.0, 0.0};
-  const glm::dvec3 half(0.5 * width, 0.5 * height, 0.5 * width);
+  const glm::dvec3 half(0.5 * width, 0.5 * height, 0.5 * across);
   body.parts.push_back(
       exact_part(ShapeKind::kBox, half, {glm::dvec3(0.0, -half.y, 0.0), kUpright}, 1));
   // Of a block that stands for a half-space a piece around the contact is drawn.
   const double share = drawn_width / width;
   const double drawn_height = share < 1.0 ? 0.5 * drawn_width : height;
   SurfaceMesh surface = shape_surface(
-      ShapeKind::kBox, {0.5 * drawn_width, 0.5 * drawn_height, 0.5 * drawn_width}, 61);
+      ShapeKind::kBox, {0.5 * drawn_width, 0.5 * drawn_height, 0.5 * drawn_width * across / width},
+      61);
   for (glm::dvec3& position : surface.positions) {
     position.y -= 0.5 * drawn_height;
   }
@@ -100,17 +103,19 @@ DrawMesh cap_of_ball(double radius, double width) {
 }
 
 ElementScene ball_on_block(std::string name, std::string title, double radius, double width,
-                           double height, const Material& material) {
+                           double height, const Material& material, double across = 0.0) {
   ElementScene result;
   result.name = std::move(name);
   result.title = std::move(title);
   result.description = fmt::format(
-      "A rigid ball of radius {:.4g} mm on a block of {} width and {} height ({}), held at its "
+      "A rigid ball of radius {:.4g} mm on a block of {} width{} and {} height ({}), held at its "
       "bottom.",
-      1e3 * radius, length_text(width), length_text(height), material_text(material));
+      1e3 * radius, length_text(width),
+      across > 0.0 ? fmt::format(", {} length", length_text(across)) : "", length_text(height),
+      material_text(material));
   result.finite_body = width < 1.0;
-  result.scene.bodies.push_back(
-      block(width, height, material, result.finite_body ? width : 20.0 * kContact));
+  result.scene.bodies.push_back(block(width, across > 0.0 ? across : width, height, material,
+                                      result.finite_body ? width : 20.0 * kContact));
   result.scene.tools.push_back(
       tool_of({exact_part(ShapeKind::kSphere, glm::dvec3(radius), {}, 41)}));
   if (radius > width) {
@@ -237,6 +242,9 @@ std::vector<ElementScene> element_scenes() {
                                  24.0 * kContact, 2.0 * kContact, Material{}));
   scenes.push_back(ball_on_block("soft_column", "Ball on a soft column: a large contact", 0.2,
                                  kColumn, kColumn, soft));
+  const Material slender{1e6, 0.3, 0.5};
+  scenes.push_back(
+      ball_on_block("slender_column", "Ball on a slender column", 0.008, 0.008, 0.1, slender));
   scenes.push_back(ball_on_block("large_strain_linear",
                                  "Ball pressed deep into a cube, as linear elasticity has it",
                                  kPaperBallRadius, 0.1, 0.1, nu49));

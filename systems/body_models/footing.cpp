@@ -28,21 +28,12 @@ double stiffer(int degree, double size) {
   return base * std::pow(size, -2.0 * degree);
 }
 
-constexpr double kNever = 1e300;
-
-/// The more a port's surface is turned away the farther it is; across an edge there is none.
-double seen_distance(const CompliancePort& port, const ContactEllipse& contact) {
-  const double facing =
-      (glm::dot(port.normal, contact.normal) - kLeastFacing) / (1.0 - kLeastFacing);
-  return facing > 0.0 ? glm::distance(port.position, contact.center) / facing : kNever;
-}
-
 /// Distance that takes in kNearest ports; a little more than the farthest where there are fewer.
 double distance_to_enough(const PortCompliance& body, const ContactEllipse& contact) {
   std::array<double, kNearest> nearest;
-  nearest.fill(kNever);
+  nearest.fill(kNeverSeen);
   for (const CompliancePort& port : body.ports) {
-    const double distance = seen_distance(port, contact);
+    const double distance = seen_distance(port, contact.center, contact.normal);
     if (distance < nearest.back()) {
       nearest.back() = distance;
       for (std::size_t i = kNearest - 1; i > 0 && nearest[i] < nearest[i - 1]; --i) {
@@ -52,9 +43,9 @@ double distance_to_enough(const PortCompliance& body, const ContactEllipse& cont
   }
   double farthest = 0.0;
   for (const double distance : nearest) {
-    farthest = distance < kNever ? distance : farthest;
+    farthest = distance < kNeverSeen ? distance : farthest;
   }
-  return nearest.back() < kNever ? farthest : 1.2 * farthest;
+  return nearest.back() < kNeverSeen ? farthest : 1.2 * farthest;
 }
 
 /// Ports within reach, those that are spread widest first (choose_ports), and their weights.
@@ -62,7 +53,8 @@ void find_ports(const PortCompliance& body, const ContactEllipse& contact, doubl
                 Footing& footing, std::array<double, kFootingPorts>& weights) {
   footing.count = 0;
   for (std::uint32_t port = 0; port < body.ports.size() && footing.count < kFootingPorts; ++port) {
-    const double share = seen_distance(body.ports[port], contact) / footing.reach;
+    const double share =
+        seen_distance(body.ports[port], contact.center, contact.normal) / footing.reach;
     if (share < 1.0) {
       const double inner = 1.0 - share * share;
       weights[footing.count] = inner * inner / (share * share + 0.5 * size * size);
@@ -123,6 +115,12 @@ std::array<SupportMoments, 6> moments_of_wrenches(const Footing& footing,
 }
 
 }  // namespace
+
+double seen_distance(const CompliancePort& port, const glm::dvec3& point,
+                     const glm::dvec3& normal) {
+  const double facing = (glm::dot(port.normal, normal) - kLeastFacing) / (1.0 - kLeastFacing);
+  return facing > 0.0 ? glm::distance(port.position, point) / facing : kNeverSeen;
+}
 
 const std::array<DiscPoint, kDiscPoints>& disc_points() {
   static const std::array<DiscPoint, kDiscPoints> points = [] {

@@ -51,6 +51,11 @@ using SupportMoments = std::array<glm::dvec3, kSupportTerms>;
 /// Forces at a footing's ports, N, or displacements of them, m; the first `count` rows count.
 using PortVectors = std::array<glm::dvec3, kFootingPorts>;
 
+/// How far a port is from a point of the surface as a contact there sees it, m: the more its
+/// surface is turned away the farther, and kNeverSeen across an edge.
+inline constexpr double kNeverSeen = 1e300;
+double seen_distance(const CompliancePort& port, const glm::dvec3& point, const glm::dvec3& normal);
+
 /// Whether a footing still serves for a contact, or has to be laid anew.
 bool still_fits(const Footing& footing, const ContactEllipse& contact);
 

@@ -12,6 +12,7 @@
 #include "ecs/result.hpp"
 #include "systems/body_models/half_space_fields.hpp"
 #include "systems/distance.hpp"
+#include "systems/expected_place.hpp"
 
 namespace torsion {
 
@@ -90,6 +91,15 @@ Result<SmoothCompliance> load_or_build_smooth_compliance(const ElasticSolid& sol
 /// surface bends away within a third of the ports' mean spacing. Where a scene's contacts are does
 /// not count: on the side of a cube, and of a column twice as high as wide, 128 ports so chosen are
 /// within 0.2 and 0.4 % of 500 that are densest there, and one cache serves all scenes of a body.
-std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count);
+/// A face that has none of its own after that gets some, up to `count` more. On a body whose walls
+/// are thinner than ports would be apart, they are densest where contacts are expected.
+std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count,
+                               const ExpectedPlace& expected = {});
+
+/// How far apart its ports are over how thick the body is, as a contact in the expected place sees
+/// it, of nine in ten points there; anywhere where none is known. Above 1 a contact may stand where
+/// the ports know nothing of it.
+double port_distance_over_thickness(const ElasticSolid& solid, std::span<const Port> ports,
+                                    const ExpectedPlace& expected);
 
 }  // namespace torsion

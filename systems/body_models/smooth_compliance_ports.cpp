@@ -2,95 +2,16 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numbers>
-#include <optional>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/vector_relational.hpp>
 
+#include "systems/body_models/footing.hpp"
 #include "systems/body_models/smooth_compliance.hpp"
+#include "systems/body_models/solid_surface.hpp"
 
 namespace torsion {
 namespace {
-
-using std::numbers::pi;
-
-constexpr double kCandidateCells = 28.0;  // along the longest side: some thousands on the surface
-
-/// Points spread over a surface.
-struct SurfacePoints {
-  std::vector<Port> free;
-  std::vector<glm::dvec3> clamped;  // m
-  double area = 0.0;                // m^2, of both, roughly
-};
-
-std::optional<Port> on_surface(const ElasticSolid& solid, glm::dvec3 point, double reach) {
-  Distance distance = solid.signed_distance(point);
-  if (std::abs(distance.value) > reach) {
-    return std::nullopt;
-  }
-  for (int i = 0; i < 4; ++i) {
-    point -= distance.gradient * distance.value;
-    distance = solid.signed_distance(point);
-  }
-  if (!(std::abs(distance.value) < 1e-2 * reach)) {
-    return std::nullopt;
-  }
-  return Port{point, glm::normalize(distance.gradient)};
-}
-
-/// The nearest surface point of each lattice cell that the surface goes through.
-SurfacePoints sample_surface(const ElasticSolid& solid) {
-  const glm::dvec3 extent = solid.bounds.highest - solid.bounds.lowest;
-  const double size = std::max({extent.x, extent.y, extent.z}) / kCandidateCells;
-  // Odd: a symmetric body has candidates in its middle planes.
-  const glm::uvec3 cells = glm::uvec3(glm::max(glm::ceil(extent / size), glm::dvec3(6.0))) | 1U;
-  const glm::dvec3 spacing = extent / glm::dvec3(cells);
-  const double reach = 0.5 * glm::length(spacing);
-  SurfacePoints points;
-  for (std::uint32_t z = 0; z < cells.z; ++z) {
-    for (std::uint32_t y = 0; y < cells.y; ++y) {
-      for (std::uint32_t x = 0; x < cells.x; ++x) {
-        const glm::dvec3 cell(x, y, z);
-        const glm::dvec3 center = solid.bounds.lowest + spacing * (cell + glm::dvec3(0.5));
-        const std::optional<Port> port = on_surface(solid, center, reach);
-        if (!port || glm::any(glm::greaterThan(glm::abs(port->position - center),
-                                               glm::dvec3(0.5 + 1e-9) * spacing))) {
-          continue;
-        }
-        // the share of the cell's section that the surface is
-        const glm::dvec3 n = glm::abs(port->normal);
-        points.area += spacing.x * spacing.y * spacing.z /
-                       std::max({n.x * spacing.x, n.y * spacing.y, n.z * spacing.z});
-        if (solid.clamped(port->position)) {
-          points.clamped.push_back(port->position);
-        } else {
-          points.free.push_back(*port);
-        }
-      }
-    }
-  }
-  return points;
-}
-
-/// Whether the surface stays near the port's plane as far as `reach` around it.
-bool is_smooth(const ElasticSolid& solid, const Port& port, double reach) {
-  constexpr int kDirections = 8;
-  const glm::dvec3 other =
-      std::abs(port.normal.x) < 0.6 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
-  const glm::dvec3 first = glm::normalize(glm::cross(port.normal, other));
-  const glm::dvec3 second = glm::cross(port.normal, first);
-  for (int k = 0; k < kDirections; ++k) {
-    const double angle = 2.0 * pi * k / kDirections;
-    const Distance distance = solid.signed_distance(
-        port.position + reach * (std::cos(angle) * first + std::sin(angle) * second));
-    if (glm::dot(distance.gradient, port.normal) < 0.6 || std::abs(distance.value) > 0.5 * reach) {
-      return false;
-    }
-  }
-  return true;
-}
 
 /// The end of the middle line that goes from the clamp through the body: where contacts are
 /// likeliest.
@@ -198,41 +119,55 @@ struct Focus {
 };
 
 /// How far apart ports are to be at each candidate, over how far in the focus.
-/// @param reach  m: beyond the focus, until it is the largest
+/// @param reach    m: beyond the focus, until it is the largest
+/// @param largest  of them
 std::vector<double> wanted_sizes(const std::vector<Port>& candidates, const Focus& focus,
-                                 double reach) {
-  constexpr double kLargest = 2.5;
+                                 double reach, double largest) {
   std::vector<double> sizes(candidates.size());
   std::transform(candidates.begin(), candidates.end(), sizes.begin(), [&](const Port& port) {
     const double beyond =
         std::min(reach, glm::distance(port.position, focus.center) - focus.radius);
-    return 1.0 + (kLargest - 1.0) * std::max(beyond, 0.0) / reach;
+    return 1.0 + (largest - 1.0) * std::max(beyond, 0.0) / reach;
   });
   return sizes;
 }
 
-}  // namespace
+/// Where ports are to be densest, and by how much.
+struct Density {
+  Focus focus;
+  double reach = 0.0;    // m
+  double largest = 2.5;  // times as far apart at the most as in the focus
+};
 
-std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count) {
-  const SurfacePoints points = sample_surface(solid);
-  const double spacing = std::sqrt(points.area / std::max(count, 1U));
-  std::vector<Port> candidates;
-  double inset = spacing / 3.0;
-  for (int tries = 0; tries < 4 && candidates.size() < count; ++tries, inset *= 0.5) {
-    candidates.clear();
-    std::copy_if(points.free.begin(), points.free.end(), std::back_inserter(candidates),
-                 [&](const Port& port) { return is_smooth(solid, port, inset); });
-  }
-  std::vector<Port> ports;
-  if (candidates.empty() || count == 0) {
-    return ports;
-  }
-  const Mirrors mirrors = find_mirrors(solid, points);
-  center(mirrors, spacing, candidates);
-  std::size_t next = far_end(solid.bounds, candidates, points.clamped);
+std::size_t nearest_to(const std::vector<Port>& ports, const glm::dvec3& point) {
+  return static_cast<std::size_t>(
+      std::ranges::min_element(
+          ports, {}, [&](const Port& port) { return glm::distance(port.position, point); }) -
+      ports.begin());
+}
+
+/// At the end opposite of the clamp.
+Density usual_density(const ElasticSolid& solid, const std::vector<Port>& candidates,
+                      const SurfacePoints& points) {
   const glm::dvec3 extent = solid.bounds.highest - solid.bounds.lowest;
-  const Focus end{candidates[next].position, 0.5 * std::min({extent.x, extent.y, extent.z})};
-  const std::vector<double> sizes = wanted_sizes(candidates, end, 2.0 * end.radius);
+  const double half = 0.5 * std::min({extent.x, extent.y, extent.z});
+  const std::size_t end = far_end(solid.bounds, candidates, points.clamped);
+  return {{candidates[end].position, half}, 2.0 * half};
+}
+
+/// On thin walls, where contacts are expected.
+/// @param wall  m, thickness
+Density density_on_walls(const ExpectedPlace& expected, double wall) {
+  return {{expected.center, expected.radius + 2.0 * wall}, 4.0 * wall, 6.0};
+}
+
+/// Candidates and their mirror images, each next one farthest from all before it and from the
+/// clamp, in distances over what is wanted there.
+void choose_spread(const std::vector<Port>& candidates, const Mirrors& mirrors,
+                   const std::vector<glm::dvec3>& clamped, const Density& density, double spacing,
+                   std::size_t count, std::vector<Port>& ports) {
+  const std::vector<double> sizes =
+      wanted_sizes(candidates, density.focus, density.reach, density.largest);
   std::vector<double> nearest(candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     nearest[i] = to_own_images(candidates[i], mirrors) / sizes[i];
@@ -242,7 +177,8 @@ std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count) {
       nearest[i] = std::min(nearest[i], glm::distance(candidates[i].position, from) / sizes[i]);
     }
   };
-  std::for_each(points.clamped.begin(), points.clamped.end(), keep_away);
+  std::ranges::for_each(clamped, keep_away);
+  std::size_t next = nearest_to(candidates, density.focus.center);
   while (nearest[next] > 0.05 * spacing || ports.empty()) {
     const std::vector<Port> images = images_of(candidates[next], mirrors);
     if (ports.size() + images.size() > count && !ports.empty()) {
@@ -255,7 +191,109 @@ std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count) {
     next = static_cast<std::size_t>(std::max_element(nearest.begin(), nearest.end()) -
                                     nearest.begin());
   }
+}
+
+/// Ports for faces that have none of their own, such as the narrow rim of a tube: the point from
+/// which the nearest port is seen farthest over `reach`, again and again, until none is beyond it.
+/// @param points  m, of the free surface
+/// @param reach   m, of each
+/// @param most    how many
+void add_seen_ports(const std::vector<Port>& points, const std::vector<double>& reach,
+                    std::size_t most, std::vector<Port>& ports) {
+  std::vector<double> beyond(points.size(), kNeverSeen);
+  const auto see = [&](const Port& port) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double seen =
+          seen_distance({port.position, port.normal}, points[i].position, points[i].normal);
+      beyond[i] = std::min(beyond[i], seen / reach[i]);
+    }
+  };
+  std::ranges::for_each(ports, see);
+  for (std::size_t added = 0; added < most && !points.empty(); ++added) {
+    const auto farthest = std::ranges::max_element(beyond);
+    if (*farthest <= 1.0) {
+      break;
+    }
+    ports.push_back(points[static_cast<std::size_t>(farthest - beyond.begin())]);
+    see(ports.back());
+  }
+}
+
+/// Farther than any point of a face with ports is from the nearest (measured: 2.5 spacings).
+constexpr double kWithoutPorts = 3.0;
+constexpr double kApartOnWalls = 0.6;  // of a wall's thickness, where contacts are expected
+
+/// How far from the nearest port each point may be, m.
+std::vector<double> seen_reach(const std::vector<Port>& points, const Focus* walls, double wall,
+                               double spacing) {
+  std::vector<double> reach(points.size(), kWithoutPorts * spacing);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (walls != nullptr && glm::distance(points[i].position, walls->center) < walls->radius) {
+      reach[i] = kApartOnWalls * wall;
+    }
+  }
+  return reach;
+}
+
+}  // namespace
+
+std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count,
+                               const ExpectedPlace& expected) {
+  SurfacePoints points = sample_solid_surface(solid);
+  const double spacing = std::sqrt(points.area / std::max(count, 1U));
+  const double wall = wall_thickness(solid, points);
+  const bool on_walls = expected.known && wall < spacing;
+  if (on_walls) {
+    const glm::dvec3 extent = solid.bounds.highest - solid.bounds.lowest;
+    const double longest = std::max({extent.x, extent.y, extent.z});
+    points = sample_solid_surface(solid, std::clamp(4.0 * longest / wall, 28.0, 56.0));
+  }
+  std::vector<Port> candidates;
+  double inset = (on_walls ? std::min(wall, spacing) : spacing) / 3.0;
+  for (int tries = 0; tries < 4 && candidates.size() < count; ++tries, inset *= 0.5) {
+    candidates.clear();
+    std::copy_if(points.free.begin(), points.free.end(), std::back_inserter(candidates),
+                 [&](const Port& port) { return is_smooth(solid, port, inset); });
+  }
+  std::vector<Port> ports;
+  if (candidates.empty() || count == 0) {
+    return ports;
+  }
+  const Mirrors mirrors = find_mirrors(solid, points);
+  center(mirrors, spacing, candidates);
+  const Density density =
+      on_walls ? density_on_walls(expected, wall) : usual_density(solid, candidates, points);
+  choose_spread(candidates, mirrors, points.clamped, density, spacing, count, ports);
+  add_seen_ports(points.free,
+                 seen_reach(points.free, on_walls ? &density.focus : nullptr, wall, spacing), count,
+                 ports);
   return ports;
+}
+
+double port_distance_over_thickness(const ElasticSolid& solid, std::span<const Port> ports,
+                                    const ExpectedPlace& expected) {
+  const SurfacePoints points = sample_solid_surface(solid);
+  std::vector<double> shares;
+  for (const Port& point : points.free) {
+    const double thickness = thickness_at(solid, point);
+    if (expected.known &&
+        glm::distance(point.position, expected.center) > expected.radius + thickness) {
+      continue;
+    }
+    double nearest = kNeverSeen;
+    for (const Port& port : ports) {
+      nearest = std::min(nearest,
+                         seen_distance({port.position, port.normal}, point.position, point.normal));
+    }
+    shares.push_back(nearest / thickness);
+  }
+  if (shares.empty()) {
+    return 0.0;
+  }
+  const auto at =
+      shares.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(shares.size()));
+  std::nth_element(shares.begin(), at, shares.end());
+  return *at;
 }
 
 }  // namespace torsion

@@ -13,11 +13,19 @@ constexpr double kWide = 4.0;  // a body at least so many times as wide as thick
 bool is_wide(const World& world, std::uint32_t body, double thickness) {
   const FixedRegion& fixed = world.bodies.at<FixedRegion>(body);
   const Bounds& bounds = world.bodies.at<Bounds>(body);
-  const glm::dvec3 size = bounds.highest - bounds.lowest;
-  const glm::dvec3 across = size - size * glm::abs(fixed.normal);
-  const double width = std::min({across.x > 0.1 * thickness ? across.x : 1e300,
-                                 across.y > 0.1 * thickness ? across.y : 1e300,
-                                 across.z > 0.1 * thickness ? across.z : 1e300});
+  const glm::dvec3 along = glm::abs(fixed.normal);
+  const glm::dvec3 across = (bounds.highest - bounds.lowest) * (1.0 - along);
+  // Along two of the axes; the third is nearest to the normal.
+  const double steepest = std::max({along.x, along.y, along.z});
+  double width = 1e300;
+  bool seen = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (along[axis] == steepest && !seen) {
+      seen = true;
+    } else {
+      width = std::min(width, across[axis]);
+    }
+  }
   return width > kWide * thickness;
 }
 

@@ -97,6 +97,8 @@ TEST(FiniteElementsTest, TwoMeshesAgree) {
       {"ball_on_cube_nu49_6", "ball_on_cube_nu49_9"},
       {"thin_layer_6", "thin_layer_9"},
       {"soft_column_6", "soft_column_9"},
+      {"slender_column_6", "slender_column_9"},
+      {"plate_on_edge_6", "plate_on_edge_9"},
       {"mallet_on_ellipsoid_3", "mallet_on_ellipsoid_4"},
       {"compass_on_ellipsoid_4", "compass_on_ellipsoid_6"},
       {"large_strain_linear_6", "large_strain_linear_9"},

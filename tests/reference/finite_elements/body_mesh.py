@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-BLOCK = "Box(1) = {{0, 0, {bottom}, {half_width}, {half_width}, {height}}};"
+BLOCK = "Box(1) = {{0, 0, {bottom}, {half_width}, {half_depth}, {height}}};"
 # A quarter of an ellipsoid with its top at the origin, cut off at z = bottom, where it is held.
 ELLIPSOID = """
 Sphere(1) = {{0, 0, 0, 1}};
@@ -85,15 +85,17 @@ def make(shape, centers, fine, radius, coarse, growth=0.35):
         return read_msh(mesh)
 
 
-def block(half_width, height, fine, radius, coarse, growth=0.35):
-    """A block of side 2 half_width [m] under z = 0; see make."""
-    shape = BLOCK.format(bottom=-height, half_width=half_width, height=height)
+def block(half_width, half_depth, height, fine, radius, coarse, growth=0.35):
+    """A block of sides 2 half_width and 2 half_depth [m], along x and y, under z = 0; see make."""
+    shape = BLOCK.format(bottom=-height, half_width=half_width, half_depth=half_depth,
+                         height=height)
     return make(shape, [(0.0, 0.0, 0.0)], fine, radius, coarse, growth)
 
 
 def turned_block(half_width, height, fine, radius, coarse, growth=0.35):
     """As block; the mesh of its face x = 0 is that of its face y = 0 turned about z."""
-    shape = (BLOCK.format(bottom=-height, half_width=half_width, height=height)
+    shape = (BLOCK.format(bottom=-height, half_width=half_width, half_depth=half_width,
+                          height=height)
              + "\nPeriodic Surface {1} = {3} Rotate {{0, 0, 1}, {0, 0, 0}, Pi / 2};\n")
     return make(shape, [(0.0, 0.0, 0.0)], fine, radius, coarse, growth)
 

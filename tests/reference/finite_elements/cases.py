@@ -45,14 +45,17 @@ def below(height):
     return lambda points: points[:, 2] < height + 1e-9
 
 
-def ball_on_block(ball, depth, width, height, *, radius=None, coarse=None, patch=1.35, **keys):
+def ball_on_block(ball, depth, width, height, *, across=None, radius=None, coarse=None, patch=1.35,
+                  **keys):
     """A ball on the middle of a block that is held at its bottom; it touches within `patch` times
-    `radius` [m]."""
+    `radius` [m]. `across` [m]: its other width."""
     radius = radius or np.sqrt(ball * depth)
     coarse = coarse or height / 4
+    half_depth = (across or width) / 2
     return Case(
         radius, depth, keys.pop("phi_max", 0.1), tools.Ball(ball),
-        lambda fine: body_mesh.block(width / 2, height, fine, (patch - 0.15) * radius, coarse),
+        lambda fine: body_mesh.block(width / 2, half_depth, height, fine, (patch - 0.15) * radius,
+                                     coarse),
         on_plane, within(patch * radius), below(-height), **keys)
 
 
@@ -143,6 +146,13 @@ def all_cases():
         # Deep enough for a contact radius of 0.4 of the side.
         "soft_column": ball_on_block(0.2, 2.4e-3, COLUMN, COLUMN, youngs_modulus=1e4, friction=5.0,
                                      radius=0.4 * COLUMN, patch=1.5, coarse=COLUMN / 8),
+        # Twelve times as high as wide: most of the depth is the column's own, and half of the turn.
+        "slender_column": ball_on_block(0.008, 3.4e-4, 0.008, 0.1, youngs_modulus=1e6,
+                                        poisson_ratio=0.3, friction=0.5, radius=0.95e-3,
+                                        coarse=0.002),
+        # A wall pressed on its narrow upper side, as a tube's rim is.
+        "plate_on_edge": ball_on_block(0.0036, 4e-4, 0.006, 0.06, across=0.06, youngs_modulus=1e6,
+                                       poisson_ratio=0.3, friction=0.5, coarse=0.003),
         "mallet_on_ellipsoid": mallet_on_ellipsoid(),
         "compass_on_ellipsoid": compass_on_ellipsoid(),
         "large_strain": DeepCase(),

@@ -245,6 +245,8 @@ std::vector<ElementScene> element_scenes() {
   const Material slender{1e6, 0.3, 0.5};
   scenes.push_back(
       ball_on_block("slender_column", "Ball on a slender column", 0.008, 0.008, 0.1, slender));
+  scenes.push_back(ball_on_block("plate_on_edge", "Ball on the edge of a standing plate", 0.0036,
+                                 0.006, 0.06, slender, 0.06));
   scenes.push_back(ball_on_block("large_strain_linear",
                                  "Ball pressed deep into a cube, as linear elasticity has it",
                                  kPaperBallRadius, 0.1, 0.1, nu49));

@@ -19,6 +19,9 @@ Result<Simulation> prepare_case(const ReferenceCase& reference_case, const Model
   options.contact_model = models.contact;
   options.body_model = models.body;
   options.settings.grid_side = models.grid_side;
+  for (const PathPoint& point : reference_case.path) {
+    options.expected_poses.push_back({point.tool});
+  }
   return prepare(reference_case.scene, options);
 }
 

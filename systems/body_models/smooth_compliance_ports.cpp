@@ -193,29 +193,55 @@ void choose_spread(const std::vector<Port>& candidates, const Mirrors& mirrors,
   }
 }
 
-/// Ports for faces that have none of their own, such as the narrow rim of a tube: the point from
-/// which the nearest port is seen farthest over `reach`, again and again, until none is beyond it.
-/// @param points  m, of the free surface
-/// @param reach   m, of each
-/// @param most    how many
-void add_seen_ports(const std::vector<Port>& points, const std::vector<double>& reach,
-                    std::size_t most, std::vector<Port>& ports) {
-  std::vector<double> beyond(points.size(), kNeverSeen);
+/// A point of the surface, and the ports that a contact there would see.
+struct Sight {
+  Port point;
+  double reach = 0.0;           // m: one port is to be nearer
+  double nearest = kNeverSeen;  // m: the nearest
+  std::size_t count = 0;        // of those that are seen at all and not far away
+};
+
+/// As few tell of all rigid motions of a small face, and of how it bends.
+constexpr std::size_t kFewestSeen = 7;
+
+/// How much a point lacks a port; nothing where it is not above 0.
+double lack_of(const Sight& sight, double spacing) {
+  if (sight.count == 0) {
+    return kNeverSeen;
+  }
+  // Of the spacing. The end of a rod 1 : 100 has room for kFewestSeen ports that far apart.
+  constexpr double kTooNear = 0.2;
+  const bool few = sight.count < kFewestSeen && sight.nearest > kTooNear * spacing;
+  return few || sight.nearest > sight.reach ? sight.nearest : 0.0;
+}
+
+/// Ports for faces that have too few of their own, such as the end of a rod or the narrow rim of a
+/// tube: one at the point from which the nearest is seen farthest, again and again.
+/// @param most  how many
+void add_seen_ports(std::vector<Sight> sights, double spacing, std::size_t most,
+                    std::vector<Port>& ports) {
+  constexpr double kNotFar = 3.0;  // spacings
   const auto see = [&](const Port& port) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    for (Sight& sight : sights) {
       const double seen =
-          seen_distance({port.position, port.normal}, points[i].position, points[i].normal);
-      beyond[i] = std::min(beyond[i], seen / reach[i]);
+          seen_distance({port.position, port.normal}, sight.point.position, sight.point.normal);
+      sight.nearest = std::min(sight.nearest, seen);
+      const double away = glm::distance(port.position, sight.point.position);
+      sight.count += seen < kNeverSeen && away < kNotFar * spacing ? 1U : 0U;
     }
   };
   std::ranges::for_each(ports, see);
-  for (std::size_t added = 0; added < most && !points.empty(); ++added) {
-    const auto farthest = std::ranges::max_element(beyond);
-    if (*farthest <= 1.0) {
+  const auto lack = [&](const Sight& sight) {
+    return lack_of(sight, spacing);
+  };
+  for (std::size_t added = 0; added < most && !sights.empty(); ++added) {
+    const auto farthest = std::ranges::max_element(sights, {}, lack);
+    if (lack(*farthest) <= 0.0) {
       break;
     }
-    ports.push_back(points[static_cast<std::size_t>(farthest - beyond.begin())]);
-    see(ports.back());
+    const Port chosen = farthest->point;
+    ports.push_back(chosen);
+    see(chosen);
   }
 }
 
@@ -223,31 +249,41 @@ void add_seen_ports(const std::vector<Port>& points, const std::vector<double>& 
 constexpr double kWithoutPorts = 3.0;
 constexpr double kApartOnWalls = 0.6;  // of a wall's thickness, where contacts are expected
 
-/// How far from the nearest port each point may be, m.
-std::vector<double> seen_reach(const std::vector<Port>& points, const Focus* walls, double wall,
-                               double spacing) {
-  std::vector<double> reach(points.size(), kWithoutPorts * spacing);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (walls != nullptr && glm::distance(points[i].position, walls->center) < walls->radius) {
-      reach[i] = kApartOnWalls * wall;
+/// Of the points to which neither an edge nor the clamp is near.
+/// @param walls  where contacts are expected on thin walls; null: on none
+std::vector<Sight> sights_of(const ElasticSolid& solid, const SurfacePoints& points,
+                             const Focus* walls, double wall, double spacing) {
+  const double inset = std::min(spacing / 3.0, wall / 8.0);
+  const double from_clamp = std::min(spacing, wall);
+  const auto is_near_clamp = [&](const Port& point) {
+    return std::ranges::any_of(points.clamped, [&](const glm::dvec3& clamped) {
+      return glm::distance(point.position, clamped) < from_clamp;
+    });
+  };
+  std::vector<Sight> sights;
+  for (const Port& point : points.free) {
+    if (is_smooth(solid, point, inset) && !is_near_clamp(point)) {
+      const bool in_walls =
+          walls != nullptr && glm::distance(point.position, walls->center) < walls->radius;
+      sights.push_back({point, in_walls ? kApartOnWalls * wall : kWithoutPorts * spacing});
     }
   }
-  return reach;
+  return sights;
 }
 
 }  // namespace
 
 std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count,
                                const ExpectedPlace& expected) {
-  SurfacePoints points = sample_solid_surface(solid);
-  const double spacing = std::sqrt(points.area / std::max(count, 1U));
-  const double wall = wall_thickness(solid, points);
+  const SurfacePoints coarse = sample_solid_surface(solid);
+  const double spacing = std::sqrt(coarse.area / std::max(count, 1U));
+  const double wall = wall_thickness(solid, coarse);
   const bool on_walls = expected.known && wall < spacing;
-  if (on_walls) {
-    const glm::dvec3 extent = solid.bounds.highest - solid.bounds.lowest;
-    const double longest = std::max({extent.x, extent.y, extent.z});
-    points = sample_solid_surface(solid, std::clamp(4.0 * longest / wall, 28.0, 56.0));
-  }
+  const glm::dvec3 extent = solid.bounds.highest - solid.bounds.lowest;
+  const double longest = std::max({extent.x, extent.y, extent.z});
+  const SurfacePoints fine =
+      sample_solid_surface(solid, std::clamp(4.0 * longest / wall, 28.0, 56.0));
+  const SurfacePoints& points = on_walls ? fine : coarse;
   std::vector<Port> candidates;
   double inset = (on_walls ? std::min(wall, spacing) : spacing) / 3.0;
   for (int tries = 0; tries < 4 && candidates.size() < count; ++tries, inset *= 0.5) {
@@ -264,20 +300,20 @@ std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count,
   const Density density =
       on_walls ? density_on_walls(expected, wall) : usual_density(solid, candidates, points);
   choose_spread(candidates, mirrors, points.clamped, density, spacing, count, ports);
-  add_seen_ports(points.free,
-                 seen_reach(points.free, on_walls ? &density.focus : nullptr, wall, spacing), count,
-                 ports);
+  add_seen_ports(sights_of(solid, fine, on_walls ? &density.focus : nullptr, wall, spacing),
+                 spacing, count, ports);
   return ports;
 }
 
 double port_distance_over_thickness(const ElasticSolid& solid, std::span<const Port> ports,
                                     const ExpectedPlace& expected) {
-  const SurfacePoints points = sample_solid_surface(solid);
+  const std::vector<Port> points = sample_solid_surface(solid).free;
+  const std::vector<double> walls = walls_at(solid, points);
   std::vector<double> shares;
-  for (const Port& point : points.free) {
-    const double thickness = thickness_at(solid, point);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Port& point = points[i];
     if (expected.known &&
-        glm::distance(point.position, expected.center) > expected.radius + thickness) {
+        glm::distance(point.position, expected.center) > expected.radius + walls[i]) {
       continue;
     }
     double nearest = kNeverSeen;
@@ -285,7 +321,7 @@ double port_distance_over_thickness(const ElasticSolid& solid, std::span<const P
       nearest = std::min(nearest,
                          seen_distance({port.position, port.normal}, point.position, point.normal));
     }
-    shares.push_back(nearest / thickness);
+    shares.push_back(nearest / walls[i]);
   }
   if (shares.empty()) {
     return 0.0;

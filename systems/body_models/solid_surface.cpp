@@ -111,4 +111,20 @@ double thickness_at(const ElasticSolid& solid, const Port& port) {
   return way;
 }
 
+std::vector<double> walls_at(const ElasticSolid& solid, std::span<const Port> points) {
+  std::vector<double> thickness(points.size());
+  std::ranges::transform(points, thickness.begin(),
+                         [&](const Port& point) { return thickness_at(solid, point); });
+  std::vector<double> walls = thickness;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (thickness[k] < walls[i] &&
+          glm::distance(points[i].position, points[k].position) < thickness[k]) {
+        walls[i] = thickness[k];
+      }
+    }
+  }
+  return walls;
+}
+
 }  // namespace torsion

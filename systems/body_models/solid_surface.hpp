@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "systems/body_models/smooth_compliance.hpp"
@@ -22,6 +23,11 @@ bool is_smooth(const ElasticSolid& solid, const Port& port, double reach);
 
 /// How far it is through the solid from a point of its surface, against the normal, m.
 double thickness_at(const ElasticSolid& solid, const Port& port);
+
+/// The same, but no more than that of any point which is nearer than the solid is thick there, m:
+/// on the rim of a plate the plate's thickness, not its height.
+/// @return (points)
+std::vector<double> walls_at(const ElasticSolid& solid, std::span<const Port> points);
 
 /// That of the solid's thin walls, m: of its free surface a tenth has less behind it.
 double wall_thickness(const ElasticSolid& solid, const SurfacePoints& points);

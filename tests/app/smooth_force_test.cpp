@@ -15,46 +15,10 @@
 #include "app/session.hpp"
 #include "ecs/model_names.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/standout.hpp"
 
 namespace torsion::test {
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return values.empty() ? 0.0 : *middle;
-}
-
-/// Over the steps in which there is a force.
-double median_length(const std::vector<glm::dvec3>& vectors) {
-  std::vector<double> lengths;
-  for (const glm::dvec3& vector : vectors) {
-    if (vector != glm::dvec3(0.0)) {
-      lengths.push_back(glm::length(vector));
-    }
-  }
-  return median(lengths);
-}
-
-/// How far the worst step is from the median of its ten neighbours, component by component.
-double largest_standout(const std::vector<glm::dvec3>& vectors) {
-  constexpr std::size_t kBeside = 5;
-  double largest = 0.0;
-  for (std::size_t step = kBeside; step + kBeside < vectors.size(); ++step) {
-    glm::dvec3 middle(0.0);
-    for (int axis = 0; axis < 3; ++axis) {
-      std::vector<double> neighbours;
-      for (std::size_t k = step - kBeside; k <= step + kBeside; ++k) {
-        if (k != step) {
-          neighbours.push_back(vectors[k][axis]);
-        }
-      }
-      middle[axis] = median(neighbours);
-    }
-    largest = std::max(largest, glm::length(vectors[step] - middle));
-  }
-  return largest;
-}
 
 struct SmoothRun {
   const char* scene;
@@ -95,13 +59,13 @@ TEST_P(SmoothForceTest, NoStepStandsOut) {
   for (std::uint32_t tool = 0; tool < tools; ++tool) {
     const double force = median_length(forces[tool]);
     EXPECT_GT(force, 0.0);
-    EXPECT_LE(largest_standout(forces[tool]), 0.5 * force) << "force of tool " << tool;
+    EXPECT_LE(largest_standout(forces[tool]).size, 0.5 * force) << "force of tool " << tool;
     // Where a tool is pressed straight in there is no torque but rounding: the median counts from
     // where the force has an arm of a thirtieth of the tool on.
     const Bounds& bounds = world.tools.at<Bounds>(tool);
     const double arm = 1.0 / 30.0 * glm::distance(bounds.lowest, bounds.highest);
     const double torque = std::max(median_length(torques[tool]), arm * force);
-    EXPECT_LE(largest_standout(torques[tool]), 0.5 * torque) << "torque of tool " << tool;
+    EXPECT_LE(largest_standout(torques[tool]).size, 0.5 * torque) << "torque of tool " << tool;
   }
 }
 

@@ -339,6 +339,26 @@ TEST(SmoothComplianceTest, SaysWhatIsWrongWithABody) {
   EXPECT_FALSE(build_smooth_compliance(block_solid({1.0, 1.0, 1.0}, 0.6), ports, {8, 1, {}}).ok());
 }
 
+// A contact there knows the body's turns and bends only by the ports that it sees.
+TEST(ChoosePortsTest, TheEndOfASlenderColumnHasPortsToo) {
+  for (const double width : {0.3, 0.15, 0.08}) {
+    const ElasticSolid solid = block_solid({width, width, 1.0}, 0.3);
+    const std::vector<Port> ports = choose_ports(solid, 128);
+    EXPECT_GE(std::ranges::count_if(ports, [](const Port& port) { return port.normal.z > 0.9; }), 7)
+        << width;
+    EXPECT_LT(port_distance_over_thickness(solid, ports, {}), 1.0) << width;
+  }
+}
+
+TEST(ChoosePortsTest, OnAThinWallTheyAreDenseWhereContactsAreExpected) {
+  const ElasticSolid plate = block_solid({0.1, 1.0, 1.0}, 0.3);
+  const ExpectedPlace place{true, {0.0, 0.2, 1.0}, 0.03};
+  const double usual = port_distance_over_thickness(plate, choose_ports(plate, 128), place);
+  const double dense = port_distance_over_thickness(plate, choose_ports(plate, 128, place), place);
+  EXPECT_GT(usual, 0.6);  // how far they may be apart there
+  EXPECT_LT(dense, 0.6);
+}
+
 TEST(ChoosePortsTest, PortsLieOnTheFreeSurfaceSpreadAndAwayFromEdges) {
   const ElasticSolid solid = block_solid({1.0, 1.0, 1.0}, 0.3);
   const std::vector<Port> ports = choose_ports(solid, 60);

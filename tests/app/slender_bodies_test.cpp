@@ -1,0 +1,117 @@
+// Bodies that are thin against their length: body model compliance represents them, or says that it
+// does not.
+
+#include <cmath>
+#include <numbers>
+
+#include <glm/gtc/quaternion.hpp>
+#include <gtest/gtest.h>
+
+#include "app/session.hpp"
+#include "device/scripted_motion.hpp"
+#include "scenes/load_gltf.hpp"
+#include "tests/support/paths.hpp"
+
+namespace torsion {
+namespace {
+
+SceneDescription case_scene(const std::string& name) {
+  LoadedScene loaded = load_gltf(test::source_folder() + "/tests/cases/" + name + ".gltf");
+  EXPECT_TRUE(loaded.scene) << to_text(loaded.problems);
+  return *loaded.scene;
+}
+
+/// The scene with everything that the tools do turned about y by `angle` [rad].
+std::vector<Pose> turned_poses(const SceneDescription& scene, double time, double angle) {
+  const glm::dquat turn = glm::angleAxis(angle, glm::dvec3(0.0, 1.0, 0.0));
+  std::vector<Pose> poses;
+  for (const ToolDescription& tool : scene.tools) {
+    const Pose pose = scripted_pose(tool.script, time);
+    poses.push_back({turn * pose.position, turn * pose.rotation});
+  }
+  return poses;
+}
+
+/// What presses the tool out of the body at the end of the scene's motion, N.
+double last_force(const SceneDescription& scene, ContactModel contact, BodyModel body,
+                  double angle = 0.0) {
+  PrepareOptions options;
+  options.contact_model = contact;
+  options.body_model = body;
+  for (int k = 0; k <= 20; ++k) {
+    options.expected_poses.push_back(turned_poses(scene, scene.duration * k / 20, angle));
+  }
+  Result<Simulation> prepared = prepare(scene, options);
+  EXPECT_TRUE(prepared) << prepared.error().text;
+  Simulation& simulation = prepared.value();
+  const int steps = static_cast<int>(std::lround(1000.0 * scene.duration)) + 400;
+  for (int k = 0; k <= steps; ++k) {
+    step(simulation, turned_poses(scene, k * 1e-3, angle));
+  }
+  EXPECT_EQ(simulation.world.clock.at<Clock>(0).faults_ever, 0U);
+  return simulation.world.tools.at<ToolWrench>(0).total.force.y;
+}
+
+// Hertz in series with the bar, d = (9 F^2 / (16 R E*^2))^(1/3) + F L / (E A), less what the end's
+// own field lacks of a half-space's, 0.57 F / (E R_rod): of axisymmetric finite elements, to 2 %.
+TEST(SlenderBodyTest, ARodPressedOnItsEndIsHertzInSeriesWithTheBar) {
+  const SceneDescription scene = case_scene("rod_1_to_12");
+  constexpr double kBall = 0.008;   // m
+  constexpr double kRod = 0.004;    // m: its radius
+  constexpr double kLength = 0.1;   // m
+  constexpr double kModulus = 1e6;  // Pa
+  constexpr double kPoisson = 0.3;
+  const double contact_modulus = kModulus / (1.0 - kPoisson * kPoisson);
+  const double depth = -scripted_pose(scene.tools[0].script, scene.duration).position.y;
+  const double bar =
+      kLength / (kModulus * std::numbers::pi * kRod * kRod) - 0.57 / (kModulus * kRod);
+  double low = 0.0;
+  double high = 1.0;
+  for (int i = 0; i < 60; ++i) {
+    const double force = 0.5 * (low + high);
+    const double given =
+        std::cbrt(9.0 * force * force / (16.0 * kBall * contact_modulus * contact_modulus)) +
+        bar * force;
+    (given < depth ? low : high) = force;
+  }
+  for (const ContactModel contact : {ContactModel::kMdr, ContactModel::kPatch}) {
+    EXPECT_NEAR(last_force(scene, contact, BodyModel::kCompliance), low, 0.03 * low);
+  }
+}
+
+// A tube is the same all around, wherever its ports are.
+TEST(SlenderBodyTest, ATubeGivesWayAndTheSameAllAroundItsRim) {
+  const SceneDescription scene = case_scene("tube_wall_6mm");
+  const double stiff = last_force(scene, ContactModel::kPatch, BodyModel::kNone);
+  double sum = 0.0;
+  std::vector<double> forces;
+  for (const double angle : {0.0, 0.2, 0.5, 1.0, 2.2}) {
+    forces.push_back(last_force(scene, ContactModel::kPatch, BodyModel::kCompliance, angle));
+    sum += forces.back();
+  }
+  const double mean = sum / static_cast<double>(forces.size());
+  // As a plate on its edge, of the same thickness: 0.64 of a half-space's (finite elements).
+  EXPECT_NEAR(mean, 0.64 * stiff, 0.05 * stiff);
+  for (const double force : forces) {
+    EXPECT_NEAR(force, mean, 0.04 * mean);  // the error of the plate's force
+  }
+}
+
+TEST(SlenderBodyTest, WallsThatCannotBeRepresentedAreRefusedAndAutoTakesAnotherModel) {
+  SceneDescription scene = case_scene("tube_wall_6mm");
+  PrepareOptions options;  // moved by hand: nobody knows where
+  options.body_model = BodyModel::kCompliance;
+  const Result<Simulation> refused = prepare(scene, options);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().text.find("walls are 6"), std::string::npos) << refused.error().text;
+  EXPECT_NE(refused.error().text.find("animation of the tool"), std::string::npos);
+  scene.bodies[0].models.body = BodyModel::kAuto;
+  options.body_model = BodyModel::kAuto;
+  const Result<Simulation> taken = prepare(scene, options);
+  ASSERT_TRUE(taken) << taken.error().text;
+  EXPECT_EQ(taken.value().choices[0].models.body, BodyModel::kSkeleton);
+  EXPECT_NE(taken.value().choices[0].body_why.find("walls are 6"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace torsion

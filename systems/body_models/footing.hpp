@@ -6,11 +6,9 @@
 #include <Eigen/Core>
 
 #include "ecs/components.hpp"
+#include "systems/matrix6.hpp"
 
 namespace torsion {
-
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 /// What body model compliance knows of a body: its ports, and the matrix of the displacements at
 /// ports by forces at ports, (3 ports)^2, row-major, m/N.

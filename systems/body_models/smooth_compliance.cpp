@@ -14,11 +14,10 @@
 #include "systems/body_models/smooth_compliance_grid.hpp"
 #include "systems/body_models/smooth_compliance_loads.hpp"
 #include "systems/body_models/smooth_compliance_solver.hpp"
+#include "systems/matrix6.hpp"
 
 namespace torsion {
 namespace {
-
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// Of the shear modulus: keeps nu = 0.5 solvable. Volumes then change by a ten-thousandth of what
 /// shapes do.

@@ -12,12 +12,11 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "systems/matrix6.hpp"
 #include "systems/smooth_step.hpp"
 
 namespace torsion {
 namespace {
-
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// How near the surface counts as the contact's own surroundings. It must be wide enough for the
 /// elements to follow, and a large contact's size at most.

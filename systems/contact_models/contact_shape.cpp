@@ -8,13 +8,11 @@
 #include <glm/geometric.hpp>
 
 #include "systems/frames.hpp"
+#include "systems/matrix6.hpp"
 #include "systems/smooth_step.hpp"
 
 namespace torsion {
 namespace {
-
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr int kMoments = 15;  // of x^p y^q with p + q <= 4
 

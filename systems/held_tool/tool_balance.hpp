@@ -6,11 +6,9 @@
 
 #include "ecs/world.hpp"
 #include "systems/held_tool/virtual_coupling.hpp"
+#include "systems/matrix6.hpp"
 
 namespace torsion {
-
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 inline Eigen::Vector3d eigen(const glm::dvec3& v) {
   return {v.x, v.y, v.z};

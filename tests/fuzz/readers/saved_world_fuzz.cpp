@@ -1,0 +1,62 @@
+// A saved world in which bytes are changed and the checksum is right again, so that what comes
+// after it is read. The input is a list of changes: four bytes say where, one says what.
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "ecs/state_io.hpp"
+#include "tests/support/contact_scenes.hpp"
+
+namespace {
+
+struct Base {
+  std::vector<std::byte> bytes;
+  std::size_t content = 0;  // where it begins, behind the header, which ends with its checksum
+};
+
+std::uint64_t checksum_of(std::span<const std::byte> content) {
+  return XXH3_64bits(content.data(), content.size());
+}
+
+Base make_base() {
+  torsion::PrepareOptions options;
+  options.contact_model = torsion::ContactModel::kMdr;
+  options.body_model = torsion::BodyModel::kNone;
+  options.use_cache = false;
+  auto simulation = torsion::prepare(torsion::test::ball_on_cube(), options);
+  Base base{torsion::to_bytes(simulation.value().world), 0};
+  for (std::size_t at = sizeof(std::uint64_t); at < 256; ++at) {
+    std::uint64_t there = 0;
+    std::memcpy(&there, base.bytes.data() + at - sizeof there, sizeof there);
+    if (there == checksum_of(std::span(base.bytes).subspan(at))) {
+      base.content = at;
+      return base;
+    }
+  }
+  std::abort();  // the format has changed
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const Base base = make_base();
+  std::vector<std::byte> bytes = base.bytes;
+  constexpr std::size_t kChange = 5;
+  for (std::size_t at = 0; at + kChange <= size; at += kChange) {
+    std::uint32_t where = 0;
+    std::memcpy(&where, data + at, sizeof where);
+    bytes[base.content + where % (bytes.size() - base.content)] =
+        static_cast<std::byte>(data[at + sizeof where]);
+  }
+  const std::uint64_t checksum = checksum_of(std::span(bytes).subspan(base.content));
+  std::memcpy(bytes.data() + base.content - sizeof checksum, &checksum, sizeof checksum);
+  const auto world = torsion::from_bytes(bytes, "fuzz");
+  return world || !world.error().text.empty() ? 0 : 1;
+}

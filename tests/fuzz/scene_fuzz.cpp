@@ -1,0 +1,30 @@
+// Random scenes, one a seed, and the properties that must hold for each.
+// usage: scene_fuzz [SECONDS [FIRST_SEED]]
+
+#include <chrono>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "tests/fuzz/scene_properties.hpp"
+
+int main(int count, char** words) {
+  using Clock = std::chrono::steady_clock;
+  const double seconds = count > 1 ? std::strtod(words[1], nullptr) : 60.0;
+  const std::uint64_t first = count > 2 ? std::strtoull(words[2], nullptr, 10) : 1;
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  std::uint64_t seed = first;
+  std::uint64_t broken = 0;
+  for (; Clock::now() < end; ++seed) {
+    const torsion::test::RandomScene scene = torsion::test::random_scene(seed);
+    if (const auto property = torsion::test::broken_property(scene)) {
+      broken += 1;
+      fmt::print("seed {}: {}\n  {}\n", seed, *property, scene.text);
+      std::fflush(stdout);
+    }
+  }
+  fmt::print("{} scenes, {} broken\n", seed - first, broken);
+  return broken == 0 ? 0 : 1;
+}

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "tests/fuzz/random_scene.hpp"
+
+namespace torsion::test {
+
+/// Runs the scene along its tools' ways, which are smooth in time, and says which of these does not
+/// hold: every wrench is finite; no fault; no step's force stands out of its ten neighbours' median
+/// by more than half of the run's; held still, nothing changes; the closed path takes work and
+/// gives none; turned as a whole, all of it turns with it.
+/// @return nothing where all hold, or the scene cannot be prepared, which is said in its own words
+std::optional<std::string> broken_property(const RandomScene& random);
+
+}  // namespace torsion::test

@@ -169,22 +169,6 @@ bool mark_points(const Grid& grid, const RegionPoints& contact, CellBits& own, C
   return any_foreign;
 }
 
-/// Adds to `bits` their free neighbours, those across a corner too. True when there were any.
-bool spread_one_step(const Grid& grid, CellBits& free, CellBits& bits) {
-  std::uint64_t any = 0;
-  std::uint64_t before = 0;  // the row before, as it was
-  for (std::uint32_t j = 0; j < grid.side; ++j) {
-    const std::uint64_t after = j + 1 < grid.side ? bits[j + 1] : 0;
-    const std::uint64_t rows = before | bits[j] | after;
-    const std::uint64_t fresh = (rows | rows << 1 | rows >> 1) & free[j];
-    before = bits[j];
-    bits[j] |= fresh;
-    free[j] &= ~fresh;
-    any |= fresh;
-  }
-  return any != 0;
-}
-
 /// Takes the coverage from cells that are not joined to the region's own contact points, or are
 /// nearer to those of another cluster, in steps from cell to cell. Returns those that keep it.
 CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact, const CellBits& covered) {
@@ -211,8 +195,8 @@ CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact, const Cel
     free[j] = covered[j] & ~(own[j] | foreign[j]);
   }
   for (bool more = true; more;) {
-    more = spread_one_step(grid, free, own);
-    more = (any_foreign && spread_one_step(grid, free, foreign)) || more;
+    more = spread_one_step(grid.side, free, own);
+    more = (any_foreign && spread_one_step(grid.side, free, foreign)) || more;
   }
   for (std::uint32_t j = 0; j < grid.side; ++j) {
     for (std::uint64_t lost = covered[j] & ~own[j]; lost != 0; lost &= lost - 1) {
@@ -265,6 +249,21 @@ void cell_centers(const RegionFrame& frame, std::uint32_t side, std::span<double
       std::copy_n(x.begin(), side, &x[row]);
     }
   }
+}
+
+bool spread_one_step(std::uint32_t side, CellBits& free, CellBits& bits) {
+  std::uint64_t any = 0;
+  std::uint64_t before = 0;  // the row before, as it was
+  for (std::uint32_t j = 0; j < side; ++j) {
+    const std::uint64_t after = j + 1 < side ? bits[j + 1] : 0;
+    const std::uint64_t rows = before | bits[j] | after;
+    const std::uint64_t fresh = (rows | rows << 1 | rows >> 1) & free[j];
+    before = bits[j];
+    bits[j] |= fresh;
+    free[j] &= ~fresh;
+    any |= fresh;
+  }
+  return any != 0;
 }
 
 CellBits covered_cells(const Grid& grid) {

@@ -70,6 +70,10 @@ void cell_centers(const RegionFrame& frame, std::uint32_t side, std::span<double
 /// Cells as bits: bit i of word j is cell (i, j).
 using CellBits = std::array<std::uint64_t, kMaxGridSide>;
 
+/// Adds to `bits` their neighbours of `free`, those across a corner too, and takes them from it.
+/// @return true when there were any
+bool spread_one_step(std::uint32_t side, CellBits& free, CellBits& bits);
+
 /// The cells with coverage. Leaves that in Scratch::cell_columns.
 CellBits covered_cells(const Grid& grid);
 

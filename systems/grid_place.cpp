@@ -7,6 +7,7 @@
 
 #include "systems/frames.hpp"
 #include "systems/patch_grid.hpp"
+#include "systems/smooth_step.hpp"
 
 namespace torsion {
 namespace {
@@ -81,6 +82,22 @@ void lay(const Grid& grid, const glm::dvec2& shift, const glm::dvec2& half_size)
 
 void fit(const Grid& grid, const PlaneBox& box) {
   lay(grid, 0.5 * (box.lowest + box.highest), half_size_for(grid, box));
+}
+
+void approach(const Grid& grid, const PlaneBox& box, bool moves) {
+  constexpr double kShort = 0.05;  // of the half size: a cell is an eighth of it
+  constexpr double kLong = 0.2;
+  constexpr double kPart = 0.5;
+  const glm::dvec2 half = grid.frame.half_size;
+  const glm::dvec2 shift = 0.5 * (box.lowest + box.highest);
+  const glm::dvec2 growth = half_size_for(grid, box) - half;
+  const glm::dvec2 off = glm::max(glm::abs(shift), glm::abs(growth)) / half;
+  const double most = std::max(off.x, off.y);
+  if (!moves && most < kShort) {
+    return;
+  }
+  const double part = kPart + (1.0 - kPart) * smooth_step((most - kShort) / (kLong - kShort));
+  lay(grid, part * shift, half + part * growth);
 }
 
 void restart_heights(const Grid& grid, double depth) {

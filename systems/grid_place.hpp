@@ -37,6 +37,11 @@ void lay(const Grid& grid, const glm::dvec2& shift, const glm::dvec2& half_size)
 /// Puts the grid around `box` (of its own plane).
 void fit(const Grid& grid, const PlaneBox& box);
 
+/// Likewise, but goes only a part of a short way: where a contact ends is known from cells to a
+/// share of one, and a grid that went all the way would find it elsewhere again, in every step.
+/// @param moves  whether the tool does; under one that stands a grid that nearly fits stays
+void approach(const Grid& grid, const PlaneBox& box, bool moves);
+
 /// Lets every cell look for the tool from the same depth.
 void restart_heights(const Grid& grid, double depth);
 

@@ -9,6 +9,7 @@
 #include "systems/fault.hpp"
 #include "systems/frames.hpp"
 #include "systems/grid_cells.hpp"
+#include "systems/join_clusters.hpp"
 #include "systems/join_patch.hpp"
 #include "systems/region_grid.hpp"
 #include "systems/region_wrenches.hpp"
@@ -294,7 +295,8 @@ void group_regions(StepContext& context) {
   World& world = context.world;
   Scratch& scratch = context.scratch;
   end_events(world);
-  for (const ContactPair& pair : scratch.pairs) {
+  for (ContactPair& pair : scratch.pairs) {
+    join_clusters(world, scratch, pair);
     const std::span<const ContactPoint> points(scratch.points.data() + pair.points.first,
                                                pair.points.count);
     match_clusters(world, scratch, pair, points);

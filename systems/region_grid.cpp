@@ -165,7 +165,9 @@ void follow_contact(StepContext& context, std::uint32_t region, const RegionPoin
   PlaneBox box = covered_box(grid, covered_cells(grid));
   include_points(grid, contact, box);
   if (!box.empty()) {
-    fit(grid, box);
+    const MotionOverBody motion = motion_over_body(context.world, region);
+    const bool moves = motion.shift != glm::dvec3(0.0) || motion.turn != glm::dvec3(0.0);
+    approach(grid, box, moves);
   }
   turn_normal_to(grid.frame, context.world.regions.at<RegionGeometry>(region).mean_normal);
 }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include "systems/fault.hpp"
 #include "systems/finite.hpp"
+#include "systems/force_bound.hpp"
 #include "systems/frames.hpp"
 #include "systems/region_motion.hpp"
 #include "systems/scratch.hpp"
@@ -96,81 +96,6 @@ void fade_event(RegionWrench& wrench, const Wrench& computed, double foretold, d
   wrench.on_tool = computed + wrench.event_change * wrench.event_share;
   if (wrench.event_share == 0.0) {
     wrench.event_change = wrench.on_tool - before;
-  }
-}
-
-/// A region's overlap with the body's rest shape.
-struct RestOverlap {
-  double depth = 0.0;   // m, the largest
-  double radius = 0.0;  // m, of a disc that holds it
-};
-
-constexpr double kDeeper = 3.0;  // than the deepest sample, at most
-
-RestOverlap rest_overlap(const StepContext& context, std::uint32_t region) {
-  const World& world = context.world;
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const RegionPoints& contact = context.scratch.region_points[block_of(identity)];
-  const std::span<const ContactPoint> points(context.scratch.points.data() + contact.points.first,
-                                             contact.points.count);
-  RestOverlap overlap;
-  glm::dvec3 lowest(1e300);
-  glm::dvec3 highest(-1e300);
-  for (const ContactPoint& point : points) {
-    if (point.cluster == contact.cluster) {
-      overlap.depth = std::max(overlap.depth, point.depth);
-      lowest = glm::min(lowest, point.position);
-      highest = glm::max(highest, point.position);
-    }
-  }
-  // Between samples it may be deeper, as cells show it; but where the body as a whole has moved,
-  // how far is what may be wrong.
-  const double of_cells = world.regions.at<RegionGeometry>(region).largest_depth;
-  const bool moves = world.bodies.at<BodyModels>(identity.body).body == BodyModel::kCompliance;
-  overlap.depth =
-      std::max(overlap.depth, moves ? std::min(of_cells, kDeeper * overlap.depth) : of_cells);
-  // Samples lie within the overlap; it ends between them and their neighbours, which are at most as
-  // far away as what makes two points one region.
-  const double threshold = world.bodies.at<BodyModels>(identity.body).region_threshold;
-  overlap.radius = (overlap.depth > 0.0 ? 0.5 * glm::length(highest - lowest) : 0.0) + threshold;
-  return overlap;
-}
-
-/// The last line, whatever the cause: no region carries more than a rigid punch that holds its
-/// overlap would, pressed in as deep as that is and as far as the body's other regions may push it
-/// against this one. A punch of radius a takes 2 E* a d on a half-space and 3 pi G a^4 d / (2 h^3)
-/// on a thin bonded layer without volume change (Johnson, Contact Mechanics, 1985, (3.36), 5.8);
-/// twice their sum is for curved bodies and for cells that are too coarse.
-void bound_forces(StepContext& context) {
-  constexpr double kSafety = 2.0;
-  constexpr double kLayer = 0.6;  // 3 pi / 16
-  World& world = context.world;
-  for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
-    if (world.bodies.at<BodyModels>(body).contact == ContactModel::kPaper) {
-      continue;  // a formula of the depth, which stiffens without bound
-    }
-    double depth = 0.0;  // m, of all regions together
-    double radius = 0.0;
-    double largest = 0.0;  // N
-    for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-      if (world.regions.at<RegionIdentity>(region).body == body) {
-        const RestOverlap overlap = rest_overlap(context, region);
-        depth += overlap.depth;
-        radius = std::max(radius, overlap.radius);
-        largest = std::max(largest, world.regions.at<RegionNormal>(region).force);
-      }
-    }
-    const Bounds& bounds = world.bodies.at<Bounds>(body);
-    const glm::dvec3 extent = bounds.highest - bounds.lowest;
-    const double height = std::min({extent.x, extent.y, extent.z});
-    const double thin = radius / height;
-    const double modulus = world.bodies.at<Elasticity>(body).contact_modulus();
-    const double most =
-        kSafety * 2.0 * modulus * radius * depth * (1.0 + kLayer * thin * thin * thin);
-    // Written so that NaN is left to who looks for that.
-    if (largest > most) {
-      raise(world.clock.at<Clock>(0), Fault::kForceTooLarge);
-    }
   }
 }
 

@@ -155,9 +155,10 @@ DiscForces spread_wrench(const ContactEllipse& contact, double DiscPoint::*share
     planar += point.*shares * glm::outerProduct(arm, arm);
   }
   // Normal forces n (arm . g) have the couple sum of (arm . g) arm x n: g = planar^-1 (n x tilt).
+  // Over polar, for beside n n' a contact of nanometres would be lost in rounding.
   const glm::dvec3 slope =
-      glm::inverse(planar + glm::outerProduct(contact.normal, contact.normal)) *
-      glm::cross(contact.normal, tilt);
+      glm::inverse(planar / polar + glm::outerProduct(contact.normal, contact.normal)) *
+      (glm::cross(contact.normal, tilt) / polar);
   DiscForces forces;
   for (std::size_t q = 0; q < kDiscPoints; ++q) {
     const DiscPoint& point = disc_points()[q];

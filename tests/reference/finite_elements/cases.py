@@ -147,9 +147,9 @@ def all_cases():
         "soft_column": ball_on_block(0.2, 2.4e-3, COLUMN, COLUMN, youngs_modulus=1e4, friction=5.0,
                                      radius=0.4 * COLUMN, patch=1.5, coarse=COLUMN / 8),
         # Twelve times as high as wide: most of the depth is the column's own, and half of the turn. Pressed
-        # by less than what would buckle it (Euler: 84 mN).
-        "slender_column": ball_on_block(0.008, 1.7e-4, 0.008, 0.1, youngs_modulus=1e6,
-                                        poisson_ratio=0.3, friction=0.5, radius=0.75e-3,
+        # by half of what would buckle it (Euler: 84 mN).
+        "slender_column": ball_on_block(0.008, 1.0e-4, 0.008, 0.1, youngs_modulus=1e6,
+                                        poisson_ratio=0.3, friction=0.5, radius=0.63e-3,
                                         coarse=0.002),
         # A wall pressed on its narrow upper side, as a tube's rim is.
         "plate_on_edge": ball_on_block(0.0036, 4e-4, 0.006, 0.06, across=0.06, youngs_modulus=1e6,

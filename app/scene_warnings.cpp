@@ -244,7 +244,7 @@ std::vector<std::string> scene_warnings(const SceneDescription& scene, const Sim
     const Approach approach = approach_of(world, row, poses);
     if (!approach.touches) {
       warnings.push_back(fmt::format(
-          "tool \"{}\" never touches anything on its way: it comes within {:.3g} mm of \"{}\"",
+          R"(tool "{}" never touches anything on its way: it comes within {:.3g} mm of "{}")",
           tool.node, 1e3 * approach.nearest, scene.bodies[approach.body].node));
     } else {
       warn_of_facets(tool.node, tool.parts, approach.touched, radius, warnings);

@@ -45,7 +45,8 @@ void PrintTo(const ShapeCase& model, std::ostream* out) {
 // ellipse: the issue asks for 1 % of patch and 3 % of mdr. punch: the pressure is largest at the
 // rim, and the cells there are in or out, which moves the radius by up to a half a cell, half of
 // that on average: a / 18, a / 24 and a / 36 of patch; mdr takes the radius from the overlap's
-// area, which 16 cells tell to a sixth of one. The couple goes with the square of the radius. mesh: the facets, see there.
+// area, which 16 cells tell to a sixth of one. The couple goes with the square of the radius. mesh:
+// the facets, see there.
 const ShapeCase kShapeCases[] = {
     {"mdr", {.model = ContactModel::kMdr}, 0.003, 0.012, 0.025, 0.05, 0.02, 1e-3},
     {"patch12", {.side = 12}, 0.008, 0.01, 0.06, 0.13, 0.02, 0.03},

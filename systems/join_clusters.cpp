@@ -1,11 +1,13 @@
 #include "systems/join_clusters.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
 #include <span>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "systems/cell_finder.hpp"
@@ -155,6 +157,73 @@ void renumber(std::span<std::uint32_t> parent, std::span<std::uint32_t> numbers,
   pair.clusters = count;
 }
 
+bool is_of_pair(const World& world, std::uint32_t region, const ContactPair& pair) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  return identity.tool == pair.tool && identity.body == pair.body;
+}
+
+/// Links the clusters on a region's cells, and its own with those of other regions that it touches.
+void join_on(const World& world, std::uint32_t region, const ContactPair& pair,
+             std::span<const ContactPoint> points, std::span<std::uint32_t> parent) {
+  const RegionCover cover(world, region);
+  if (several_clusters_on(cover, points)) {
+    link_joined(cover, points, parent);
+  }
+  const std::uint32_t cluster = cluster_on(cover, points);
+  for (std::uint32_t other = 0; cluster != kNoRow && other < world.regions.size(); ++other) {
+    if (other == region || !is_of_pair(world, other, pair)) {
+      continue;
+    }
+    const RegionCover beside(world, other);
+    if (!touch(cover, beside)) {
+      continue;
+    }
+    const std::uint32_t neighbour = cluster_on(beside, points);
+    if (neighbour != kNoRow) {
+      link(parent, cluster, neighbour);
+    }
+  }
+}
+
+/// Where the clusters' points are.
+class ClusterBoxes {
+ public:
+  ClusterBoxes(std::span<const ContactPoint> points, std::uint32_t clusters) : count_(clusters) {
+    for (const ContactPoint& point : points) {
+      if (point.cluster < boxes_.size()) {
+        Bounds& box = boxes_[point.cluster];
+        box.lowest = glm::min(box.lowest, point.position);
+        box.highest = glm::max(box.highest, point.position);
+      }
+    }
+  }
+
+  /// How many clusters, of as many as it knows, may have points on a region or beside it.
+  [[nodiscard]] std::size_t near(const World& world, std::uint32_t region) const {
+    if (count_ > boxes_.size()) {
+      return count_;
+    }
+    const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+    const glm::dvec3 middle = frame.origin + world.regions.at<RegionCarrier>(region).translation +
+                              world.regions.at<RegionSupport>(region).translation;
+    const double reach = 2.0 * (glm::length(frame.half_size) +
+                                world.regions.at<RegionGeometry>(region).largest_depth);
+    return static_cast<std::size_t>(
+        std::count_if(boxes_.begin(), boxes_.begin() + count_, [&](const Bounds& box) {
+          const glm::dvec3 nearest = glm::clamp(middle, box.lowest, box.highest);
+          return glm::distance(middle, nearest) < reach;
+        }));
+  }
+
+ private:
+  std::array<Bounds, std::size_t{2}* kMaxRegionsPerBody> boxes_ = [] {
+    std::array<Bounds, std::size_t{2} * kMaxRegionsPerBody> empty;
+    empty.fill({glm::dvec3(1e300), glm::dvec3(-1e300)});
+    return empty;
+  }();
+  std::uint32_t count_;
+};
+
 }  // namespace
 
 void join_clusters(const World& world, Scratch& scratch, ContactPair& pair) {
@@ -165,29 +234,11 @@ void join_clusters(const World& world, Scratch& scratch, ContactPair& pair) {
                                        pair.points.count);
   const std::span<std::uint32_t> parent(scratch.parent.data(), pair.clusters);
   std::iota(parent.begin(), parent.end(), 0U);
-  const auto is_of_pair = [&](std::uint32_t region) {
-    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-    return identity.tool == pair.tool && identity.body == pair.body;
-  };
+  const ClusterBoxes boxes(points, pair.clusters);
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    if (!is_of_pair(region)) {
-      continue;
-    }
-    const RegionCover cover(world, region);
-    if (several_clusters_on(cover, points)) {
-      link_joined(cover, points, parent);
-    }
-    const std::uint32_t cluster = cluster_on(cover, points);
-    for (std::uint32_t other = 0; cluster != kNoRow && other < region; ++other) {
-      if (!is_of_pair(other)) {
-        continue;
-      }
-      const RegionCover beside(world, other);
-      const std::uint32_t neighbour = cluster_on(beside, points);
-      if (neighbour != kNoRow && root_of(parent, cluster) != root_of(parent, neighbour) &&
-          touch(cover, beside)) {
-        link(parent, cluster, neighbour);
-      }
+    // A region far from all clusters but one has nothing to join, and no near neighbour.
+    if (is_of_pair(world, region, pair) && boxes.near(world, region) > 1) {
+      join_on(world, region, pair, points, parent);
     }
   }
   renumber(parent, scratch.order, points, pair);

@@ -11,6 +11,7 @@
 #include "app/session.hpp"
 #include "device/scripted_motion.hpp"
 #include "scenes/load_gltf.hpp"
+#include "tests/support/contact_scenes.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/studies.hpp"
 
@@ -117,6 +118,17 @@ TEST(SlenderBodyTest, WallsThatCannotBeRepresentedAreRefusedAndAutoTakesAnotherM
   ASSERT_TRUE(taken) << taken.error().text;
   EXPECT_EQ(taken.value().choices[0].models.body, BodyModel::kSkeleton);
   EXPECT_NE(taken.value().choices[0].body_why.find("walls are 6"), std::string::npos);
+}
+
+// The ball that is held at its bottom's middle is a quarter as wide as it is thick: elements that
+// do not follow its thickness would leave fewer than three nodes in it.
+TEST(SlenderBodyTest, AWideThinSlabCanBeHeldAtAPoint) {
+  SceneDescription scene = test::ball_on_cube();
+  scene.bodies[0] = test::make_body({test::make_part(ShapeKind::kBox, {0.1, 0.01, 0.1})});
+  PrepareOptions options;
+  options.body_model = BodyModel::kCompliance;
+  const Result<Simulation> prepared = prepare(scene, options);
+  EXPECT_TRUE(prepared) << prepared.error().text;
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ double most_of_punch(const World& world, std::uint32_t body, double radius, doub
 
 void bound_forces_on(StepContext& context, std::uint32_t body) {
   World& world = context.world;
-  double depth = 0.0;  // m, of all regions together
+  double depth = 0.0;  // m, of all regions together, as samples show them
   double radius = 0.0;
   double largest = 0.0;  // N
   const auto is_on_it = [&](std::uint32_t region) {
@@ -108,8 +108,11 @@ void bound_forces_on(StepContext& context, std::uint32_t body) {
   }
   // Written so that NaN is left to who looks for that.
   if (largest > most_of_punch(world, body, radius, depth) && moves_as_a_whole(world, body)) {
+    depth = 0.0;
     for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-      depth += is_on_it(region) ? deepest_cell(context, region) : 0.0;
+      if (is_on_it(region)) {
+        depth += std::max(rest_overlap(context, region).depth, deepest_cell(context, region));
+      }
     }
   }
   if (largest > most_of_punch(world, body, radius, depth)) {

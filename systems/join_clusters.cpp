@@ -12,6 +12,7 @@
 
 #include "systems/cell_finder.hpp"
 #include "systems/frames.hpp"
+#include "systems/geometry/bounds.hpp"
 #include "systems/geometry/disjoint_sets.hpp"
 #include "systems/grid_cells.hpp"
 
@@ -189,6 +190,7 @@ void join_on(const World& world, std::uint32_t region, const ContactPair& pair,
 class ClusterBoxes {
  public:
   ClusterBoxes(std::span<const ContactPoint> points, std::uint32_t clusters) : count_(clusters) {
+    boxes_.fill(bounds_of(std::span<const glm::dvec3>()));
     for (const ContactPoint& point : points) {
       if (point.cluster < boxes_.size()) {
         Bounds& box = boxes_[point.cluster];
@@ -210,17 +212,12 @@ class ClusterBoxes {
                                 world.regions.at<RegionGeometry>(region).largest_depth);
     return static_cast<std::size_t>(
         std::count_if(boxes_.begin(), boxes_.begin() + count_, [&](const Bounds& box) {
-          const glm::dvec3 nearest = glm::clamp(middle, box.lowest, box.highest);
-          return glm::distance(middle, nearest) < reach;
+          return boxes_meet(box, {middle, middle}, reach);
         }));
   }
 
  private:
-  std::array<Bounds, std::size_t{2}* kMaxRegionsPerBody> boxes_ = [] {
-    std::array<Bounds, std::size_t{2} * kMaxRegionsPerBody> empty;
-    empty.fill({glm::dvec3(1e300), glm::dvec3(-1e300)});
-    return empty;
-  }();
+  std::array<Bounds, std::size_t{2} * kMaxRegionsPerBody> boxes_;
   std::uint32_t count_;
 };
 

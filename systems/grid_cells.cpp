@@ -7,6 +7,7 @@
 #include "systems/frames.hpp"
 #include "systems/lanes.hpp"
 #include "systems/patch_grid.hpp"
+#include "systems/rim_cells.hpp"
 #include "systems/tool_surface.hpp"
 #include "systems/widest.hpp"
 
@@ -30,7 +31,7 @@ void find_depths(const glm::dvec2& half, std::size_t count, const double* __rest
                  const double* __restrict body_z, const double* __restrict tool_x,
                  const double* __restrict tool_y, double* __restrict depth,
                  double* __restrict depth_change, double* __restrict coverage,
-                 Lanes& __restrict beside_edge) {
+                 double* __restrict bearing, Lanes& __restrict beside_edge) {
   const double half_x = half.x;
   const double half_y = half.y;
   Lanes beside{};
@@ -49,6 +50,7 @@ void find_depths(const glm::dvec2& half, std::size_t count, const double* __rest
       depth[cell] = deep;
       depth_change[cell] = across;
       coverage[cell] = share;
+      bearing[cell] = share >= 0.5 ? 1.0 : 0.0;
       beside[lane] = larger(body_z[cell] < kFullyFacing ? share : 0.0, beside[lane]);
     }
   }
@@ -75,6 +77,7 @@ void take_depth_from_plane(const Grid& grid, std::size_t cell, double facing) {
   double& coverage = columns.coverage[cell];
   columns.depth[cell] = facing * columns.depth[cell] - (1.0 - facing) * height;
   coverage *= facing + (1.0 - facing) * below;
+  columns.bearing[cell] = coverage >= 0.5 ? 1.0 : 0.0;
   if (coverage > 0.0) {
     // What makes the mean over the covered part of a cell that is partly covered be `mean`.
     columns.depth_change[cell] =
@@ -82,17 +85,19 @@ void take_depth_from_plane(const Grid& grid, std::size_t cell, double facing) {
   }
 }
 
-/// Bits of the cells that are covered, a word a row.
-/// @param coverage  (side x side)
-/// @param bits      1, 2, 4, ...: shifts would hinder vectorisation
+/// Bits of the cells that are covered or can bear, a word a row.
+/// @param coverage, bearing  (side x side)
+/// @param bits               1, 2, 4, ...: shifts would hinder vectorisation
 TORSION_WIDEST
-void find_covered(const double* __restrict coverage, std::size_t side,
-                  const std::uint64_t* __restrict bits, std::uint64_t* __restrict covered) {
+void find_covered(const double* __restrict coverage, const double* __restrict bearing,
+                  std::size_t side, const std::uint64_t* __restrict bits,
+                  std::uint64_t* __restrict covered) {
   for (std::size_t j = 0; j < side; ++j) {
     const double* const along = coverage + j * side;
+    const double* const bears = bearing + j * side;
     std::uint64_t row = 0;
     for (std::size_t i = 0; i < side; ++i) {
-      row |= along[i] > 0.0 ? bits[i] : 0;
+      row |= along[i] + bears[i] > 0.0 ? bits[i] : 0;
     }
     covered[j] = row;
   }
@@ -109,12 +114,14 @@ constexpr CellBits single_bits() {
 CellBits bits_of_covered(const Grid& grid) {
   static constexpr CellBits kBits = single_bits();
   CellBits covered{};
-  find_covered(grid.scratch.cell_columns.coverage.data(), grid.side, kBits.data(), covered.data());
+  find_covered(grid.scratch.cell_columns.coverage.data(), grid.scratch.cell_columns.bearing.data(),
+               grid.side, kBits.data(), covered.data());
   return covered;
 }
 
 /// Leaves depth, its change and coverage in the columns.
-CellBits find_coverage(const Grid& grid) {
+/// @param rims  find_rims has found any
+CellBits find_coverage(const Grid& grid, bool rims) {
   const CellColumns& columns = grid.scratch.cell_columns;
   const std::size_t count = columns.coverage.size();
   double* const coverage = columns.coverage.data();
@@ -123,20 +130,24 @@ CellBits find_coverage(const Grid& grid) {
   find_depths(cell_half_size(grid), count, body.value.data(), body.gradient_x.data(),
               body.gradient_y.data(), body.gradient_z.data(), columns.tool_x.data(),
               columns.tool_y.data(), columns.depth.data(), columns.depth_change.data(), coverage,
-              beside_edge);
+              columns.bearing.data(), beside_edge);
   std::fill(coverage + count, coverage + (count + kLanes - 1) / kLanes * kLanes, 0.0);
-  if (has_patch(grid.world, grid.identity) && patch_spare(grid.side) > 0) {
-    for (std::size_t first = 0; first < count; first += grid.side) {
-      // Takes no part: there are as many columns on either side of a contact's middle.
-      coverage[first] = 0.0;
-    }
-  }
   if (largest_of(beside_edge) > 0.0) {
     const std::span<const double> normal = columns.points.gradient_z;
     for (std::size_t cell = 0; cell < count; ++cell) {
       if (normal[cell] < kFullyFacing && coverage[cell] > 0.0) {
         take_depth_from_plane(grid, cell, facing_share(normal[cell]));
       }
+    }
+  }
+  if (rims) {
+    take_rims(columns);
+  }
+  if (has_patch(grid.world, grid.identity) && patch_spare(grid.side) > 0) {
+    for (std::size_t first = 0; first < count; first += grid.side) {
+      // Takes no part: there are as many columns on either side of a contact's middle.
+      coverage[first] = 0.0;
+      columns.bearing[first] = 0.0;
     }
   }
   return bits_of_covered(grid);
@@ -148,9 +159,10 @@ void store_cells(const Grid& grid) {
   const double* const z = columns.points.z.data();
   const double* const depth = columns.depth.data();
   const double* const coverage = columns.coverage.data();
+  const double* const bearing = columns.bearing.data();
   CellGeometry* const cells = grid.cells.data();
   for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
-    cells[cell] = {z[cell], depth[cell], coverage[cell]};
+    cells[cell] = {z[cell], depth[cell], coverage[cell], bearing[cell]};
   }
 }
 
@@ -202,6 +214,7 @@ CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact, const Cel
     for (std::uint64_t lost = covered[j] & ~own[j]; lost != 0; lost &= lost - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(lost));
       columns.coverage[std::size_t{j} * grid.side + i] = 0.0;
+      columns.bearing[std::size_t{j} * grid.side + i] = 0.0;
     }
   }
   return own;
@@ -268,16 +281,19 @@ bool spread_one_step(std::uint32_t side, CellBits& free, CellBits& bits) {
 
 CellBits covered_cells(const Grid& grid) {
   double* const coverage = grid.scratch.cell_columns.coverage.data();
+  double* const bearing = grid.scratch.cell_columns.bearing.data();
   for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
     coverage[cell] = grid.cells[cell].coverage;
+    bearing[cell] = grid.cells[cell].bearing;
   }
   return bits_of_covered(grid);
 }
 
 CellBits find_cells(const Grid& grid, const RegionPoints& contact) {
   find_tool_surface(grid);
+  const bool rims = find_rims(grid);
   find_rest_surface(grid);
-  const CellBits own = keep_own_cells(grid, contact, find_coverage(grid));
+  const CellBits own = keep_own_cells(grid, contact, find_coverage(grid, rims));
   store_cells(grid);
   return own;
 }

@@ -8,6 +8,7 @@
 
 #include "systems/distance_shapes.hpp"
 #include "systems/frames.hpp"
+#include "systems/gradient_length.hpp"
 #include "systems/widest.hpp"
 
 namespace torsion {
@@ -49,7 +50,10 @@ void add_up(const CellColumns& columns, double cell_area, std::size_t count,
       const double at_edge = 0.5 * shared * depth_change[cell];
       const double volume = share * (shared < 1.0 ? at_edge : deep);
       // Of cells whose centre is over the body, and of the face that is pressed.
-      const double counted = larger(2.0 * shared - 1.0, 0.0) * cell_area * facing_share(slope_z);
+      const double length_squared = slope_x * slope_x + slope_y * slope_y + slope_z * slope_z;
+      const double sure = is_normal(length_squared);
+      const double counted =
+          larger(2.0 * shared - 1.0, 0.0) * cell_area * facing_share(slope_z) * sure;
       lanes.area[lane] += share;
       lanes.volume[lane] += covered ? volume : 0.0;
       lanes.depth[lane] = larger(covered ? deep : 0.0, lanes.depth[lane]);

@@ -20,7 +20,8 @@ namespace {
 constexpr double kSmallestFill = 0.74;       // over a new grid's: below it it is laid anew, smaller
 constexpr double kOtherShape = 1.25;         // of a doubling: so far cells may be from their shape
 constexpr std::uint32_t kSettlingSteps = 8;  // on other axes
-constexpr double kSure = 1.3;  // over the point load's far field: what certainly touches
+constexpr double kMostly = 0.5;  // share of a rim's cell that has to be in contact for it to count
+constexpr double kSure = 1.3;    // over the point load's far field: what certainly touches
 
 /// A box of cells; `end` is one past the last.
 struct CellBox {
@@ -28,21 +29,23 @@ struct CellBox {
   glm::ivec2 end{0};
 };
 
-/// The cells with pressure.
+/// The cells with pressure, of rims those of which most are in contact.
 struct LoadedCells {
   CellBox box;  // empty when there are none
   CellMoments moments;
 };
 
-LoadedCells loaded_cells(const Grid& grid) {
+/// @param least  share of a cell that is in contact
+LoadedCells loaded_cells(const Grid& grid, double least) {
   const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
   const auto side = static_cast<int>(grid.side);
   LoadedCells loaded{{{side, side}, {0, 0}}, {}};
   for (int j = 0; j < side; ++j) {
     const CellTraction* const row = &tractions[static_cast<std::size_t>(j * side)];
+    const CellGeometry* const places = &grid.cells[static_cast<std::size_t>(j * side)];
     std::uint64_t bits = 0;
     for (int i = 0; i < side; ++i) {
-      bits |= static_cast<std::uint64_t>(row[i].pressure > 0.0) << i;
+      bits |= static_cast<std::uint64_t>(row[i].pressure > 0.0 && places[i].coverage >= least) << i;
     }
     for (std::uint64_t left = bits; left != 0;) {
       const int first = std::countr_zero(left);
@@ -113,11 +116,18 @@ glm::dmat2 rotation_by(double angle) {
   return {std::cos(angle), std::sin(angle), -std::sin(angle), std::cos(angle)};
 }
 
+/// Whether a cell carries pressure and counts for the contact's extent.
+/// @param least  share of it that is in contact
+bool is_loaded(const Grid& grid, double least, int i, int j) {
+  const auto cell = static_cast<std::size_t>(j) * grid.side + static_cast<std::size_t>(i);
+  return grid.world.cells.rows<CellTraction>(grid.identity.cells)[cell].pressure > 0.0 &&
+         grid.cells[cell].coverage >= least;
+}
+
 /// The loaded cells' extent along axes that are turned from the grid's. Their rim runs between
 /// cells, so that askew to the axes the outermost of many centres lies nearer to it than half a
 /// cell.
-PlaneBox extent_along(const Grid& grid, double angle) {
-  const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
+PlaneBox extent_along(const Grid& grid, double least, double angle) {
   const glm::dmat2 turn = rotation_by(angle);
   const glm::dvec2 half = cell_half_size(grid);
   const glm::dvec2 beside = glm::max(glm::min(half.x * glm::abs(glm::dvec2(turn[0].x, turn[1].x)),
@@ -127,7 +137,7 @@ PlaneBox extent_along(const Grid& grid, double angle) {
   std::size_t cell = 0;
   for (std::uint32_t j = 0; j < grid.side; ++j) {
     for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
-      if (tractions[cell].pressure > 0.0) {
+      if (is_loaded(grid, least, static_cast<int>(i), static_cast<int>(j))) {
         const glm::dvec2 at = cell_center(grid.frame, grid.side, i, j) * turn;
         extent.include(at - beside, at + beside);
       }
@@ -156,6 +166,7 @@ bool shift_frame(const Grid& grid, const CellBox& box, CellMove& move) {
 
 /// How the loaded cells lie in their grid.
 struct Fit {
+  double least = kMostly;    // share of a cell that is in contact, with which it counts
   CellBox box;               // of them, and of lobes outside of the grid
   bool has_lobes = false;    // there are some
   bool cut = false;          // the box comes to the grid's edge
@@ -168,25 +179,45 @@ struct Fit {
   [[nodiscard]] bool takes_axes() const { return has_rims || axes.angle != 0.0; }
 };
 
-/// Whether the box goes from one edge of the grid to the other, which may both cut the contact off.
-bool fills_side(const Grid& grid, const CellBox& box) {
+/// Whether the contact goes from one edge of the grid to the other, so that both may cut it off:
+/// over most of its width, for of one that lies askew two corners come to the edges together.
+bool fills_side(const Grid& grid, double least, const CellBox& box) {
+  constexpr double kMost = 0.5;
   const auto side = static_cast<int>(grid.side);
   const auto spare = static_cast<int>(patch_spare(grid.side));
-  return (box.first.x <= spare && box.end.x >= side) || (box.first.y <= 0 && box.end.y >= side);
+  const glm::ivec2 first = glm::clamp(box.first, glm::ivec2(0), glm::ivec2(side));
+  const glm::ivec2 end = glm::clamp(box.end, glm::ivec2(0), glm::ivec2(side));
+  glm::ivec2 lowest(0);   // cells in the first column and row
+  glm::ivec2 highest(0);  // in the last ones
+  for (int j = first.y; j < end.y; ++j) {
+    lowest.x += is_loaded(grid, least, spare, j) ? 1 : 0;
+    highest.x += is_loaded(grid, least, side - 1, j) ? 1 : 0;
+  }
+  for (int i = first.x; i < end.x; ++i) {
+    lowest.y += is_loaded(grid, least, i, 0) ? 1 : 0;
+    highest.y += is_loaded(grid, least, i, side - 1) ? 1 : 0;
+  }
+  const glm::dvec2 both(glm::min(lowest, highest));
+  return both.x > kMost * (end.y - first.y) || both.y > kMost * (end.x - first.x);
 }
 
 /// Whether so many loaded cells fill their box along axes that are turned by `angle`, as those of a
 /// punch with straight rims do.
-bool fill_their_box(const Grid& grid, double loaded, double angle) {
+bool fill_their_box(const Grid& grid, double least, double loaded, double angle) {
   constexpr double kRectangular = 0.9;  // of an ellipse 0.79
-  const PlaneBox box = extent_along(grid, angle);
+  const PlaneBox box = extent_along(grid, least, angle);
   const glm::dvec2 size = box.highest - box.lowest;
   return loaded * cell_area(grid.frame, grid.side) > kRectangular * size.x * size.y;
 }
 
 Fit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& contact) {
   Fit fit;
-  const LoadedCells loaded = loaded_cells(grid);
+  LoadedCells loaded = loaded_cells(grid, fit.least);
+  if (loaded.box.end.x == 0) {
+    // Not one: an edge or a corner, finer than the cells.
+    fit.least = 0.0;
+    loaded = loaded_cells(grid, fit.least);
+  }
   fit.box = loaded.box;
   if (fit.box.end.x == 0) {
     return fit;
@@ -209,8 +240,8 @@ Fit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& contact) 
   fit.other_shape = std::abs(ratio - patch_aspect(grid.frame.half_size)) > kOtherShape;
   if (!fit.has_lobes) {
     fit.axes = contact_axes(grid, loaded.moments);
-    fit.has_rims = fit.axes.is_long() && !fills_side(grid, fit.box) &&
-                   fill_their_box(grid, loaded.moments.weight, fit.axes.angle);
+    fit.has_rims = fit.axes.is_long() && !(fit.cut && fills_side(grid, fit.least, fit.box)) &&
+                   fill_their_box(grid, fit.least, loaded.moments.weight, fit.axes.angle);
     // A contact whose pressure ends smoothly gains nothing from axes that are a little better.
     const double enough = (fit.has_rims ? kAligned : 1.0) * fit.axes.allowance;
     if (std::abs(fit.axes.angle) <= enough) {
@@ -222,8 +253,8 @@ Fit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& contact) 
 
 /// Lays the grid along the loaded cells' axes and around them.
 void lay_frame(const Grid& grid, const RegionPoints& contact, const Fit& fit, double depth) {
-  const PlaneBox loaded =
-      fit.axes.angle == 0.0 ? extent_of(grid, fit.box) : extent_along(grid, fit.axes.angle);
+  const PlaneBox loaded = fit.axes.angle == 0.0 ? extent_of(grid, fit.box)
+                                                : extent_along(grid, fit.least, fit.axes.angle);
   turn_axes(grid.frame, fit.axes.angle);
   const GridLayout layout = layout_around(loaded, grid.side);
   shift_origin(grid, layout.shift);

@@ -129,6 +129,22 @@ void foresee_carrier(World& world, std::uint32_t region) {
   carrier.rotation += frame.normal * turn;
 }
 
+/// A grid that is laid anew may see more of the body than the one before it, by whose cells it is
+/// turned: of a face that comes to lie on a body the first to touch is an edge, whose normal is
+/// another one, and over the whole face that would be a depth of its own.
+void look_along_normal(const Grid& grid, const RegionPoints& contact) {
+  constexpr double kLittle = 0.1;  // of the depth
+  const RegionGeometry seen = summarize_cells(grid);
+  const double sine = glm::length(glm::cross(grid.frame.normal, seen.mean_normal));
+  const double reach = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
+  if (sine * reach <= kLittle * seen.largest_depth) {
+    return;
+  }
+  turn_normal_to(grid.frame, seen.mean_normal);
+  restart_heights(grid, seen.largest_depth);
+  find_cells(grid, contact);
+}
+
 }  // namespace
 
 void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
@@ -180,6 +196,9 @@ void region_grids(StepContext& context) {
         context.world.regions.at<PatchState>(region).started != 0) {
       foresee_carrier(context.world, region);
       find_cells(grid, contact);
+      if (context.world.regions.at<PatchState>(region).resized != 0) {
+        look_along_normal(grid, contact);
+      }
     } else {
       glm::dvec3 deepest(0.0);
       const double depth =

@@ -27,7 +27,7 @@ void Scratch::reserve(const World& world) {
   const bool patches = !world.patch_cells.empty();
   // Columns end in zeros up to a multiple of 8, so that loops may take eight cells at a time.
   const std::size_t stride = (cells + 7) / 8 * 8;
-  const std::size_t columns = patches ? 40 : 21;
+  const std::size_t columns = patches ? 48 : 26;
   column_memory.reserve(static_cast<std::uint32_t>(columns * stride));
   std::size_t next = 0;
   const auto column = [&] {
@@ -41,7 +41,9 @@ void Scratch::reserve(const World& world) {
   }
   for (std::span<double>* each :
        {&cell_columns.tool_x, &cell_columns.tool_y, &cell_columns.depth, &cell_columns.depth_change,
-        &cell_columns.coverage, &left_cells.tool_x, &left_cells.tool_y}) {
+        &cell_columns.coverage, &cell_columns.bearing, &cell_columns.rim_share,
+        &cell_columns.rim_bearing, &left_cells.tool_x, &left_cells.tool_y, &cell_columns.tool_sure,
+        &left_cells.tool_sure}) {
     *each = column();
   }
   cell_memory.assign(cells, 0);
@@ -59,11 +61,12 @@ void Scratch::reserve(const World& world) {
   if (patches) {
     PatchColumns& patch = patch_columns;
     for (std::span<double>* each :
-         {&patch.depth, &patch.friction, &patch.target_x, &patch.target_y, &patch.pressure,
-          &patch.traction_x, &patch.traction_y, &patch.depression, &patch.moved_x, &patch.moved_y,
-          &patch.slips, &patch_places.x, &patch_places.y, &patch_places.height,
-          &patch_places.from_x, &patch_places.from_y, &support_columns.x, &support_columns.y,
-          &support_columns.z}) {
+         {&patch.depth,       &patch.friction,      &patch.target_x,      &patch.target_y,
+          &patch.pressure,    &patch.traction_x,    &patch.traction_y,    &patch.depression,
+          &patch.moved_x,     &patch.moved_y,       &patch.slips,         &patch_places.x,
+          &patch_places.y,    &patch_places.height, &patch_places.share,  &patch_places.softness,
+          &patch_places.root, &patch_places.from_x, &patch_places.from_y, &support_columns.x,
+          &support_columns.y, &support_columns.z}) {
       *each = column();
     }
     if (!world.footings.empty()) {

@@ -69,7 +69,7 @@ TORSION_WIDEST
 void step_to_surface(double size, std::size_t count, const double* __restrict gradient_x,
                      const double* __restrict gradient_y, const double* __restrict gradient_z,
                      double* __restrict value, double* __restrict z, double* __restrict tool_x,
-                     double* __restrict tool_y) {
+                     double* __restrict tool_y, double* __restrict tool_sure) {
   for (std::size_t cell = 0; cell < count; ++cell) {
     const double over_slope = 1.0 / larger(-gradient_z[cell], kSteepest);
     const double change = value[cell] * over_slope;
@@ -82,14 +82,16 @@ void step_to_surface(double size, std::size_t count, const double* __restrict gr
     value[cell] = to < size ? std::abs(change) : to - from;
     tool_x[cell] = gradient_x[cell] * over_slope;
     tool_y[cell] = gradient_y[cell] * over_slope;
+    tool_sure[cell] = gradient_x[cell] * gradient_x[cell] + gradient_y[cell] * gradient_y[cell] +
+                      gradient_z[cell] * gradient_z[cell];
   }
 }
 
 void step_to_surface(double size, const DistanceColumns& points, std::span<double> tool_x,
-                     std::span<double> tool_y) {
+                     std::span<double> tool_y, std::span<double> tool_sure) {
   step_to_surface(size, points.x.size(), points.gradient_x.data(), points.gradient_y.data(),
                   points.gradient_z.data(), points.value.data(), points.z.data(), tool_x.data(),
-                  tool_y.data());
+                  tool_y.data(), tool_sure.data());
 }
 
 /// The first of the cells that are left.
@@ -100,7 +102,8 @@ LeftCells first_of(const LeftCells& left, std::size_t count) {
            points.value.first(count), points.gradient_x.first(count),
            points.gradient_y.first(count), points.gradient_z.first(count)},
           left.tool_x.first(count),
-          left.tool_y.first(count)};
+          left.tool_y.first(count),
+          left.tool_sure.first(count)};
 }
 
 /// Lists the cells that still move, unless none below the rest surface moves far.
@@ -130,12 +133,13 @@ void step_left_cells(const Grid& grid, std::span<const std::uint32_t> parts, con
     left.points.z[k] = columns.points.z[cell];
   }
   signed_distances(grid.world, parts, frame, left.points);
-  step_to_surface(size, left.points, left.tool_x, left.tool_y);
+  step_to_surface(size, left.points, left.tool_x, left.tool_y, left.tool_sure);
   for (std::size_t k = 0; k < left.cells.size(); ++k) {
     const std::uint32_t cell = left.cells[k];
     columns.points.z[cell] = left.points.z[k];
     columns.tool_x[cell] = left.tool_x[k];
     columns.tool_y[cell] = left.tool_y[k];
+    columns.tool_sure[cell] = left.tool_sure[k];
   }
 }
 
@@ -159,7 +163,7 @@ void find_tool_surface(const Grid& grid) {
   const auto parts =
       parts_under(grid, grid.world.tools.at<OwnedRows>(grid.identity.tool).parts, frame.position);
   signed_distances(grid.world, parts, frame, columns.points);
-  step_to_surface(size, columns.points, columns.tool_x, columns.tool_y);
+  step_to_surface(size, columns.points, columns.tool_x, columns.tool_y, columns.tool_sure);
   if (largest(columns.points.value, 1.0) < kCloseEnough * cell_length) {
     return;
   }

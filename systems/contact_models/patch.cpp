@@ -185,10 +185,15 @@ void summarize(const Patch& patch, const PatchSums& sums) {
   friction.stick_radius = std::sqrt(sums.stuck_cells * cell / std::numbers::pi);
   friction.stick_turn = sums.turn;
   const double turn = friction.stick_turn;
-  // About the grid's origin, which is not the pressure's centre.
-  const glm::dvec2 turned(std::cos(turn) * center.x - std::sin(turn) * center.y,
-                          std::sin(turn) * center.x + std::cos(turn) * center.y);
-  const glm::dvec2 of_origin = sums.moved - (turned - sums.center);
+  // As a rotation about the contact's middle, so that it does not matter where the grid has its
+  // origin; displacements turn by a cross product, however far. Not about the pressure's centre:
+  // the grid would follow that, and the contact's rim over its cells would move the centre in turn.
+  const glm::dvec2 about = sums.middle;
+  const glm::dvec2 from_center = about - sums.center;
+  const glm::dvec2 moved = sums.moved + turn * glm::dvec2(-from_center.y, from_center.x);
+  const glm::dvec2 turned(std::cos(turn) * about.x - std::sin(turn) * about.y,
+                          std::sin(turn) * about.x + std::cos(turn) * about.y);
+  const glm::dvec2 of_origin = moved - (turned - about);
   carrier.translation = tangent_to_body(patch.frame, of_origin);
   carrier.rotation = patch.frame.normal * turn;
 }
@@ -234,7 +239,11 @@ void solve_region(StepContext& context, std::uint32_t region, const SweepLimits&
   const bool anew = is_anew(patch.state);
   const std::uint32_t settling = patch.state.settling;
   const std::uint32_t body = patch.world.regions.at<RegionIdentity>(region).body;
-  load_cells(patch.rows, patch.world.bodies.at<Friction>(body), patch.columns, patch.places);
+  if (load_cells(patch.rows, patch.world.bodies.at<Friction>(body), patch.columns, patch.places)) {
+    patch.problem.rims = {patch.places.softness, patch.places.root};
+  }
+  add_rims(patch.problem, patch.rows, 1.0);
+  find_starts(patch.rows, patch.places);
   const double depth = largest(whole_lanes(patch.columns.depth.size()), patch.columns.depth.data());
   const double deepened = depth - patch.state.depth;
   patch.state.along_last = share_of_last(patch, deepened);
@@ -264,7 +273,8 @@ void solve_region(StepContext& context, std::uint32_t region, const SweepLimits&
     add_motion_of_body(patch, -1.0);
   }
   const SolutionStart start = start_of(patch);
-  const PatchSums sums = sum_cells(patch.columns, patch.places, cell_area(patch.frame, patch.side));
+  const PatchSums sums = sum_cells(patch.columns, patch.places, cell_area(patch.frame, patch.side),
+                                   patch.problem.reference);
   update_kinetic_shares(patch, sums.force, contact_radius(patch, sums));
   const std::span<const double> none;
   store_cells(patch.columns, has_support(patch) ? patch.support.x : none,
@@ -291,6 +301,7 @@ void solve_region(StepContext& context, std::uint32_t region, const SweepLimits&
   summarize(patch, sums);
   settle_energy(patch.world, region,
                 {patch.problem, patch.columns, patch.support.z, held_by_body, patch.work}, start);
+  add_rims(patch.problem, patch.rows, -1.0);
   if (settling > 0 && sums.force > 0.0) {
     keep_place(patch, carrier);
   }

@@ -9,10 +9,13 @@
 #include "systems/contact_models/patch_passes.hpp"
 #include "systems/distance_shapes.hpp"
 #include "systems/frames.hpp"
+#include "systems/rim_cells.hpp"
 #include "systems/widest.hpp"
 
 namespace torsion {
 namespace {
+
+constexpr double kLeastBearing = 0.01;  // with less a cell cannot touch
 
 template <class T>
 std::span<double> values_of(std::span<T> rows) {
@@ -159,15 +162,19 @@ enum Sum : std::size_t {
   kTractionY,
   kCouple,
   kLoaded,
+  kMiddle,   // weights of PatchSums::middle
+  kMiddleX,  // times the place
+  kMiddleY,
   kStuck,
   kSums
 };
 
 TORSION_WIDEST
 void add_up(std::size_t count, const PatchColumns& columns, const PatchPlaces& places,
-            std::array<Wide, kSums>& totals) {
+            double reference, std::array<Wide, kSums>& totals) {
   const Wide one = Wide{} + 1.0;
   const Wide none{};
+  const Wide half = none + reference;
   std::array<Wide, kSums> sums{};
   for (std::size_t cell = 0; cell < count; cell += kPatchLanes) {
     const Wide pressure = lanes_at(&columns.pressure[cell]).all;
@@ -180,6 +187,7 @@ void add_up(std::size_t count, const PatchColumns& columns, const PatchPlaces& p
     const Wide by_x = pressure * x;
     const Wide by_y = pressure * y;
     const Wide loaded = pressure > 0.0 ? one : none;
+    const Wide covered = loaded * lanes_at(&places.share[cell]).all;
     sums[kPressure] += pressure;
     sums[kPlaceX] += by_x;
     sums[kPlaceY] += by_y;
@@ -192,8 +200,12 @@ void add_up(std::size_t count, const PatchColumns& columns, const PatchPlaces& p
     sums[kTractionX] += loaded * traction_x;
     sums[kTractionY] += loaded * traction_y;
     sums[kCouple] += x * traction_y - y * traction_x;
-    sums[kLoaded] += loaded;
-    sums[kStuck] += loaded * (one - lanes_at(&columns.slips[cell]).all);
+    sums[kLoaded] += covered;
+    const Wide weight = covered * (pressure / (pressure + half));
+    sums[kMiddle] += weight;
+    sums[kMiddleX] += weight * x;
+    sums[kMiddleY] += weight * y;
+    sums[kStuck] += covered * (one - lanes_at(&columns.slips[cell]).all);
   }
   totals = sums;
 }
@@ -229,25 +241,62 @@ PatchRows patch_rows(World& world, Range cells) {
            values_of(table.rows<PatchChangeDepression>(cells))}};
 }
 
-void load_cells(const PatchRows& rows, const Friction& friction, const PatchColumns& columns,
+bool load_cells(const PatchRows& rows, const Friction& friction, const PatchColumns& columns,
                 const PatchPlaces& places) {
   const std::size_t count = rows.geometry.size();
   const PatchColumns to = columns;
   const PatchPlaces at = places;
   const double fall = friction.dynamic_friction - friction.static_friction;
+  double softest = 0.0;
   for (std::size_t cell = 0; cell < count; ++cell) {
     const CellGeometry& geometry = rows.geometry[cell];
     const CellTraction& traction = rows.tractions[cell];
-    to.depth[cell] = geometry.coverage >= 0.5 ? geometry.depth : kNoContact;
+    const bool bears = geometry.bearing > kLeastBearing;
+    const double softness = bears ? kRimSoftness * (1.0 / geometry.bearing - 1.0) : 0.0;
+    to.depth[cell] = bears ? geometry.depth : kNoContact;
+    at.softness[cell] = softness;
+    at.root[cell] = 1.0 / std::sqrt(1.0 + softness);
+    softest = larger(softness, softest);
+    at.share[cell] = geometry.coverage;
     at.height[cell] = geometry.height;
     to.friction[cell] = friction.static_friction + traction.kinetic_share * fall;
     to.pressure[cell] = traction.pressure;
     to.traction_x[cell] = -traction.traction.x;
     to.traction_y[cell] = -traction.traction.y;
   }
+  return softest > 0.0;
+}
+
+void find_starts(const PatchRows& rows, const PatchPlaces& places) {
+  const std::size_t count = rows.geometry.size();
   const PatchSurface& from = rows.surface;
-  find_starts(count, from.known.data(), from.held_x.data(), from.moved_x.data(), at.from_x.data());
-  find_starts(count, from.known.data(), from.held_y.data(), from.moved_y.data(), at.from_y.data());
+  find_starts(count, from.known.data(), from.held_x.data(), from.moved_x.data(),
+              places.from_x.data());
+  find_starts(count, from.known.data(), from.held_y.data(), from.moved_y.data(),
+              places.from_y.data());
+}
+
+void add_rims(const PatchProblem& problem, const PatchRows& rows, double sign) {
+  if (problem.rims.softness.empty()) {
+    return;
+  }
+  const auto yields = [&](InfluenceKind kind, std::size_t cell) {
+    return sign * problem.compliance * problem.influences.self(kind) * problem.rims.softness[cell];
+  };
+  const PatchSurface& surface = rows.surface;
+  const PatchChange& change = rows.change;
+  for (std::size_t cell = 0; cell < rows.tractions.size(); ++cell) {
+    const CellTraction& traction = rows.tractions[cell];
+    const double x = yields(InfluenceKind::kXX, cell);
+    const double y = yields(InfluenceKind::kYY, cell);
+    const double z = yields(InfluenceKind::kZZ, cell);
+    surface.moved_x[cell] -= x * traction.traction.x;
+    surface.moved_y[cell] -= y * traction.traction.y;
+    surface.depression[cell] += z * traction.pressure;
+    change.moved_x[cell] += x * change.traction_x[cell];
+    change.moved_y[cell] += y * change.traction_y[cell];
+    change.depression[cell] += z * change.pressure[cell];
+  }
 }
 
 ForeseenShares best_shares(const PatchRows& rows, const PatchColumns& columns, bool coupled,
@@ -334,9 +383,10 @@ void take_off_support(std::span<const double> known, std::span<const double> sup
   take_off(known.size(), known.data(), support_y.data(), columns.target_y.data());
 }
 
-PatchSums sum_cells(const PatchColumns& columns, const PatchPlaces& places, double cell_area) {
+PatchSums sum_cells(const PatchColumns& columns, const PatchPlaces& places, double cell_area,
+                    double reference) {
   std::array<Wide, kSums> totals;
-  add_up(whole_lanes(columns.pressure.size()), columns, places, totals);
+  add_up(whole_lanes(columns.pressure.size()), columns, places, reference, totals);
   PatchSums sums;
   const double pressure = sum_of(totals[kPressure]);
   if (pressure <= 0.0) {
@@ -356,6 +406,10 @@ PatchSums sum_cells(const PatchColumns& columns, const PatchPlaces& places, doub
   sums.friction = -cell_area * glm::dvec2(sum_of(totals[kTractionX]), sum_of(totals[kTractionY]));
   sums.couple = -cell_area * sum_of(totals[kCouple]);
   sums.loaded_cells = sum_of(totals[kLoaded]);
+  const double weights = sum_of(totals[kMiddle]);
+  sums.middle = weights > 0.0
+                    ? glm::dvec2(sum_of(totals[kMiddleX]), sum_of(totals[kMiddleY])) / weights
+                    : sums.center;
   sums.stuck_cells = sum_of(totals[kStuck]);
   return sums;
 }

@@ -16,6 +16,8 @@ namespace torsion {
 struct PatchPlaces {
   std::span<double> x, y;            // m, grid: the cells' centres
   std::span<double> height;          // m, grid: of the tool
+  std::span<double> share;           // of a cell that is in contact
+  std::span<double> softness, root;  // as in PatchRims
   std::span<double> from_x, from_y;  // m: where friction holds a cell, or how it is displaced
 };
 
@@ -49,8 +51,16 @@ struct HeldBefore {
 };
 
 /// Fills the columns with what the last step left, except displacements.
-void load_cells(const PatchRows& rows, const Friction& friction, const PatchColumns& columns,
+/// @return whether cells at rims are only partly in contact
+bool load_cells(const PatchRows& rows, const Friction& friction, const PatchColumns& columns,
                 const PatchPlaces& places);
+
+/// Where cells start from: where they are held, or where they have moved to.
+void find_starts(const PatchRows& rows, const PatchPlaces& places);
+
+/// Adds to what the rows hold of displacements, of which the softness of cells at rims is no part,
+/// what it makes of their tractions; with sign -1 takes it off.
+void add_rims(const PatchProblem& problem, const PatchRows& rows, double sign);
 
 /// Of what the last step changed.
 struct ForeseenShares {
@@ -86,20 +96,24 @@ void take_off_support(std::span<const double> known, std::span<const double> sup
 
 /// Sums over the cells, in the grid's frame. What is weighted with the pressure is zero without.
 struct PatchSums {
-  double force = 0.0;        // N
-  glm::dvec2 center{0.0};    // m: of the pressure
-  double height = 0.0;       // m: the tool's, weighted with the pressure
-  double depth = 0.0;        // m: likewise
-  glm::dvec2 moved{0.0};     // m: displacement, likewise
-  double turn = 0.0;         // rad: of the surface about `center`, likewise
-  glm::dvec2 friction{0.0};  // N, on the tool
-  double couple = 0.0;       // N m about the grid's origin
-  double loaded_cells = 0.0;
+  double force = 0.0;         // N
+  glm::dvec2 center{0.0};     // m: of the pressure
+  double height = 0.0;        // m: the tool's, weighted with the pressure
+  double depth = 0.0;         // m: likewise
+  glm::dvec2 moved{0.0};      // m: displacement, likewise
+  double turn = 0.0;          // rad: of the surface about `center`, likewise
+  glm::dvec2 friction{0.0};   // N, on the tool
+  double couple = 0.0;        // N m about the grid's origin
+  double loaded_cells = 0.0;  // with the share of each that is in contact
+  // m: theirs, those of small pressure less, so that it does not jump as they come and go
+  glm::dvec2 middle{0.0};
   double stuck_cells = 0.0;
 };
 
 /// @param cell_area  m^2
-PatchSums sum_cells(const PatchColumns& columns, const PatchPlaces& places, double cell_area);
+/// @param reference  Pa: typical pressure
+PatchSums sum_cells(const PatchColumns& columns, const PatchPlaces& places, double cell_area,
+                    double reference);
 
 /// The mean of the pressures that there are, Pa; 0 without.
 double mean_pressure(const PatchColumns& columns);

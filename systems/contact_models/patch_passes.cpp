@@ -83,6 +83,13 @@ void add_scaled(std::size_t count, double scale, const double* __restrict values
 }
 
 TORSION_WIDEST
+void multiply(std::size_t count, const double* a, const double* b, double* product) {
+  for (std::size_t k = 0; k < count; ++k) {
+    product[k] = a[k] * b[k];
+  }
+}
+
+TORSION_WIDEST
 void to_border(std::uint32_t side, const double* __restrict cells, double* __restrict bordered) {
   const std::size_t width = std::size_t{side} + 2;
   for (std::size_t row = 0; row < side; ++row) {

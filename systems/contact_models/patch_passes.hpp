@@ -31,6 +31,9 @@ double largest(std::size_t count, const double* values);
 /// to += scale * values; of any length.
 void add_scaled(std::size_t count, double scale, const double* values, double* to);
 
+/// product = a times b, each; may be one of them.
+void multiply(std::size_t count, const double* a, const double* b, double* product);
+
 /// Cells (side x side) into the middle of ((side + 2) x (side + 2)).
 void to_border(std::uint32_t side, const double* cells, double* bordered);
 

@@ -49,9 +49,19 @@ struct PatchWork {
   void reserve(std::uint32_t side);
 };
 
+/// Cells that only partly lie in contact, at the rims of faces. What such a cell carries it carries
+/// on a smaller area, and gives way by more under it: a softness of its own that grows beyond all
+/// bounds as the share goes to 0, so that cells come and go with nothing.
+struct PatchRims {
+  // (side x side) and zeros up to whole lanes; empty when all cells in contact are so as a whole
+  std::span<const double> softness;  // over the cell's own influence on itself; 0 of whole cells
+  std::span<const double> root;      // 1 / sqrt(1 + softness)
+};
+
 /// What one solution is for.
 struct PatchProblem {
   InfluenceTables influences;
+  PatchRims rims;
   PatchSupport support;     // what the body as a whole adds to displacements
   double compliance = 0.0;  // m/Pa: cell length along x over the shear modulus
   bool coupled = false;     // pressure moves the surface sideways: nu < 0.5

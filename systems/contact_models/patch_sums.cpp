@@ -1,5 +1,6 @@
 #include "systems/contact_models/patch_sums.hpp"
 
+#include <algorithm>
 #include <bit>
 
 namespace torsion {
@@ -94,8 +95,27 @@ InfluenceSources gather_sources(const PatchProblem& problem, std::span<const dou
 void ask_for(const PatchProblem& problem, const LocalInverse& inverse, const double* wanted,
              PatchWork& work, double* asked) {
   const std::uint32_t side = problem.influences.side;
-  to_border(side, wanted, work.bordered.data());
+  const std::span<const double>& root = problem.rims.root;
+  // With A the influences and D the softness at rims, whose diagonals are alike but for the roots
+  // R: R B R for the inverse of A + D as B for that of A.
+  if (!root.empty()) {
+    multiply(root.size(), root.data(), wanted, asked);
+  }
+  to_border(side, root.empty() ? wanted : asked, work.bordered.data());
   apply_local_inverse(inverse, 1.0 / problem.compliance, side, work.bordered.data(), asked);
+  if (!root.empty()) {
+    multiply(root.size(), root.data(), asked, asked);
+  }
+}
+
+void add_rims(const PatchProblem& problem, InfluenceKind kind, double sign,
+              std::span<const double> traction, std::span<double> displacement) {
+  const std::span<const double>& softness = problem.rims.softness;
+  const double scale = sign * problem.compliance * problem.influences.self(kind);
+  const std::size_t count = std::min(softness.size(), displacement.size());
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    displacement[cell] += scale * softness[cell] * traction[cell];
+  }
 }
 
 void add_sideways(const PatchProblem& problem, const PatchColumns& columns,
@@ -123,6 +143,7 @@ void add_pressure(const PatchProblem& problem, const PatchColumns& columns,
   const InfluenceSources sources = gather_sources(problem, change, {}, work);
   sum_of(problem, sources, InfluenceKind::kZZ, work.scales_x, work.moves_x);
   add(columns.depression, 1.0, work.moves_x);
+  add_rims(problem, InfluenceKind::kZZ, 1.0, change, columns.depression);
   if (problem.coupled) {
     add_sideways(problem, columns, change, work);
   }
@@ -134,6 +155,8 @@ void add_tractions(const PatchProblem& problem, const PatchColumns& columns,
   sum_tractions(problem, gather_sources(problem, change_x, change_y, work), work);
   add(columns.moved_x, 1.0, work.moves_x);
   add(columns.moved_y, 1.0, work.moves_y);
+  add_rims(problem, InfluenceKind::kXX, 1.0, change_x, columns.moved_x);
+  add_rims(problem, InfluenceKind::kYY, 1.0, change_y, columns.moved_y);
   if (problem.coupled) {
     add_depression(problem, columns, change_x, change_y, work);
   }
@@ -142,11 +165,14 @@ void add_tractions(const PatchProblem& problem, const PatchColumns& columns,
 void move_by_pressure(const PatchProblem& problem, PatchWork& work) {
   sum_of(problem, gather_sources(problem, work.step_x, {}, work), InfluenceKind::kZZ, work.scales_x,
          work.moves_x);
+  add_rims(problem, InfluenceKind::kZZ, 1.0, work.step_x, work.moves_x);
   add_support(problem.support, {{}, {}, work.step_x}, {{}, {}, work.moves_x});
 }
 
 void move_by_traction(const PatchProblem& problem, PatchWork& work) {
   sum_tractions(problem, gather_sources(problem, work.step_x, work.step_y, work), work);
+  add_rims(problem, InfluenceKind::kXX, 1.0, work.step_x, work.moves_x);
+  add_rims(problem, InfluenceKind::kYY, 1.0, work.step_y, work.moves_y);
   add_support(problem.support, {work.step_x, work.step_y, {}}, {work.moves_x, work.moves_y, {}});
 }
 

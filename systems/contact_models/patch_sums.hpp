@@ -22,6 +22,12 @@ inline GridBlock block_of(const InfluenceTables& tables) {
   return {tables.side, tables.side, tables.width(), tables.index(0, 0, 0, 0)};
 }
 
+/// displacement += what tractions do in cells at rims beyond the influence tables.
+/// @param kind  of these, of a traction along the displacement
+/// @param sign  1, or -1 to take it off
+void add_rims(const PatchProblem& problem, InfluenceKind kind, double sign,
+              std::span<const double> traction, std::span<double> displacement);
+
 /// What tractions displacements ask for by the local inverse.
 /// @param wanted  m, (side x side)
 /// @param asked   Pa, (side x side) out

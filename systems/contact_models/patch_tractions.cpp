@@ -110,10 +110,16 @@ double ask(const PatchProblem& problem, double stiffness, const TractionColumns&
 }
 
 /// What every cell asks for if its neighbours stay.
-void ask_alone(double stiffness, const TractionColumns& cells) {
+void ask_alone(const PatchProblem& problem, double stiffness, const TractionColumns& cells) {
   for (std::size_t k = 0; k < cells.count; ++k) {
     cells.asked_x[k] = stiffness * cells.residual_x[k];
     cells.asked_y[k] = stiffness * cells.residual_y[k];
+  }
+  const std::span<const double>& root = problem.rims.root;
+  for (std::size_t k = 0; k < root.size(); ++k) {
+    const double share = root[k] * root[k];
+    cells.asked_x[k] *= share;
+    cells.asked_y[k] *= share;
   }
 }
 
@@ -154,7 +160,7 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
     sweep.step = mix_tractions(cells, {outside ? calm : 1.0, kept});
     if (!outside && (alone || sweep.step.slope <= 0.0)) {
       // Beside cells that slip the neighbours' share may lead uphill; each cell's own does not.
-      ask_alone(alone_stiffness, cells);
+      ask_alone(problem, alone_stiffness, cells);
       const double clipped = sweep.step.clipped;
       sweep.step = mix_tractions(cells, {1.0, 0.0});
       sweep.step.clipped += clipped;

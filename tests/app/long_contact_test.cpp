@@ -82,33 +82,34 @@ std::vector<double> box(double width, std::uint32_t side, std::uint32_t sweeps) 
 }
 
 TEST(LongContactTest, ATurningScrewdriverKeepsItsTorque) {
-  // Sliding throughout, a blade's torque goes with its length, and a grid askew to it misses or
-  // adds up to half a cell at either end: a 16th where 16 cells lie along it, a 29th on the fine
-  // grid. That is a tenth for both, and a third of it on average. A cell at the rim that comes and
-  // goes leaves its traction behind, and the material springs back from it: for some tens of
-  // milliseconds that may be as much again. When it happens hangs on rounding: with friction
-  // changed in its seventh digit six runs were worst by 9 to 21 %, and 1.2 to 1.8 % on average.
-  // What a grid that is laid anew changes fades in by a twentieth a step at most, and friction goes
-  // on changing meanwhile.
+  // A contact's rim is where its face's is, to a tenth of a cell on either side (the stiffness
+  // against turning is a third power of the length: rim_stiffness_test.cpp): with 16 cells along
+  // the blade 4 %. What comes in under a leading edge takes about a cell's length to come to the
+  // limit, of which the fine grid's cells are half: 3 % more while it slides. When a grid is laid
+  // anew hangs on rounding: with friction changed in its seventh digit six runs were worst by 3.8
+  // to 4.6 % and .8 to .9 % on average, against 2500 cells by 4.9 to 5.7 % and 1.4 %. (Where cells
+  // counted as wholes it was 9 to 21 %.) What a grid that is laid anew changes fades in by a
+  // twentieth a step at most, and friction goes on changing meanwhile.
   const std::vector<double> fine = screwdriver(36);
   const Errors errors = errors_of(screwdriver(0), fine);
-  EXPECT_LE(errors.worst, 0.22);  // what `auto` says
-  EXPECT_LE(errors.mean, 0.033);
-  EXPECT_LE(errors.step, 0.06);
-  EXPECT_LE(errors_of(fine, fine).step, 0.06);
+  EXPECT_LE(errors.worst, 0.07);  // what `auto` says
+  EXPECT_LE(errors.mean, 0.02);
+  EXPECT_LE(errors.step, 0.05);
+  EXPECT_LE(errors_of(fine, fine).step, 0.05);
 }
 
-// What `auto` says of them: 22 %, and 25 % of one that is more than 8 times as long as wide.
+// What `auto` says of them: 7 %, and 9 % of one that is more than 8 times as long as wide.
 TEST(LongContactTest, TurningBoxesAreAsAutoSays) {
   struct Case {
     double width;  // m
     double worst;
   };
-  const std::vector<Case> cases{{2e-3, 0.22}, {4e-3, 0.22}, {0.8e-3, 0.25}};
+  const std::vector<Case> cases{{2e-3, 0.07}, {4e-3, 0.07}, {0.8e-3, 0.09}};
   for (const Case& each : std::span(cases).first(all_cases() ? cases.size() : 1)) {
     const Errors errors = errors_of(box(each.width, kAutoSide, 2), box(each.width, 43, 8));
     EXPECT_LE(errors.worst, each.worst) << each.width;
-    EXPECT_LE(errors.mean, 0.33 * each.worst) << each.width;
+    EXPECT_LE(errors.mean, 0.5 * each.worst) << each.width;
+    EXPECT_LE(errors.step, 0.05) << each.width;
   }
 }
 

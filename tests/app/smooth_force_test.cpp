@@ -84,7 +84,7 @@ std::vector<SmoothRun> smooth_runs() {
     runs.push_back({scene, ContactModel::kPatch, BodyModel::kCompliance, 10000.0});
   }
   // Whether a region that splits off another one goes astray is chance on one grid.
-  for (const std::uint32_t side : {8U, 10U, 13U, 16U, 17U, 20U, 24U}) {
+  for (const std::uint32_t side : {8U, 10U, 13U, 15U, 16U, 17U, 19U, 20U, 24U}) {
     runs.push_back({"s2_plate.gltf", ContactModel::kPatch, BodyModel::kCompliance, 1000.0, side});
   }
   return runs;

@@ -90,9 +90,9 @@ TEST(ChooseModelsTest, ThePartThatTouchesCounts) {
   const PartDescription bar = test::make_part(ShapeKind::kCapsule, {0.02, 0.08, 0.02},
                                               {stays, glm::angleAxis(1.5708, glm::dvec3(0, 0, 1))});
   const std::string of_long =
-      "auto: a long contact with edges, error of patch up to 22 %, tolerance 5 %";
+      "auto: a long contact with edges, error of patch up to 7 %, tolerance 5 %";
   EXPECT_EQ(why(bar, stays),
-            "auto: a long contact with edges, error of patch up to 25 %, tolerance 5 %");
+            "auto: a long contact with edges, error of patch up to 9 %, tolerance 5 %");
   const PartDescription blade = test::make_part(ShapeKind::kBox, {0.02, 0.02, 0.004});
   EXPECT_EQ(why(blade, stays), of_long);
 }

@@ -13,6 +13,7 @@
 #include "systems/body_models/region_couplings.hpp"
 #include "systems/body_models/surface_bend.hpp"
 #include "systems/contact_models/curved_influence.hpp"
+#include "systems/contact_models/layer_coupling.hpp"
 #include "systems/contact_models/layer_thickness.hpp"
 #include "systems/contact_models/stuck_stiffness.hpp"
 #include "systems/patch_grid.hpp"

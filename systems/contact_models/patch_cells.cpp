@@ -247,16 +247,13 @@ bool load_cells(const PatchRows& rows, const Friction& friction, const PatchColu
   const PatchColumns to = columns;
   const PatchPlaces at = places;
   const double fall = friction.dynamic_friction - friction.static_friction;
-  double softest = 0.0;
+  bool rims = false;
   for (std::size_t cell = 0; cell < count; ++cell) {
     const CellGeometry& geometry = rows.geometry[cell];
     const CellTraction& traction = rows.tractions[cell];
     const bool bears = geometry.bearing > kLeastBearing;
-    const double softness = bears ? kRimSoftness * (1.0 / geometry.bearing - 1.0) : 0.0;
+    rims |= bears && geometry.bearing < 1.0;
     to.depth[cell] = bears ? geometry.depth : kNoContact;
-    at.softness[cell] = softness;
-    at.root[cell] = 1.0 / std::sqrt(1.0 + softness);
-    softest = larger(softness, softest);
     at.share[cell] = geometry.coverage;
     at.height[cell] = geometry.height;
     to.friction[cell] = friction.static_friction + traction.kinetic_share * fall;
@@ -264,7 +261,13 @@ bool load_cells(const PatchRows& rows, const Friction& friction, const PatchColu
     to.traction_x[cell] = -traction.traction.x;
     to.traction_y[cell] = -traction.traction.y;
   }
-  return softest > 0.0;
+  for (std::size_t cell = 0; rims && cell < count; ++cell) {
+    const double bearing = rows.geometry[cell].bearing;
+    const double softness = bearing > kLeastBearing ? kRimSoftness * (1.0 / bearing - 1.0) : 0.0;
+    at.softness[cell] = softness;
+    at.root[cell] = 1.0 / std::sqrt(1.0 + softness);
+  }
+  return rims;
 }
 
 void find_starts(const PatchRows& rows, const PatchPlaces& places) {

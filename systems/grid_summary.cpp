@@ -51,7 +51,7 @@ void add_up(const CellColumns& columns, double cell_area, std::size_t count,
       const double volume = share * (shared < 1.0 ? at_edge : deep);
       // Of cells whose centre is over the body, and of the face that is pressed.
       const double length_squared = slope_x * slope_x + slope_y * slope_y + slope_z * slope_z;
-      const double sure = is_normal(length_squared);
+      const double sure = normal_share(length_squared);
       const double counted =
           larger(2.0 * shared - 1.0, 0.0) * cell_area * facing_share(slope_z) * sure;
       lanes.area[lane] += share;

@@ -35,6 +35,12 @@ struct LoadedCells {
   CellMoments moments;
 };
 
+/// Whether a cell carries pressure and counts for the contact's extent.
+/// @param least  share of it that is in contact
+bool is_loaded(const CellTraction& traction, const CellGeometry& geometry, double least) {
+  return traction.pressure > 0.0 && geometry.coverage >= least;
+}
+
 /// @param least  share of a cell that is in contact
 LoadedCells loaded_cells(const Grid& grid, double least) {
   const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
@@ -45,7 +51,7 @@ LoadedCells loaded_cells(const Grid& grid, double least) {
     const CellGeometry* const places = &grid.cells[static_cast<std::size_t>(j * side)];
     std::uint64_t bits = 0;
     for (int i = 0; i < side; ++i) {
-      bits |= static_cast<std::uint64_t>(row[i].pressure > 0.0 && places[i].coverage >= least) << i;
+      bits |= static_cast<std::uint64_t>(is_loaded(row[i], places[i], least)) << i;
     }
     for (std::uint64_t left = bits; left != 0;) {
       const int first = std::countr_zero(left);
@@ -116,18 +122,11 @@ glm::dmat2 rotation_by(double angle) {
   return {std::cos(angle), std::sin(angle), -std::sin(angle), std::cos(angle)};
 }
 
-/// Whether a cell carries pressure and counts for the contact's extent.
-/// @param least  share of it that is in contact
-bool is_loaded(const Grid& grid, double least, int i, int j) {
-  const auto cell = static_cast<std::size_t>(j) * grid.side + static_cast<std::size_t>(i);
-  return grid.world.cells.rows<CellTraction>(grid.identity.cells)[cell].pressure > 0.0 &&
-         grid.cells[cell].coverage >= least;
-}
-
 /// The loaded cells' extent along axes that are turned from the grid's. Their rim runs between
 /// cells, so that askew to the axes the outermost of many centres lies nearer to it than half a
 /// cell.
 PlaneBox extent_along(const Grid& grid, double least, double angle) {
+  const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
   const glm::dmat2 turn = rotation_by(angle);
   const glm::dvec2 half = cell_half_size(grid);
   const glm::dvec2 beside = glm::max(glm::min(half.x * glm::abs(glm::dvec2(turn[0].x, turn[1].x)),
@@ -137,7 +136,7 @@ PlaneBox extent_along(const Grid& grid, double least, double angle) {
   std::size_t cell = 0;
   for (std::uint32_t j = 0; j < grid.side; ++j) {
     for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
-      if (is_loaded(grid, least, static_cast<int>(i), static_cast<int>(j))) {
+      if (is_loaded(tractions[cell], grid.cells[cell], least)) {
         const glm::dvec2 at = cell_center(grid.frame, grid.side, i, j) * turn;
         extent.include(at - beside, at + beside);
       }
@@ -187,15 +186,20 @@ bool fills_side(const Grid& grid, double least, const CellBox& box) {
   const auto spare = static_cast<int>(patch_spare(grid.side));
   const glm::ivec2 first = glm::clamp(box.first, glm::ivec2(0), glm::ivec2(side));
   const glm::ivec2 end = glm::clamp(box.end, glm::ivec2(0), glm::ivec2(side));
+  const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
+  const auto loaded = [&](int i, int j) {
+    const auto cell = static_cast<std::size_t>(j * side + i);
+    return is_loaded(tractions[cell], grid.cells[cell], least) ? 1 : 0;
+  };
   glm::ivec2 lowest(0);   // cells in the first column and row
   glm::ivec2 highest(0);  // in the last ones
   for (int j = first.y; j < end.y; ++j) {
-    lowest.x += is_loaded(grid, least, spare, j) ? 1 : 0;
-    highest.x += is_loaded(grid, least, side - 1, j) ? 1 : 0;
+    lowest.x += loaded(spare, j);
+    highest.x += loaded(side - 1, j);
   }
   for (int i = first.x; i < end.x; ++i) {
-    lowest.y += is_loaded(grid, least, i, 0) ? 1 : 0;
-    highest.y += is_loaded(grid, least, i, side - 1) ? 1 : 0;
+    lowest.y += loaded(i, 0);
+    highest.y += loaded(i, side - 1);
   }
   const glm::dvec2 both(glm::min(lowest, highest));
   return both.x > kMost * (end.y - first.y) || both.y > kMost * (end.x - first.x);

@@ -72,7 +72,7 @@ Underside carried_on(const Grid& grid, const CellBits& closed, std::uint32_t i, 
       return {};
     }
     const std::size_t cell = std::size_t{at_j} * grid.side + at_i;
-    const double sure = is_normal(columns.tool_sure[cell]);
+    const double sure = normal_share(columns.gradient_square[cell]);
     const double slope_x = sure * columns.tool_x[cell];
     const double slope_y = sure * columns.tool_y[cell];
     return {columns.points.z[cell] - right * length.x * slope_x - up * length.y * slope_y, slope_x,
@@ -112,7 +112,7 @@ std::size_t list_rims(const Grid& grid, const CellBits& open) {
         columns.points.z[cell] = under.height;
         columns.tool_x[cell] = under.slope_x;
         columns.tool_y[cell] = under.slope_y;
-        columns.tool_sure[cell] = 1.0;
+        columns.gradient_square[cell] = 1.0;
       }
     }
   }
@@ -166,7 +166,7 @@ void move_inward(const CellColumns& columns, std::size_t cell, const glm::dvec3&
   const glm::dvec2 way = -inward / (side.x * side.x + side.y * side.y) * glm::dvec2(side);
   columns.points.x[cell] += way.x;
   columns.points.y[cell] += way.y;
-  columns.points.z[cell] += is_normal(columns.tool_sure[cell]) *
+  columns.points.z[cell] += normal_share(columns.gradient_square[cell]) *
                             (columns.tool_x[cell] * way.x + columns.tool_y[cell] * way.y);
 }
 

@@ -42,8 +42,8 @@ void Scratch::reserve(const World& world) {
   for (std::span<double>* each :
        {&cell_columns.tool_x, &cell_columns.tool_y, &cell_columns.depth, &cell_columns.depth_change,
         &cell_columns.coverage, &cell_columns.bearing, &cell_columns.rim_share,
-        &cell_columns.rim_bearing, &left_cells.tool_x, &left_cells.tool_y, &cell_columns.tool_sure,
-        &left_cells.tool_sure}) {
+        &cell_columns.rim_bearing, &left_cells.tool_x, &left_cells.tool_y,
+        &cell_columns.gradient_square, &left_cells.gradient_square}) {
     *each = column();
   }
   cell_memory.assign(cells, 0);

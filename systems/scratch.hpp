@@ -73,13 +73,13 @@ struct RegionPoints {
 
 /// The cells of one region as columns, in the grid's frame.
 struct CellColumns {
-  DistanceColumns points;            // cells' centres on the tool's underside
-  std::span<double> tool_x, tool_y;  // how much higher the tool is farther along x, y
-  std::span<double> tool_sure;       // the square of its gradient's length: 1 but at a mesh's edges
-  std::span<double> depth;           // m, as in CellGeometry
-  std::span<double> depth_change;    // m, across the cell
-  std::span<double> coverage;        // as in CellGeometry
-  std::span<double> bearing;         // likewise
+  DistanceColumns points;             // cells' centres on the tool's underside
+  std::span<double> tool_x, tool_y;   // how much higher the tool is farther along x, y
+  std::span<double> gradient_square;  // of its distance, of the length: 1 but at a mesh's edges
+  std::span<double> depth;            // m, as in CellGeometry
+  std::span<double> depth_change;     // m, across the cell
+  std::span<double> coverage;         // as in CellGeometry
+  std::span<double> bearing;          // likewise
   // Of a cell what lies under the tool, and how stiff it is for that, where the tool has rims.
   std::span<double> rim_share, rim_bearing;
 };
@@ -88,7 +88,7 @@ struct CellColumns {
 struct LeftCells {
   std::span<std::uint32_t> cells;
   DistanceColumns points;
-  std::span<double> tool_x, tool_y, tool_sure;  // as in CellColumns
+  std::span<double> tool_x, tool_y, gradient_square;  // as in CellColumns
 };
 
 /// How far the body as a whole has moved the cells of one region, beside its RegionSupport, m:

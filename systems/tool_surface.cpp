@@ -14,8 +14,6 @@ constexpr int kMostSteps = 10;  // of Newton's method down to the tool's surface
 constexpr double kCloseEnough =
     0.02;                         // of a cell: where no cell steps farther, the step is the last
 constexpr double kAtRest = 1e-6;  // of a cell: one that steps less is left where it is
-constexpr double kSteepest =
-    0.25;  // smallest |cosine| between the surface's normal and the grid's that is divided by
 
 /// The cells' places of the last step as columns of points, in the grid's frame.
 void place_centers(const Grid& grid) {
@@ -69,7 +67,7 @@ TORSION_WIDEST
 void step_to_surface(double size, std::size_t count, const double* __restrict gradient_x,
                      const double* __restrict gradient_y, const double* __restrict gradient_z,
                      double* __restrict value, double* __restrict z, double* __restrict tool_x,
-                     double* __restrict tool_y, double* __restrict tool_sure) {
+                     double* __restrict tool_y, double* __restrict gradient_square) {
   for (std::size_t cell = 0; cell < count; ++cell) {
     const double over_slope = 1.0 / larger(-gradient_z[cell], kSteepest);
     const double change = value[cell] * over_slope;
@@ -82,16 +80,17 @@ void step_to_surface(double size, std::size_t count, const double* __restrict gr
     value[cell] = to < size ? std::abs(change) : to - from;
     tool_x[cell] = gradient_x[cell] * over_slope;
     tool_y[cell] = gradient_y[cell] * over_slope;
-    tool_sure[cell] = gradient_x[cell] * gradient_x[cell] + gradient_y[cell] * gradient_y[cell] +
-                      gradient_z[cell] * gradient_z[cell];
+    gradient_square[cell] = gradient_x[cell] * gradient_x[cell] +
+                            gradient_y[cell] * gradient_y[cell] +
+                            gradient_z[cell] * gradient_z[cell];
   }
 }
 
 void step_to_surface(double size, const DistanceColumns& points, std::span<double> tool_x,
-                     std::span<double> tool_y, std::span<double> tool_sure) {
+                     std::span<double> tool_y, std::span<double> gradient_square) {
   step_to_surface(size, points.x.size(), points.gradient_x.data(), points.gradient_y.data(),
                   points.gradient_z.data(), points.value.data(), points.z.data(), tool_x.data(),
-                  tool_y.data(), tool_sure.data());
+                  tool_y.data(), gradient_square.data());
 }
 
 /// The first of the cells that are left.
@@ -103,7 +102,7 @@ LeftCells first_of(const LeftCells& left, std::size_t count) {
            points.gradient_y.first(count), points.gradient_z.first(count)},
           left.tool_x.first(count),
           left.tool_y.first(count),
-          left.tool_sure.first(count)};
+          left.gradient_square.first(count)};
 }
 
 /// Lists the cells that still move, unless none below the rest surface moves far.
@@ -133,13 +132,13 @@ void step_left_cells(const Grid& grid, std::span<const std::uint32_t> parts, con
     left.points.z[k] = columns.points.z[cell];
   }
   signed_distances(grid.world, parts, frame, left.points);
-  step_to_surface(size, left.points, left.tool_x, left.tool_y, left.tool_sure);
+  step_to_surface(size, left.points, left.tool_x, left.tool_y, left.gradient_square);
   for (std::size_t k = 0; k < left.cells.size(); ++k) {
     const std::uint32_t cell = left.cells[k];
     columns.points.z[cell] = left.points.z[k];
     columns.tool_x[cell] = left.tool_x[k];
     columns.tool_y[cell] = left.tool_y[k];
-    columns.tool_sure[cell] = left.tool_sure[k];
+    columns.gradient_square[cell] = left.gradient_square[k];
   }
 }
 
@@ -163,7 +162,7 @@ void find_tool_surface(const Grid& grid) {
   const auto parts =
       parts_under(grid, grid.world.tools.at<OwnedRows>(grid.identity.tool).parts, frame.position);
   signed_distances(grid.world, parts, frame, columns.points);
-  step_to_surface(size, columns.points, columns.tool_x, columns.tool_y, columns.tool_sure);
+  step_to_surface(size, columns.points, columns.tool_x, columns.tool_y, columns.gradient_square);
   if (largest(columns.points.value, 1.0) < kCloseEnough * cell_length) {
     return;
   }

@@ -11,8 +11,10 @@ namespace torsion {
 
 /// One cell of a region's grid. Written by: region_grids.
 struct CellGeometry {
-  double height = 0.0;    // m, grid: z of the tool's surface under the cell's centre
-  double depth = 0.0;     // m: overlap along the normal, <= 0 outside the contact
+  // z of the tool's surface, m, grid: under the cell's centre, at a rim of the tool under the
+  // middle of what of the cell lies under it.
+  double height = 0.0;
+  double depth = 0.0;     // m: overlap along the normal there, <= 0 outside the contact
   double coverage = 0.0;  // share of the cell's area that is in contact, 0 to 1
   // How stiff a cell is for contact model patch, 0 to 1: 1 where it can touch as a whole, 0 where
   // it cannot, in between at the rims of faces.

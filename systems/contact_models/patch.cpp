@@ -242,7 +242,7 @@ void solve_region(StepContext& context, std::uint32_t region, const SweepLimits&
   if (load_cells(patch.rows, patch.world.bodies.at<Friction>(body), patch.columns, patch.places)) {
     patch.problem.rims = {patch.places.softness, patch.places.root};
   }
-  add_rims(patch.problem, patch.rows, 1.0);
+  add_rims(patch.problem, patch.columns, patch.rows, 1.0);
   find_starts(patch.rows, patch.places);
   const double depth = largest(whole_lanes(patch.columns.depth.size()), patch.columns.depth.data());
   const double deepened = depth - patch.state.depth;
@@ -301,7 +301,7 @@ void solve_region(StepContext& context, std::uint32_t region, const SweepLimits&
   summarize(patch, sums);
   settle_energy(patch.world, region,
                 {patch.problem, patch.columns, patch.support.z, held_by_body, patch.work}, start);
-  add_rims(patch.problem, patch.rows, -1.0);
+  add_rims(patch.problem, patch.columns, patch.rows, -1.0);
   if (settling > 0 && sums.force > 0.0) {
     keep_place(patch, carrier);
   }

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/contact_models/patch_passes.hpp"
+#include "systems/contact_models/patch_sums.hpp"
 #include "systems/distance_shapes.hpp"
 #include "systems/frames.hpp"
 #include "systems/rim_cells.hpp"
@@ -279,27 +280,16 @@ void find_starts(const PatchRows& rows, const PatchPlaces& places) {
               places.from_y.data());
 }
 
-void add_rims(const PatchProblem& problem, const PatchRows& rows, double sign) {
-  if (problem.rims.softness.empty()) {
-    return;
-  }
-  const auto yields = [&](InfluenceKind kind, std::size_t cell) {
-    return sign * problem.compliance * problem.influences.self(kind) * problem.rims.softness[cell];
-  };
+void add_rims(const PatchProblem& problem, const PatchColumns& columns, const PatchRows& rows,
+              double sign) {
   const PatchSurface& surface = rows.surface;
   const PatchChange& change = rows.change;
-  for (std::size_t cell = 0; cell < rows.tractions.size(); ++cell) {
-    const CellTraction& traction = rows.tractions[cell];
-    const double x = yields(InfluenceKind::kXX, cell);
-    const double y = yields(InfluenceKind::kYY, cell);
-    const double z = yields(InfluenceKind::kZZ, cell);
-    surface.moved_x[cell] -= x * traction.traction.x;
-    surface.moved_y[cell] -= y * traction.traction.y;
-    surface.depression[cell] += z * traction.pressure;
-    change.moved_x[cell] += x * change.traction_x[cell];
-    change.moved_y[cell] += y * change.traction_y[cell];
-    change.depression[cell] += z * change.pressure[cell];
-  }
+  add_rims(problem, InfluenceKind::kXX, sign, columns.traction_x, surface.moved_x);
+  add_rims(problem, InfluenceKind::kYY, sign, columns.traction_y, surface.moved_y);
+  add_rims(problem, InfluenceKind::kZZ, sign, columns.pressure, surface.depression);
+  add_rims(problem, InfluenceKind::kXX, sign, change.traction_x, change.moved_x);
+  add_rims(problem, InfluenceKind::kYY, sign, change.traction_y, change.moved_y);
+  add_rims(problem, InfluenceKind::kZZ, sign, change.pressure, change.depression);
 }
 
 ForeseenShares best_shares(const PatchRows& rows, const PatchColumns& columns, bool coupled,

@@ -60,7 +60,9 @@ void find_starts(const PatchRows& rows, const PatchPlaces& places);
 
 /// Adds to what the rows hold of displacements, of which the softness of cells at rims is no part,
 /// what it makes of their tractions; with sign -1 takes it off.
-void add_rims(const PatchProblem& problem, const PatchRows& rows, double sign);
+/// @pre the tractions in the columns are the rows'
+void add_rims(const PatchProblem& problem, const PatchColumns& columns, const PatchRows& rows,
+              double sign);
 
 /// Of what the last step changed.
 struct ForeseenShares {

@@ -56,9 +56,10 @@ Stiffness stiffness_of(std::uint32_t side, double angle, double drag) {
 // 0.366790 times 4 pi epsilon its side, whose charge is like the pressure (both are potentials of
 // 1 / r). On ten cells a side that count as wholes, solved directly, the force is 2 to 8 % off and
 // the stiffness against tilting, a third power as that against turning is, up to 29 %; where they
-// count with their shares .4 % and 1.5 %. A step of ten sweeps and sides that are not whole numbers
-// of cells add to that. For the torque of a square there is no closed form: it must be the same
-// however the punch lies, to what a tenth of a cell on either side makes of a third power.
+// count with their shares .4 % and 1.5 %. Sides that are not whole numbers of cells and corners, of
+// which a share is no more than the plane of one side says, add to that. For the torque of a square
+// there is no closed form: it must be the same however the punch lies, to what a tenth of a cell on
+// either side makes of a third power.
 TEST(RimStiffnessTest, AFlatPunchIsAsStiffHoweverItLiesToTheCells) {
   const double exact = 0.366790 * std::numbers::pi;
   for (const std::uint32_t side : {12U, 17U, 20U}) {

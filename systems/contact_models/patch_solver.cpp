@@ -60,7 +60,8 @@ void PatchWork::reserve(std::uint32_t side) {
                                     &softened, &clips, &change_pressure, &change_x, &change_y}) {
     each->assign(count, 0.0);
   }
-  for (auto* each : {&rigid_x, &rigid_y, &rigid_asks_x, &rigid_asks_y}) {
+  for (auto* each : {&rigid_x, &rigid_y, &rigid_asks_x, &rigid_asks_y, &pulls_x, &pulls_y,
+                     &pulled_x, &pulled_y}) {
     each->fill(std::vector<double>(count, 0.0));
   }
   bordered.assign(std::size_t{side + 2} * (side + 2) + kPatchLanes, 0.0);

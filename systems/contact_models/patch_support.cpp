@@ -19,6 +19,10 @@ namespace torsion {
 namespace {
 
 constexpr std::size_t kColumn = kSupportColumn;
+// Of a body's compliances over those of its contact (yielding_ratio): where the solver has to know,
+// and where its preconditioner for that is no longer enough.
+constexpr double kSoft = 0.5;
+constexpr double kSways = 30.0;
 using Half = double __attribute__((vector_size(sizeof(double) * kPatchLanes / 2)));
 
 /// Moments of tractions with the terms, sums over the cells.
@@ -195,21 +199,21 @@ void add_answer(const PatchSupport& support, const SupportPolynomials& moments, 
   }
 }
 
-/// Whether the body gives way by so much, beside its contact, that the solver has to know.
-bool yields_much(const World& world, const RegionIdentity& region, const Footing& footing,
-                 const std::array<double, 36>& yielding) {
-  constexpr double kMuch = 0.5;
+/// By how much the body gives way beside its contact: the sum of its compliances over those of the
+/// contact.
+double yielding_ratio(const World& world, const RegionIdentity& region, const Footing& footing,
+                      const std::array<double, 36>& yielding) {
   const Elasticity& elasticity = world.bodies.at<Elasticity>(region.body);
   const double a = footing.radius;
-  // The sum of its compliances over those of a contact: at most that of a disc pressed, 1 / (2 E*
-  // a), and tilted, 3 / (4 E* a^3). Johnson, Contact Mechanics, 1985, (3.36) and 3.5.
+  // Those of a contact: at most that of a disc pressed, 1 / (2 E* a), and tilted, 3 / (4 E* a^3).
+  // Johnson, Contact Mechanics, 1985, (3.36) and 3.5.
   const double force = 2.0 * elasticity.contact_modulus() * a;
   const double couple = 4.0 / 3.0 * elasticity.contact_modulus() * a * a * a;
   double sum = 0.0;
   for (std::size_t k = 0; k < 6; ++k) {
     sum += yielding[7 * k] * (k < 3 ? force : couple);
   }
-  return sum > kMuch;
+  return sum;
 }
 
 void find_yielding(const Footing& footing, const std::array<double, 36>& yielding,
@@ -257,7 +261,9 @@ PatchSupport patch_support(World& world, std::uint32_t region, const DiscStiffne
   const RegionReaction& reaction = world.regions.at<RegionReaction>(region);
   support.reaction = reaction.active != 0 ? &reaction : nullptr;
   const std::array<double, 36> yielding = yielding_of(footing, reaction);
-  support.soft = yields_much(world, identity, footing, yielding);
+  const double ratio = yielding_ratio(world, identity, footing, yielding);
+  support.soft = ratio > kSoft;
+  support.sways = ratio > kSways;
   support.terms = terms.first(kSupportTerms * support.cells);
   support.place_x = centers.x;
   support.place_y = centers.y;

@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 
+#include "systems/contact_models/deflation.hpp"
 #include "systems/contact_models/local_inverse.hpp"
 #include "systems/contact_models/patch_sums.hpp"
 #include "systems/contact_models/traction_passes.hpp"
@@ -103,7 +104,7 @@ double ask(const PatchProblem& problem, double stiffness, const TractionColumns&
   find_ways(cells, stiffness);
   ask_for(problem, work.inverses.x, cells.residual_x, work, cells.asked_x);
   ask_for(problem, work.inverses.y, cells.residual_y, work, cells.asked_y);
-  if (problem.support.soft) {
+  if (problem.support.soft && !problem.support.sways) {
     yield_to_rigid_motions(problem, cells, work);
   }
   return dot(cells.count, cells.residual_x, cells.residual_y, cells.asked_x, cells.asked_y);
@@ -137,6 +138,43 @@ double stiffness_alone(const PatchProblem& problem) {
   return 1.0 / (softest * problem.compliance);
 }
 
+/// Brings the body into balance by the cells that stick now.
+Deflation deflate(const PatchProblem& problem, double stiffness, const TractionColumns& cells,
+                  PatchWork& work) {
+  find_ways(cells, stiffness);
+  const Deflation deflation = find_deflation(problem, cells, work);
+  balance(deflation, cells, work);
+  return deflation;
+}
+
+/// Where a sweep begins.
+struct SweepStart {
+  bool outside = false;  // a traction is out of its disc
+  bool alone = false;    // the last step was as good as none
+  double calm = 0.0;
+  double before = 0.0;  // the residual's square, 0: no direction to keep
+};
+
+Sweep find_step(const PatchProblem& problem, double stiffness, const SweepStart& start,
+                const Deflation& deflation, const TractionColumns& cells, PatchWork& work) {
+  Sweep sweep;
+  sweep.square = ask(problem, stiffness, cells, work);
+  const double kept = start.before > 0.0 ? sweep.square / start.before : 0.0;
+  sweep.step = mix_tractions(cells, {start.outside ? start.calm : 1.0, kept});
+  if (!start.outside && (start.alone || sweep.step.slope <= 0.0)) {
+    // Beside cells that slip the neighbours' share may lead uphill; each cell's own does not.
+    ask_alone(problem, stiffness, cells);
+    const double clipped = sweep.step.clipped;
+    sweep.step = mix_tractions(cells, {1.0, 0.0});
+    sweep.step.clipped += clipped;
+  }
+  if (deflation.directions > 0) {
+    make_conjugate(deflation, cells, work);
+    sweep.step.slope = slope_along(cells, cells.step_x, cells.step_y);
+  }
+  return sweep;
+}
+
 }  // namespace
 
 PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& columns,
@@ -144,27 +182,24 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
   const InfluenceTables& tables = problem.influences;
   const double alone_stiffness = stiffness_alone(problem);
   const TractionColumns cells = columns_of(columns, work);
-  bool outside = find_limits(cells);
+  const double fewer = std::min(1.0, kCalmSide / static_cast<double>(tables.side));
+  const bool sways = problem.support.sways;
+  SweepStart start;
+  start.calm = kCalm * fewer * fewer;
+  start.outside = find_limits(cells);
   std::ranges::fill(work.step_x, 0.0);
   std::ranges::fill(work.step_y, 0.0);
   PatchOutcome outcome;
-  double before = 0.0;  // the residual's square, 0: no direction to keep
   double whole = problem.foreseen_traction;
-  bool alone = false;
-  const double fewer = std::min(1.0, kCalmSide / static_cast<double>(tables.side));
-  const double calm = kCalm * fewer * fewer;
+  Deflation deflation = sways ? deflate(problem, alone_stiffness, cells, work) : Deflation{};
   while (outcome.sweeps < problem.sweeps) {
-    Sweep sweep;
-    sweep.square = ask(problem, alone_stiffness, cells, work);
-    const double kept = before > 0.0 ? sweep.square / before : 0.0;
-    sweep.step = mix_tractions(cells, {outside ? calm : 1.0, kept});
-    if (!outside && (alone || sweep.step.slope <= 0.0)) {
-      // Beside cells that slip the neighbours' share may lead uphill; each cell's own does not.
-      ask_alone(problem, alone_stiffness, cells);
-      const double clipped = sweep.step.clipped;
-      sweep.step = mix_tractions(cells, {1.0, 0.0});
-      sweep.step.clipped += clipped;
+    if (sways && start.alone && outcome.sweeps + 1 < problem.sweeps) {
+      // Other cells stick than did, and the body's balance has drawn some out of their discs.
+      deflation = deflate(problem, alone_stiffness, cells, work);
+      start.outside = find_limits(cells);
+      start.before = 0.0;
     }
+    const Sweep sweep = find_step(problem, alone_stiffness, start, deflation, cells, work);
     const double stiffness = move(problem, cells, work);
     if (stiffness <= 0.0) {
       // Nothing is left to do; or the equations have no solution, which is no small residual.
@@ -173,17 +208,18 @@ PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& co
     }
     // A first step brings all tractions into their discs, so it goes all the way. Where something
     // slips, a step ends on the discs' rims: no farther.
-    const double best = outside ? 1.0 : sweep.step.slope / stiffness;
+    const double best = start.outside ? 1.0 : sweep.step.slope / stiffness;
     const double length = sweep.step.slips > 0.0 ? std::clamp(best, 0.0, 1.0) : best;
-    alone = length < kShort;
-    const bool exact = !outside && sweep.step.clipped == 0.0;
-    outside = false;
-    const SweepChange change = change_tractions(cells, length);
-    before = exact ? sweep.square : 0.0;
+    const bool exact = !start.outside && sweep.step.clipped == 0.0;
+    SweepChange change = change_tractions(cells, length);
+    const SweepChange balanced = balance(deflation, cells, work);
+    change.largest += balanced.largest;
+    change.sum += balanced.sum;
+    start = {false, length < kShort, start.calm, exact ? sweep.square : 0.0};
     whole = std::max(whole, change.sum);
     outcome.last_change = change.largest / problem.reference;
     ++outcome.sweeps;
-    if (!alone && ends(problem, change, whole)) {
+    if (!start.alone && ends(problem, change, whole)) {
       break;
     }
   }

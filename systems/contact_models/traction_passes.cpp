@@ -110,6 +110,18 @@ void add_up_step(const TractionColumns& cells, TractionStep& __restrict step) {
   step = {sum_of(slope), sum_of(slipped), sum_of(clipped)};
 }
 
+TORSION_WIDEST
+double slope_of(const TractionColumns& cells, const double* x, const double* y) {
+  Wide slope{};
+  for (std::size_t k = 0; k < cells.count; k += kPatchLanes) {
+    // What is left of the way is small beside the way: the difference first.
+    const Wide left_x = lanes_at(cells.target_x + k).all - lanes_at(cells.moved_x + k).all;
+    const Wide left_y = lanes_at(cells.target_y + k).all - lanes_at(cells.moved_y + k).all;
+    slope += left_x * lanes_at(x + k).all + left_y * lanes_at(y + k).all;
+  }
+  return sum_of(slope);
+}
+
 /// @return the most that the square of a traction is over that of its limit, Pa^2
 TORSION_WIDEST
 double limits(std::size_t count, const double* __restrict pressure,
@@ -216,6 +228,10 @@ TractionStep mix_tractions(const TractionColumns& cells, const Mix& mix) {
   TractionStep step;
   add_up_step(cells, step);
   return step;
+}
+
+double slope_along(const TractionColumns& cells, const double* x, const double* y) {
+  return slope_of(cells, x, y);
 }
 
 SweepChange change_tractions(const TractionColumns& cells, double length) {

@@ -56,6 +56,9 @@ struct TractionStep {
 /// Turns what is asked and kept into a step that ends within the discs.
 TractionStep mix_tractions(const TractionColumns& cells, const Mix& mix);
 
+/// Of the energy along a change of the tractions, downhill, Pa m.
+double slope_along(const TractionColumns& cells, const double* x, const double* y);
+
 /// Goes `length` of the step, which becomes the change.
 SweepChange change_tractions(const TractionColumns& cells, double length);
 

@@ -102,11 +102,11 @@ constexpr Bounds kBounds[] = {
     {"soft_column patch compliance 144", 0.011, 0.032, 0.056},
     {"soft_column patch compliance 256", 0.0026, 0.0066, 0.045},
     {"slender_column mdr compliance 256", 0.038, 0.064, 0.013},
-    // Not solved in a step: the column's end is a thousand times softer sideways than the contact,
-    // and what is left of the friction's equations is up to a third; what comes of it is
-    // rounding's.
+    // Large steps on few cells: the column's end is a thousand times softer sideways than the
+    // contact, and some steps of these 64 cells are not solved.
     {"slender_column patch compliance 64", 0.03, 0.20, 0.08},
-    {"slender_column patch compliance 144", 0.03, 0.20, 0.10},
+    {"slender_column patch compliance 144", 0.006, 0.04, 0.02},
+    {"slender_column patch compliance 256", 0.005, 0.02, 0.02},
     {"plate_on_edge mdr compliance 256", 0.048, 0.13, 0.086},
     {"plate_on_edge patch compliance 144", 0.050, 0.095, 0.079},
     {"plate_on_edge patch compliance 256", 0.049, 0.097, 0.076},

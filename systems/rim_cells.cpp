@@ -24,16 +24,16 @@ constexpr double kUnderside = kFullyFacing;
 /// @param open  1 or 0, out
 /// @return how many there are
 TORSION_WIDEST
-double find_open(std::size_t count, double highest, const double* __restrict z,
-                 const double* __restrict tool_x, const double* __restrict tool_y,
-                 double* __restrict open) {
+std::size_t find_open(std::size_t count, double highest, const double* __restrict z,
+                      const double* __restrict tool_x, const double* __restrict tool_y,
+                      double* __restrict open) {
   constexpr double kSteepSlope = 0.95 * (1.0 / (kSide * kSide) - 1.0);
-  double sum = 0.0;
+  std::size_t sum = 0;  // no floating point number: its sum would be one cell after the other
   for (std::size_t cell = 0; cell < count; ++cell) {
     const double slope = tool_x[cell] * tool_x[cell] + tool_y[cell] * tool_y[cell];
     const bool none = (z[cell] >= highest) | (slope > kSteepSlope);
     open[cell] = none ? 1.0 : 0.0;
-    sum += open[cell];
+    sum += none ? 1 : 0;
   }
   return sum;
 }
@@ -176,9 +176,9 @@ bool find_rims(const Grid& grid) {
   const CellColumns& columns = grid.scratch.cell_columns;
   const std::span<double> shares = columns.rim_share;
   const double size = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
-  const double any = find_open(shares.size(), 0.5 * size, columns.points.z.data(),
-                               columns.tool_x.data(), columns.tool_y.data(), shares.data());
-  if (any == 0.0 || any == static_cast<double>(shares.size())) {
+  const std::size_t any = find_open(shares.size(), 0.5 * size, columns.points.z.data(),
+                                    columns.tool_x.data(), columns.tool_y.data(), shares.data());
+  if (any == 0 || any == shares.size()) {
     return false;
   }
   const CellBits open = bits_of(shares.data(), grid.side);

@@ -16,6 +16,8 @@ namespace torsion {
 namespace {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+// Within the step, which takes nothing from the heap.
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6 * kMaxRegionsPerBody, 1>;
 
 /// No compliance of a body takes more than this of the contacts' own away (region_stands.cpp); what
 /// footings of other steps make of it must not either.
@@ -216,16 +218,44 @@ bool answers_within_a_step(const CompliantBody& body,
   return soft >= 2;
 }
 
+/// Solves with Newton's symmetric matrix. Couplings between regions that lie in each other's reach
+/// are found through footings of different steps and sizes, and may come to more than what they
+/// couple; the matrix then has no solution that means anything, of whatever size. It is solved with
+/// half of them, and so on: the blocks on the diagonal are definite on their own.
+/// @param matrix  its part right of the diagonal; couplings become what they are solved with
+/// @param copy    is overwritten
+/// @param begin   sets `right` to the right sides, again for each try
+template <class Begin, class Right>
+void solve_newton(Eigen::Map<RowMatrix>& matrix, Eigen::Map<RowMatrix>& copy, const Begin& begin,
+                  Right& right) {
+  constexpr double kDefinite = 0.5 * kLeastPivot;  // but for rounding
+  constexpr int kHalvings = 8;
+  const auto size = static_cast<std::size_t>(matrix.rows());
+  for (int halvings = 0; halvings <= kHalvings; ++halvings) {
+    copy = matrix;
+    begin();
+    const auto width = static_cast<std::size_t>(right.cols());
+    if (solve_symmetric(size, size, copy.data(), width, right.data(), kLeastPivot) >= kDefinite) {
+      return;
+    }
+    const double kept = halvings + 1 < kHalvings ? 0.5 : 0.0;
+    for (Eigen::Index at = 0; at + 6 < matrix.rows(); at += 6) {
+      matrix.block(at, at + 6, 6, matrix.cols() - at - 6) *= kept;
+    }
+  }
+}
+
 /// What each region feels of its own load when the others have answered is the Schur complement of
 /// its block in Newton's matrix, the inverse of that block of the inverse: K^-1 + C_ii - D with D
 /// the answer. (Golub and Van Loan, Matrix Computations, 3.2.11)
-/// @param matrix  of fill_equations, the part right of the diagonal; overwritten
+/// @param matrix  of fill_equations, which it makes definite
+/// @param copy    is overwritten
 void find_reactions(const CompliantBody& body,
                     const std::array<StiffnessRoot, kMaxRegionsPerBody>& roots,
-                    Eigen::Map<RowMatrix>& matrix, Eigen::Map<RowMatrix>& inverse) {
-  inverse.setIdentity();
-  const auto size = static_cast<std::size_t>(matrix.rows());
-  solve_symmetric(size, size, matrix.data(), size, inverse.data(), kLeastPivot);
+                    Eigen::Map<RowMatrix>& matrix, Eigen::Map<RowMatrix>& copy,
+                    Eigen::Map<RowMatrix>& inverse) {
+  solve_newton(
+      matrix, copy, [&inverse] { inverse.setIdentity(); }, inverse);
   for (std::size_t i = 0; i < body.count; ++i) {
     const Stand& stand = body.stands[i];
     const Footing& footing = footing_of(body, stand);
@@ -322,13 +352,12 @@ void deform_body(StepContext& context, std::uint32_t row) {
   const auto rows = static_cast<Eigen::Index>(size);
   Eigen::Map<RowMatrix> matrix(context.scratch.compliance_matrix.data(), rows, rows);
   Eigen::Map<Eigen::VectorXd> change(context.scratch.compliance_residuals.data(), rows);
+  Eigen::Map<RowMatrix> copy(context.scratch.compliance_copy.data(), rows, rows);
   change.setZero();
   if (answers_within_a_step(body, newton.roots)) {
     fill_equations(body, newton.roots, matrix, change);
-    Eigen::Map<RowMatrix> copy(context.scratch.compliance_copy.data(), rows, rows);
     Eigen::Map<RowMatrix> inverse(context.scratch.compliance_inverse.data(), rows, rows);
-    copy = matrix;
-    find_reactions(body, newton.roots, copy, inverse);
+    find_reactions(body, newton.roots, matrix, copy, inverse);
     add_sway(body, matrix, newton, copy, change);
     solve_general(size, copy.data(), change.data());
   } else {
@@ -336,7 +365,9 @@ void deform_body(StepContext& context, std::uint32_t row) {
       sway(body, body.stands[i]);
     }
     fill_equations(body, newton.roots, matrix, change);
-    solve_symmetric(size, size, matrix.data(), 1, change.data(), kLeastPivot);
+    const Vector residual = change;
+    solve_newton(
+        matrix, copy, [&] { change = residual; }, change);
   }
   if (!change.allFinite()) {
     raise(context.world.clock.at<Clock>(0), Fault::kResultNotFinite);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "systems/widest.hpp"
@@ -20,10 +21,12 @@ inline void subtract(std::size_t count, double factor, const double* __restrict 
 }  // namespace
 
 TORSION_WIDEST
-void solve_symmetric(std::size_t n, std::size_t stride, double* upper, std::size_t width,
-                     double* right, double least_pivot) {
+double solve_symmetric(std::size_t n, std::size_t stride, double* upper, std::size_t width,
+                       double* right, double least_pivot) {
+  double smallest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < n; ++k) {
     double* const row = upper + k * stride;
+    smallest = std::min(smallest, row[k]);
     row[k] = 1.0 / std::max(row[k], least_pivot);
     for (std::size_t i = k + 1; i < n; ++i) {
       const double factor = row[i] * row[k];
@@ -41,6 +44,7 @@ void solve_symmetric(std::size_t n, std::size_t stride, double* upper, std::size
       found[c] *= row[k];
     }
   }
+  return smallest;
 }
 
 TORSION_WIDEST

@@ -9,9 +9,10 @@ namespace torsion {
 /// @param upper  n x n, row-major, `stride` apart: the diagonal and what is right of it are read;
 ///               overwritten
 /// @param right  n x width, row-major: B, then X
-/// @param least_pivot  taken in place of smaller ones
-void solve_symmetric(std::size_t n, std::size_t stride, double* upper, std::size_t width,
-                     double* right, double least_pivot);
+/// @param least_pivot  taken in place of smaller ones: what is found then solves other equations
+/// @return the smallest pivot that there was
+double solve_symmetric(std::size_t n, std::size_t stride, double* upper, std::size_t width,
+                       double* right, double least_pivot);
 
 /// Solves A x = b for any A by Gauss' elimination with exchanges of rows, in place, likewise. What
 /// it finds of a singular A is not finite.

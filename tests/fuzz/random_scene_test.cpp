@@ -31,7 +31,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Seed{306, "LastForceOfACompliantBody"},
                     Seed{321, "OneContactInTwoRegionsThatTakeCellsFromEachOther"},
                     Seed{456, "CoarseBallInTwoRegions"}, Seed{484, "NeighboursThatTouch"},
-                    Seed{458, "ContactOfANanometre"}),
+                    Seed{458, "ContactOfANanometre"},
+                    Seed{1049, "RegionsWhoseCouplingsAreMoreThanThemselves"}),
     [](const testing::TestParamInfo<Seed>& seed) { return std::string(seed.param.what); });
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "systems/body_models/dense_solve.hpp"
 
+#include <algorithm>
+#include <array>
 #include <random>
 
 #include <Eigen/Core>
@@ -29,6 +31,16 @@ TEST(SymmetricSolveTest, SolvesForOneAndForManyRightSides) {
                       0.25);
       EXPECT_LT((matrix * found - right).norm(), 1e-12 * right.norm()) << n << " x " << width;
     }
+  }
+}
+
+// By Sylvester's law of inertia as many pivots are negative as eigenvalues.
+TEST(SymmetricSolveTest, TellsOfAMatrixThatIsNotDefinite) {
+  for (const double coupling : {0.0, 0.5, 0.99, 1.01, 1e3}) {
+    std::array matrix{1.0, coupling, coupling, 1.0};
+    std::array right{1.0, 0.0};
+    const double smallest = solve_symmetric(2, 2, matrix.data(), 1, right.data(), 0.25);
+    EXPECT_DOUBLE_EQ(smallest, std::min(1.0, 1.0 - coupling * coupling));
   }
 }
 

@@ -17,8 +17,8 @@ namespace torsion {
 /// of a few cells that come to slip throws the end of a slender body aside by a thousand times what
 /// they displace themselves, and no step is short enough.
 struct Deflation {
-  std::size_t directions = 0;  // in PatchWork::pulls_x, pulls_y; conjugate, of curvature 1 / (Pa m)
-  std::array<SweepChange, 3> sizes;  // of the directions
+  std::size_t directions = 0;  // in PatchWork::pulls_x, pulls_y; conjugate, of curvature 1 Pa m
+  std::array<SweepChange, 3> sizes;  // of each
 };
 
 /// Needs the cells' ways (find_ways). The steps' columns are zero after it.

@@ -221,7 +221,7 @@ bool answers_within_a_step(const CompliantBody& body,
 /// Solves with Newton's symmetric matrix. Couplings between regions that lie in each other's reach
 /// are found through footings of different steps and sizes, and may come to more than what they
 /// couple; the matrix then has no solution that means anything, of whatever size. It is solved with
-/// half of them, and so on: the blocks on the diagonal are definite on their own.
+/// half of them, a quarter, none: the blocks on the diagonal are definite on their own.
 /// @param matrix  its part right of the diagonal; couplings become what they are solved with
 /// @param copy    is overwritten
 /// @param begin   sets `right` to the right sides, again for each try
@@ -229,7 +229,7 @@ template <class Begin, class Right>
 void solve_newton(Eigen::Map<RowMatrix>& matrix, Eigen::Map<RowMatrix>& copy, const Begin& begin,
                   Right& right) {
   constexpr double kDefinite = 0.5 * kLeastPivot;  // but for rounding
-  constexpr int kHalvings = 8;
+  constexpr int kHalvings = 3;  // none are left after the last: each try costs a solution
   const auto size = static_cast<std::size_t>(matrix.rows());
   for (int halvings = 0; halvings <= kHalvings; ++halvings) {
     copy = matrix;

@@ -16,12 +16,7 @@ constexpr double kLeastLeft = 1e-6;
 /// What a motion asks of the cells that stick, and what that displaces.
 void find_pull(const PatchProblem& problem, const TractionColumns& cells, std::size_t motion,
                PatchWork& work) {
-  for (std::size_t cell = 0; cell < problem.support.place_x.size(); ++cell) {
-    const double x = problem.support.place_x[cell];
-    const double y = problem.support.place_y[cell];
-    work.moves_x[cell] = motion == 2 ? -y : (motion == 0 ? 1.0 : 0.0);
-    work.moves_y[cell] = motion == 2 ? x : (motion == 1 ? 1.0 : 0.0);
-  }
+  move_as_one(problem.support, motion, work.moves_x.data(), work.moves_y.data());
   keep_answered(cells, work.moves_x.data(), work.moves_y.data());
   ask_for(problem, work.inverses.x, work.moves_x.data(), work, cells.step_x);
   ask_for(problem, work.inverses.y, work.moves_y.data(), work, cells.step_y);
@@ -71,9 +66,9 @@ Deflation find_deflation(const PatchProblem& problem, const TractionColumns& cel
       continue;
     }
     const double scale = 1.0 / std::sqrt(left);
-    const auto keep = [scale](const double* from, std::vector<double>& to) {
-      std::ranges::fill(to, 0.0);
-      add_scaled(to.size(), scale, from, to.data());
+    const auto keep = [&](const double* from, std::vector<double>& to) {
+      std::transform(from, from + cells.count, to.begin(),
+                     [scale](double value) { return scale * value; });
     };
     keep(cells.step_x, work.pulls_x[deflation.directions]);
     keep(cells.step_y, work.pulls_y[deflation.directions]);

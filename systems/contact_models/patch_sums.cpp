@@ -92,6 +92,13 @@ InfluenceSources gather_sources(const PatchProblem& problem, std::span<const dou
 
 }  // namespace
 
+void move_as_one(const PatchSupport& support, std::size_t motion, double* x, double* y) {
+  for (std::size_t cell = 0; cell < support.place_x.size(); ++cell) {
+    x[cell] = motion == 2 ? -support.place_y[cell] : (motion == 0 ? 1.0 : 0.0);
+    y[cell] = motion == 2 ? support.place_x[cell] : (motion == 1 ? 1.0 : 0.0);
+  }
+}
+
 void ask_for(const PatchProblem& problem, const LocalInverse& inverse, const double* wanted,
              PatchWork& work, double* asked) {
   const std::uint32_t side = problem.influences.side;

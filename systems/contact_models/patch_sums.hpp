@@ -22,6 +22,10 @@ inline GridBlock block_of(const InfluenceTables& tables) {
   return {tables.side, tables.side, tables.width(), tables.index(0, 0, 0, 0)};
 }
 
+/// The displacements of the cells when all of them slide along x (motion 0) or y (1) by 1, or turn
+/// about the grid's origin by 1 (2). What follows the cells stays.
+void move_as_one(const PatchSupport& support, std::size_t motion, double* x, double* y);
+
 /// displacement += what tractions do in cells at rims beyond the influence tables.
 /// @param kind  of these, of a traction along the displacement
 /// @param sign  1, or -1 to take it off

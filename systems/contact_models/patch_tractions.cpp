@@ -64,10 +64,7 @@ void yield_to_rigid_motions(const PatchProblem& problem, const TractionColumns& 
   for (std::size_t k = 0; k < 3; ++k) {
     double* const motion_x = work.rigid_x[k].data();
     double* const motion_y = work.rigid_y[k].data();
-    for (std::size_t cell = 0; cell < problem.support.place_x.size(); ++cell) {
-      motion_x[cell] = k == 2 ? -problem.support.place_y[cell] : (k == 0 ? 1.0 : 0.0);
-      motion_y[cell] = k == 2 ? problem.support.place_x[cell] : (k == 1 ? 1.0 : 0.0);
-    }
+    move_as_one(problem.support, k, motion_x, motion_y);
     const auto answer = [&](const double* x, const double* y) {
       std::copy_n(x, count, answers_x.begin());
       std::copy_n(y, count, answers_y.begin());

@@ -34,7 +34,8 @@ TEST(SymmetricSolveTest, SolvesForOneAndForManyRightSides) {
   }
 }
 
-// By Sylvester's law of inertia as many pivots are negative as eigenvalues.
+// The second pivot is what the first leaves of the diagonal, 1 - c^2; negative where an eigenvalue
+// is (Sylvester's law of inertia).
 TEST(SymmetricSolveTest, TellsOfAMatrixThatIsNotDefinite) {
   for (const double coupling : {0.0, 0.5, 0.99, 1.01, 1e3}) {
     std::array matrix{1.0, coupling, coupling, 1.0};

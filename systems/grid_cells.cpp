@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "systems/frames.hpp"
 #include "systems/lanes.hpp"
@@ -181,6 +182,23 @@ bool mark_points(const Grid& grid, const RegionPoints& contact, CellBits& own, C
   return any_foreign;
 }
 
+/// Of the cells given. One beside a rim has a depth without being in contact.
+std::optional<CellPlace> deepest_of(const Grid& grid, const CellBits& cells) {
+  std::optional<CellPlace> deepest;
+  double most = 0.0;  // m
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    for (std::uint64_t left = cells[j]; left != 0; left &= left - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+      const double depth = grid.scratch.cell_columns.depth[std::size_t{j} * grid.side + i];
+      if (!deepest || depth > most) {
+        deepest = CellPlace{i, j};
+        most = depth;
+      }
+    }
+  }
+  return deepest;
+}
+
 /// Takes the coverage from cells that are not joined to the region's own contact points, or are
 /// nearer to those of another cluster, in steps from cell to cell. Returns those that keep it.
 CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact, const CellBits& covered) {
@@ -196,12 +214,11 @@ CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact, const Cel
     any_own |= own[j];
   }
   if (any_own == 0) {
-    // The points fall between the cells: the deepest cell is the nearest thing to them.
-    const auto deepest = std::ranges::max_element(columns.depth) - columns.depth.begin();
-    const auto cell = static_cast<std::uint32_t>(deepest);
-    const std::uint32_t j = cell / grid.side;
-    own[j] = (std::uint64_t{1} << (cell % grid.side)) & covered[j];
-    foreign[j] &= ~own[j];
+    // The points fall between the cells: the deepest of those in contact is the nearest to them.
+    if (const auto cell = deepest_of(grid, covered)) {
+      own[cell->j] = std::uint64_t{1} << cell->i;
+      foreign[cell->j] &= ~own[cell->j];
+    }
   }
   for (std::uint32_t j = 0; j < grid.side; ++j) {
     free[j] = covered[j] & ~(own[j] | foreign[j]);

@@ -32,7 +32,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Seed{321, "OneContactInTwoRegionsThatTakeCellsFromEachOther"},
                     Seed{456, "CoarseBallInTwoRegions"}, Seed{484, "NeighboursThatTouch"},
                     Seed{458, "ContactOfANanometre"},
-                    Seed{1049, "RegionsWhoseCouplingsAreMoreThanThemselves"}),
+                    Seed{1049, "RegionsWhoseCouplingsAreMoreThanThemselves"},
+                    Seed{1264, "ContactBesideItsFirstGrid"}),
     [](const testing::TestParamInfo<Seed>& seed) { return std::string(seed.param.what); });
 
 }  // namespace

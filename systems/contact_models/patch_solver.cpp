@@ -55,15 +55,16 @@ PatchOutcome solve_in_turn(const PatchProblem& problem, const PatchColumns& colu
 
 void PatchWork::reserve(std::uint32_t side) {
   const std::size_t count = whole_lanes(std::size_t{side} * side);
-  for (std::vector<double>* each : {&residual_x, &residual_y, &asked_x, &asked_y, &step_x, &step_y,
-                                    &moves_x, &moves_y, &moves_both, &limit, &along_x, &along_y,
-                                    &softened, &clips, &change_pressure, &change_x, &change_y}) {
+  for (std::vector<double>* each :
+       {&residual_x, &residual_y, &asked_x, &asked_y, &step_x, &step_y, &moves_x, &moves_y,
+        &moves_both, &limit, &along_x, &along_y, &softened, &clips, &change_pressure, &change_x,
+        &change_y, &target_x, &target_y}) {
     each->assign(count, 0.0);
   }
-  for (auto* each : {&rigid_x, &rigid_y, &rigid_asks_x, &rigid_asks_y, &pulls_x, &pulls_y,
-                     &pulled_x, &pulled_y}) {
+  for (auto* each : {&rigid_x, &rigid_y, &rigid_asks_x, &rigid_asks_y}) {
     each->fill(std::vector<double>(count, 0.0));
   }
+  discs.reserve(count);
   bordered.assign(std::size_t{side + 2} * (side + 2) + kPatchLanes, 0.0);
   // One more: what does not count is written, too.
   for (std::vector<double>* each : {&scales_x, &scales_y, &scales}) {

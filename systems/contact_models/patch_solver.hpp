@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "systems/contact_models/disc_projection.hpp"
 #include "systems/contact_models/influence.hpp"
 #include "systems/contact_models/local_inverse.hpp"
 #include "systems/contact_models/patch_support.hpp"
@@ -40,8 +41,9 @@ struct PatchWork {
   std::vector<double> change_pressure, change_x, change_y;       // Pa, in this solution
   // Rigid motions of the cells that count, and what three such ask for, Pa/m and Pa
   std::array<std::vector<double>, 3> rigid_x, rigid_y, rigid_asks_x, rigid_asks_y;
-  // As in Deflation: tractions, Pa, and what they displace, m
-  std::array<std::vector<double>, 3> pulls_x, pulls_y, pulled_x, pulled_y;
+  // Of tractions on a body that gives way: where their cells are to go beside its motion, m
+  std::vector<double> target_x, target_y;
+  DiscColumns discs;
   LocalInverses inverses;  // of the problem's tables, found by solve_patch
   // ((side + 2) x (side + 2)): cells with a border of zeros, and kPatchLanes zeros
   std::vector<double> bordered;

@@ -19,10 +19,8 @@ namespace torsion {
 namespace {
 
 constexpr std::size_t kColumn = kSupportColumn;
-// Of a body's compliances over those of its contact (yielding_ratio): where the solver has to know,
-// and where its preconditioner for that is no longer enough.
+// Of a body's compliances over those of its contact (yielding_ratio): where the solver has to know.
 constexpr double kSoft = 0.5;
-constexpr double kSways = 30.0;
 using Half = double __attribute__((vector_size(sizeof(double) * kPatchLanes / 2)));
 
 /// Moments of tractions with the terms, sums over the cells.
@@ -261,9 +259,7 @@ PatchSupport patch_support(World& world, std::uint32_t region, const DiscStiffne
   const RegionReaction& reaction = world.regions.at<RegionReaction>(region);
   support.reaction = reaction.active != 0 ? &reaction : nullptr;
   const std::array<double, 36> yielding = yielding_of(footing, reaction);
-  const double ratio = yielding_ratio(world, identity, footing, yielding);
-  support.soft = ratio > kSoft;
-  support.sways = ratio > kSways;
+  support.soft = yielding_ratio(world, identity, footing, yielding) > kSoft;
   support.terms = terms.first(kSupportTerms * support.cells);
   support.place_x = centers.x;
   support.place_y = centers.y;

@@ -24,7 +24,6 @@ struct PatchSupport {
   glm::dmat3 to_body{1.0};                   // from x, y, z of the columns
   double area = 0.0;                         // m^2, of a cell
   bool soft = false;                         // gives way by much beside the contact itself
-  bool sways = false;                        // by so much more that its motion has to be deflated
   bool laid_anew = false;                    // the response is not that of the last step
   std::size_t cells = 0;    // rows of a term: those of the cells and zeros up to whole lanes, which
                             // all columns that tractions come from or displacements go to have, too

@@ -33,7 +33,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Seed{456, "CoarseBallInTwoRegions"}, Seed{484, "NeighboursThatTouch"},
                     Seed{458, "ContactOfANanometre"},
                     Seed{1049, "RegionsWhoseCouplingsAreMoreThanThemselves"},
-                    Seed{1264, "ContactBesideItsFirstGrid"}),
+                    Seed{1264, "ContactBesideItsFirstGrid"},
+                    Seed{1187, "LittleFrictionOnAnEndThatIsSoftSideways"}),
     [](const testing::TestParamInfo<Seed>& seed) { return std::string(seed.param.what); });
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -125,6 +126,10 @@ struct Run {
   std::uint32_t faults = 0;
   int fault_step = -1;
   bool into_a_side = false;  // whether a tool that moved over the body met a side of it
+  double friction = 0.0;     // the largest of a region's over what its pressure can hold
+  int friction_step = -1;
+  int pressed = 0;   // steps with a force of `patch`
+  int unsolved = 0;  // those whose equations were far from solved
 };
 
 /// Whether a region is on a side of the body, which tools come down on from above.
@@ -134,6 +139,33 @@ bool meets_a_side(const World& world) {
   return std::ranges::any_of(frames, [&](const RegionFrame& frame) {
     return (world.bodies.at<Pose>(0).rotation * frame.normal).y < kUpwards;
   });
+}
+
+/// Adds what a step's regions say of themselves.
+void look_at_regions(const World& world, int step, Run& run) {
+  constexpr double kUnsolved = 0.1;
+  constexpr double kDrag = 0.025;  // of the normal force: what a step may owe its energy
+  double residual = 0.0;
+  bool pressed = false;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    const double force = world.regions.at<RegionNormal>(region).force;
+    if (force <= 0.0) {
+      continue;
+    }
+    const Friction& friction =
+        world.bodies.at<Friction>(world.regions.at<RegionIdentity>(region).body);
+    const double most = std::max(friction.static_friction, friction.dynamic_friction) + kDrag;
+    const double share = glm::length(world.regions.at<RegionFriction>(region).force) /
+                         std::max(most * force, std::numeric_limits<double>::min());
+    if (share > run.friction) {
+      run.friction = share;
+      run.friction_step = step;
+    }
+    pressed = true;
+    residual = std::max(residual, world.regions.at<PatchState>(region).residual);
+  }
+  run.pressed += pressed ? 1 : 0;
+  run.unsolved += residual > kUnsolved ? 1 : 0;
 }
 
 Run run(Simulation& simulation, const std::vector<std::vector<Pose>>& poses) {
@@ -152,6 +184,7 @@ Run run(Simulation& simulation, const std::vector<std::vector<Pose>>& poses) {
     }
     run.work.push_back(work);
     run.into_a_side = run.into_a_side || meets_a_side(world);
+    look_at_regions(world, static_cast<int>(index), run);
     const std::uint32_t faults = world.clock.at<Clock>(0).faults;
     run.fault_step = faults != 0 && run.faults == 0 ? static_cast<int>(index) : run.fault_step;
     run.faults |= faults;
@@ -169,6 +202,25 @@ std::optional<std::string> not_finite(const Run& run) {
         }
       }
     }
+  }
+  return std::nullopt;
+}
+
+/// Coulomb's law, of each region: a sum of tractions that are each within it is, too.
+std::optional<std::string> too_much_friction(const Run& run) {
+  constexpr double kSlack = 1e-6;
+  if (run.friction > 1.0 + kSlack) {
+    return fmt::format("friction is {:.3g} of the most that the pressure holds, in step {}",
+                       run.friction, run.friction_step);
+  }
+  return std::nullopt;
+}
+
+/// A step whose grid is new may leave something to the next one, not a tenth of all steps.
+std::optional<std::string> not_solved(const Run& run) {
+  if (10 * run.unsolved > run.pressed) {
+    return fmt::format("{} of {} steps have left the equations of patch unsolved", run.unsolved,
+                       run.pressed);
   }
   return std::nullopt;
 }
@@ -273,6 +325,12 @@ std::optional<std::string> broken_property(const RandomScene& scene) {
       names += raised(straight.faults, fault) ? std::string(fault_text(fault)) + " " : "";
     }
     return fmt::format("a fault in step {}: {}", straight.fault_step, names);
+  }
+  if (auto broken = too_much_friction(straight)) {
+    return broken;
+  }
+  if (auto broken = not_solved(straight)) {
+    return broken;
   }
   if (auto broken = not_smooth(straight)) {
     return broken;

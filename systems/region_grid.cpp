@@ -170,6 +170,13 @@ void follow_contact(StepContext& context, std::uint32_t region, const RegionPoin
   const Grid grid = grid_of(context, region);
   contact_of(context, grid.identity) = contact;
   if (has_patch(context.world, grid.identity)) {
+    if (context.world.regions.at<RegionNormal>(region).force <= 0.0) {
+      // It has nothing to keep, and its grid may lie beside the points, where it would stay.
+      context.world.patch_cells.zero(grid.identity.cells);
+      context.world.regions.at<PatchState>(region) = PatchState{};
+      place_new_grid(context, region, contact);
+      return;
+    }
     follow_patch(context, region, contact);
     turn_normal_to(grid.frame, context.world.regions.at<RegionGeometry>(region).mean_normal);
     return;

@@ -144,7 +144,7 @@ bool meets_a_side(const World& world) {
 /// Adds what a step's regions say of themselves.
 void look_at_regions(const World& world, int step, Run& run) {
   constexpr double kUnsolved = 0.1;
-  constexpr double kDrag = 0.025;  // of the normal force: what a step may owe its energy
+  constexpr double kDrag = 0.05;  // of the normal force: what a step may owe its energy
   double residual = 0.0;
   bool pressed = false;
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {

@@ -142,6 +142,10 @@ void move_supports(const CompliantBody& body, const Eigen::Map<Eigen::VectorXd>&
     const Vector6 after = support_now(body, stand) + newton.roots[i].inverse * scaled;
     if (stand.solved) {
       move_by_others(body, i, newton, scaled);
+    } else {
+      // The load that it is to have there.
+      Eigen::Map<Vector6>(body.world.regions.at<RegionReaction>(stand.region).wrench.data()) =
+          stand.load.wrench - newton.roots[i].root * scaled;
     }
     const Vector6 step = after - before + answer_at(support, center);
     support.about = center;
@@ -204,18 +208,22 @@ void sway(const CompliantBody& body, Stand& stand) {
 }
 
 /// Whether the body gives way under two regions at least by so much, beside the contacts, that the
-/// one feels within a step how the other answers.
-bool answers_within_a_step(const CompliantBody& body,
+/// one feels within a step how the other answers. The paper's model does not reckon with answers.
+bool answers_within_a_step(const CompliantBody& body, ContactModel model,
                            const std::array<StiffnessRoot, kMaxRegionsPerBody>& roots) {
-  constexpr double kMuch = 0.5;  // of the contact's own compliance
+  // Of the contact's own compliance. Where a contact is known as a whole that matters only when
+  // tools that pinch a body sway it.
+  constexpr double kMuch = 0.5;
+  constexpr double kSway = 10.0;
+  const double much = model == ContactModel::kPatch ? kMuch : kSway;
   std::size_t soft = 0;
   for (std::size_t i = 0; i < body.count; ++i) {
     const Footing& footing = footing_of(body, body.stands[i]);
     const Eigen::Map<const Matrix6> own(footing.own.data());
     const double share = (roots[i].root * own * roots[i].root).trace();
-    soft += body.stands[i].solved && footing.on_layer == 0 && share > kMuch ? 1U : 0U;
+    soft += footing.on_layer == 0 && share > much ? 1U : 0U;
   }
-  return soft >= 2;
+  return soft >= 2 && model != ContactModel::kPaper;
 }
 
 /// Solves with Newton's symmetric matrix. Couplings between regions that lie in each other's reach
@@ -260,7 +268,7 @@ void find_reactions(const CompliantBody& body,
     const Stand& stand = body.stands[i];
     const Footing& footing = footing_of(body, stand);
     RegionReaction& reaction = body.world.regions.at<RegionReaction>(stand.region);
-    if (!stand.solved || footing.on_layer != 0) {
+    if (footing.on_layer != 0) {
       continue;
     }
     const auto at = static_cast<Eigen::Index>(6 * i);
@@ -315,8 +323,8 @@ void take_answers(World& world, std::uint32_t row) {
     RegionReaction& reaction = world.regions.at<RegionReaction>(region);
     RegionSupport& support = world.regions.at<RegionSupport>(region);
     const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-    if (identity.body != row) {
-      continue;
+    if (identity.body != row || world.bodies.at<BodyModels>(row).contact == ContactModel::kMdr) {
+      continue;  // mdr has moved its own already (own_answer.hpp)
     }
     support.translation_step = glm::dvec3(0.0);
     support.rotation_step = glm::dvec3(0.0);
@@ -354,17 +362,23 @@ void deform_body(StepContext& context, std::uint32_t row) {
   Eigen::Map<Eigen::VectorXd> change(context.scratch.compliance_residuals.data(), rows);
   Eigen::Map<RowMatrix> copy(context.scratch.compliance_copy.data(), rows, rows);
   change.setZero();
-  if (answers_within_a_step(body, newton.roots)) {
-    fill_equations(body, newton.roots, matrix, change);
-    Eigen::Map<RowMatrix> inverse(context.scratch.compliance_inverse.data(), rows, rows);
-    find_reactions(body, newton.roots, matrix, copy, inverse);
-    add_sway(body, matrix, newton, copy, change);
-    solve_general(size, copy.data(), change.data());
-  } else {
+  const ContactModel model = context.world.bodies.at<BodyModels>(row).contact;
+  const bool answers = answers_within_a_step(body, model, newton.roots);
+  const bool sways_together = answers && model == ContactModel::kPatch;
+  if (!sways_together) {
     for (std::size_t i = 0; i < body.count; ++i) {
       sway(body, body.stands[i]);
     }
-    fill_equations(body, newton.roots, matrix, change);
+  }
+  fill_equations(body, newton.roots, matrix, change);
+  if (answers) {
+    Eigen::Map<RowMatrix> inverse(context.scratch.compliance_inverse.data(), rows, rows);
+    find_reactions(body, newton.roots, matrix, copy, inverse);
+  }
+  if (sways_together) {
+    add_sway(body, matrix, newton, copy, change);
+    solve_general(size, copy.data(), change.data());
+  } else {
     const Vector residual = change;
     solve_newton(
         matrix, copy, [&] { change = residual; }, change);

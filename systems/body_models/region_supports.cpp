@@ -119,6 +119,9 @@ void begin_split_support(World& world, std::uint32_t from, std::uint32_t region)
   left.tail<3>() -= Eigen::Vector3d(couple.x, couple.y, couple.z);
   move_by_part(both.motion, both.known, left, there.center, fresh);
   move_by_part(both.motion.transpose(), both.known.transpose(), taken, here.center, old);
+  // What each has given way to by its own load (own_answer.hpp).
+  Eigen::Map<Vector6>(world.regions.at<RegionReaction>(from).wrench.data()) -= load - left;
+  Eigen::Map<Vector6>(world.regions.at<RegionReaction>(region).wrench.data()) = taken;
 }
 
 void split_support(World& world, std::uint32_t from, std::uint32_t region) {

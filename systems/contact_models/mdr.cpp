@@ -1,14 +1,18 @@
 #include "systems/contact_models/mdr.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
-#include "systems/contact_models/contact_shape.hpp"
-#include "systems/contact_models/elliptic_contact.hpp"
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "systems/body_models/own_answer.hpp"
 #include "systems/contact_models/friction_decay.hpp"
-#include "systems/contact_models/layer_thickness.hpp"
 #include "systems/contact_models/mdr_layers.hpp"
+#include "systems/contact_models/round_contact.hpp"
 #include "systems/frames.hpp"
 #include "systems/scratch.hpp"
 
@@ -16,136 +20,6 @@ namespace torsion {
 namespace {
 
 using std::numbers::pi;
-
-/// What a region's overlap says of its contact.
-struct RoundContact {
-  glm::dvec2 center{0.0};  // m, grid
-  double radius = 0.0;     // m: sqrt(a b)
-  double depth = 0.0;      // m
-  double force = 0.0;      // N
-  MdrPressure pressure;
-  // Over those of a round contact of the same radius and force.
-  double slide_stiffness = 1.0;
-  double turn_stiffness = 1.0;
-  double torque_share = 1.0;
-};
-
-/// What does not depend on how the contact was found: stiffnesses of an ellipse that presses with
-/// `round_share` of Hertz' pressure.
-/// @param axes  b / a
-void set_stiffnesses(double axes, const EllipseShares& shares, double round_share,
-                     double poisson_ratio, RoundContact& contact) {
-  contact.pressure.elongation = round_share * (1.0 - axes);
-  contact.slide_stiffness = shares.force;
-  contact.turn_stiffness = axes < 1.0 ? bonded_turn_share(axes, poisson_ratio) : 1.0;
-  contact.torque_share = shares.torque;
-}
-
-/// Of shapes that are known: Hertz' ellipse, and as much less as their surfaces part beyond the
-/// paraboloid. A round profile r^2 / (2 R) + c r^4 has g = x^2 / R + (8/3) c x^4, and so
-/// F = 2 E* (d a - a^3 / (3 R) - (8/15) c a^5) with g(a) = d (Popov & Hess, 2015, ch. 3); its
-/// r^4 term here is the mean over the ellipse's rim.
-RoundContact contact_of_shapes(const SmoothContact& smooth, const Elasticity& elasticity) {
-  RoundContact contact;
-  if (smooth.depth <= 0.0) {
-    return contact;
-  }
-  const double depth = smooth.depth;
-  const EllipticContact ellipse = elliptic_contact(depth, smooth.curvature_1, smooth.curvature_2);
-  const double paraboloid = std::sqrt(ellipse.major * ellipse.minor);
-  // In units of that radius and of the depth: g = x^2 + quartic x^4 with g = 1 at the edge, where
-  // x^2 / R alone made 1, so that `beyond` r^2 / (2 R) at r = 1 is `beyond` / 2.
-  const double quartic = std::max(4.0 / 3.0 * smooth.beyond, -0.2);
-  const double square = 2.0 / (1.0 + std::sqrt(1.0 + 4.0 * quartic));
-  const double radius = std::sqrt(square);
-  contact.center = smooth.place;
-  contact.depth = depth;
-  contact.radius = radius * paraboloid;
-  contact.force = 2.0 * elasticity.contact_modulus() * paraboloid * depth * radius *
-                  (1.0 - square / 3.0 - 0.2 * quartic * square * square) * ellipse.shares.force;
-  set_stiffnesses(ellipse.minor / ellipse.major, ellipse.shares, 1.0, elasticity.poisson_ratio,
-                  contact);
-  return contact;
-}
-
-/// From the cells: a paraboloid's contact. Where the overlap ends before the contact's own edge
-/// would be, it ends there, and the rest of the depth presses like a flat stamp: a half-space gives
-/// way to a stamp by d at 2 E* a d, to a ball at (4/3) E* a d, and to a cylinder between two edges
-/// in between.
-RoundContact contact_of_cells(const World& world, std::uint32_t region,
-                              const Elasticity& elasticity) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-  const ContactShape shape = fit_contact_shape(world.regions.at<RegionFrame>(region),
-                                               world.settings.at<Settings>(0).grid_side,
-                                               world.cells.rows<CellGeometry>(identity.cells));
-  RoundContact contact;
-  if (shape.depth <= 0.0 || geometry.area <= 0.0) {
-    return contact;
-  }
-  contact.center = shape.apex;
-  contact.depth = shape.depth;
-  const double overlap = std::sqrt(geometry.area / pi);
-  // No paraboloid so flat that its contact would reach beyond the overlap.
-  const double least_1 = shape.depth / (shape.extent_1 * shape.extent_1);
-  const double least_2 = shape.depth / (shape.extent_2 * shape.extent_2);
-  const double bend_1 = std::max(shape.curvature_1, least_1);
-  const double bend_2 = std::max(shape.curvature_2, least_2);
-  const EllipticContact ellipse = elliptic_contact(shape.depth, bend_1, bend_2);
-  const double along = std::min(ellipse.major, bend_1 < bend_2 ? shape.extent_1 : shape.extent_2);
-  const double across = std::min(ellipse.minor, bend_1 < bend_2 ? shape.extent_2 : shape.extent_1);
-  contact.radius = std::min(std::sqrt(along * across), overlap);
-  // How much of each axis' curvature is the shapes' own.
-  const double round_share = 0.5 * (shape.curvature_1 / bend_1 + shape.curvature_2 / bend_2);
-  const double axes = std::clamp(across / along, 0.01, 1.0);
-  const EllipseShares shares = axes < 1.0 ? ellipse_shares(axes) : EllipseShares{};
-  const double of_stamp = 2.0 * elasticity.contact_modulus() * contact.radius * shape.depth;
-  contact.force = of_stamp * shares.force * (1.0 - round_share / 3.0);
-  contact.pressure.flat_share = (1.0 - round_share) / (1.0 - round_share / 3.0);
-  set_stiffnesses(axes, shares, round_share, elasticity.poisson_ratio, contact);
-  return contact;
-}
-
-/// Between the two, where the shapes say only part of it.
-RoundContact mix(const RoundContact& cells, const RoundContact& shapes, double share) {
-  RoundContact contact;
-  contact.center = glm::mix(cells.center, shapes.center, share);
-  contact.radius = std::lerp(cells.radius, shapes.radius, share);
-  contact.depth = std::lerp(cells.depth, shapes.depth, share);
-  contact.force = std::lerp(cells.force, shapes.force, share);
-  contact.pressure.flat_share =
-      std::lerp(cells.pressure.flat_share, shapes.pressure.flat_share, share);
-  contact.pressure.elongation =
-      std::lerp(cells.pressure.elongation, shapes.pressure.elongation, share);
-  contact.slide_stiffness = std::lerp(cells.slide_stiffness, shapes.slide_stiffness, share);
-  contact.turn_stiffness = std::lerp(cells.turn_stiffness, shapes.turn_stiffness, share);
-  contact.torque_share = std::lerp(cells.torque_share, shapes.torque_share, share);
-  return contact;
-}
-
-RoundContact contact_of(const World& world, std::uint32_t region) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
-  const SmoothContact& smooth = world.regions.at<SmoothContact>(region);
-  RoundContact contact;
-  if (smooth.share < 1.0) {
-    contact = contact_of_cells(world, region, elasticity);
-  }
-  if (smooth.share > 0.0) {
-    contact = mix(contact, contact_of_shapes(smooth, elasticity), smooth.share);
-  }
-  // A body model in series has the body's thickness itself.
-  const bool in_series = world.bodies.at<BodyModels>(identity.body).body == BodyModel::kCompliance;
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const double thickness =
-      in_series ? 0.0
-                : layer_thickness(world, identity.body, frame.normal,
-                                  world.regions.at<RegionGeometry>(region).rest_point);
-  if (thickness > 0.0) {
-    contact.force *= layer_force_share(contact.radius / thickness, elasticity.poisson_ratio);
-  }
-  return contact;
-}
 
 /// Pressure over its mean at r^2 = square * a^2.
 double pressure_share(double square, double flat_share) {
@@ -220,16 +94,143 @@ void move_friction(const MdrContact& contact, double slipped, double& kinetic_sh
   kinetic_share *= 1.0 - travelled(std::max(path - slipped, 0.0), inverse);
 }
 
+/// The contact's middle on the body's rest surface, m, body.
+glm::dvec3 middle_of(const World& world, std::uint32_t region, const RoundContact& round) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const double height = body_to_grid(frame, world.regions.at<RegionGeometry>(region).rest_point).z;
+  return grid_to_body(frame, {round.center, height});
+}
+
 /// Where the contact is, for the systems after this one.
 void set_geometry(World& world, std::uint32_t region, const RoundContact& round) {
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
   RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-  const double height = body_to_grid(frame, geometry.rest_point).z;
-  geometry.rest_point = grid_to_body(frame, {round.center, height});
+  geometry.rest_point = middle_of(world, region, round);
   geometry.equivalent_point = geometry.rest_point - frame.normal * round.depth;
   geometry.radius = round.radius;
   geometry.area = pi * round.radius * round.radius;
   geometry.mean_depth = round.depth;
+}
+
+/// A region's springs, as often as they are tried in a step.
+struct Springs {
+  const MdrTables& tables;
+  MdrPressure pressure;  // of the last step
+  double radius = 0.0;   // m
+  std::array<MdrLayer, kMdrLayers> before;
+  std::span<MdrLayer> layers;
+};
+
+/// Moves them from where they were before.
+MdrForces move_springs(const Springs& springs, const RoundContact& round,
+                       const MdrContact& contact) {
+  std::ranges::copy(springs.before, springs.layers.begin());
+  const MdrPlaces places = places_of(springs.tables, round.pressure);
+  if (springs.radius != round.radius || springs.pressure != round.pressure) {
+    resize_layers({places_of(springs.tables, springs.pressure), springs.radius},
+                  {places, round.radius}, springs.layers);
+  }
+  return move_layers(places, springs.tables.limit_curve, contact, springs.layers);
+}
+
+/// What a contact and its springs come to in one step.
+struct Outcome {
+  RoundContact round;
+  MdrContact contact;
+  MdrForces forces;
+};
+
+/// Of the springs on the material: along x and y, N, and the couple over the radius.
+glm::dvec3 spring_load(const MdrForces& forces, double radius) {
+  return -glm::dvec3(forces.force, forces.couple / radius);
+}
+
+/// Stiffnesses of springs that all stick, with turns times the radius.
+glm::dvec3 spring_stiffness(const MdrContact& contact) {
+  const double slide = contact.slide_stiffness * 8.0 * contact.shear_modulus * contact.radius /
+                       (2.0 - contact.poisson_ratio);
+  const double turn = contact.turn_stiffness * 16.0 / 3.0 * contact.shear_modulus * contact.radius;
+  return {slide, slide, turn};
+}
+
+/// The springs' motion x when the body gives way to their load l(x): x = free - C (l(x) - known),
+/// by Broyden's method (Dennis and Schnabel, Numerical Methods for Unconstrained Optimization, 8),
+/// from springs that go on as they did in the last step. All with turns times the radius.
+/// @param compliance  C
+/// @param free        the tool's motion over the material, without what the load adds to it
+/// @param known       the load that is in it
+/// @param last        load of the last step
+/// @param outcome     its contact's slide and spin, and its forces, out
+void move_in_balance(const Springs& springs, const glm::dmat3& compliance, const glm::dvec3& free,
+                     const glm::dvec3& known, const glm::dvec3& last, Outcome& outcome) {
+  constexpr int kMostTries = 8;
+  constexpr double kClose = 0.03;  // of the motion
+  const glm::dvec3 stiffness = spring_stiffness(outcome.contact);
+  glm::dmat3 slope(1.0);
+  for (int column = 0; column < 3; ++column) {
+    slope[column] += compliance[column] * stiffness[column];
+  }
+  const double radius = outcome.round.radius;
+  glm::dvec3 x = glm::inverse(slope) * (free - compliance * (last - known));
+  glm::dvec3 way(0.0);
+  glm::dvec3 lacking_before(0.0);
+  for (int k = 0; k < kMostTries; ++k) {
+    outcome.contact.slide = glm::dvec2(x);
+    outcome.contact.spin = x.z / radius;
+    outcome.forces = move_springs(springs, outcome.round, outcome.contact);
+    const glm::dvec3 lacking =
+        x - free + compliance * (spring_load(outcome.forces, radius) - known);
+    if (glm::length(lacking) <= kClose * (glm::length(x) + glm::length(free))) {
+      return;
+    }
+    if (k > 0) {
+      const glm::dvec3 off = lacking - lacking_before - slope * way;
+      slope += glm::outerProduct(off, way) / glm::dot(way, way);
+    }
+    way = -(glm::inverse(slope) * lacking);
+    lacking_before = lacking;
+    x += way;
+  }
+}
+
+/// The contact and its springs when the body has given way to what they come to.
+/// @param last  of the springs in the last step, N and N m, on the material
+/// @return the loads beyond those that the body had given way to
+ContactLoads settle(const World& world, std::uint32_t region, const Springs& springs,
+                    const OwnAnswer& body, const glm::dvec3& last, Outcome& outcome) {
+  constexpr int kMostPasses = 3;
+  constexpr double kClose = 0.01;  // of the depth
+  const double modulus =
+      world.bodies.at<Elasticity>(world.regions.at<RegionIdentity>(region).body).contact_modulus();
+  const RoundContact seen = outcome.round;
+  const glm::dmat4& yields = body.compliance;
+  const glm::dvec3 known(body.known);
+  ContactLoads more(last - known, 0.0);
+  double deeper = 0.0;
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    const double before = deeper;
+    deeper = -(yields[0].w * more.x + yields[1].w * more.y + yields[2].w * more.z);
+    if (pass > 0 && std::abs(deeper - before) <= kClose * outcome.round.depth) {
+      break;
+    }
+    outcome.round = give_way({yields[3].w, body.known.w, deeper}, modulus, seen);
+    outcome.contact = layers_contact(world, region, outcome.round);
+    more.w = outcome.round.force - body.known.w;
+    if (outcome.round.force <= 0.0) {
+      break;
+    }
+    const glm::dvec3 turns(1.0, 1.0, outcome.round.radius);
+    glm::dmat3 compliance(yields);
+    for (int column = 0; column < 3; ++column) {
+      compliance[column] *= turns[column] * turns;
+    }
+    const glm::dvec3 moved(outcome.contact.slide, outcome.contact.spin);
+    move_in_balance(springs, compliance, turns * (moved - more.w * glm::dvec3(yields[3])),
+                    known / turns, last / turns, outcome);
+    const glm::dvec3 load = turns * spring_load(outcome.forces, outcome.round.radius);
+    more = ContactLoads(load - known, more.w);
+  }
+  return more;
 }
 
 void move_region(StepContext& context, const MdrTables& tables, std::uint32_t region) {
@@ -239,9 +240,32 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
   MdrState& state = world.regions.at<MdrState>(region);
   RegionNormal& normal = world.regions.at<RegionNormal>(region);
   RegionFriction& tangential = world.regions.at<RegionFriction>(region);
-  const RoundContact round = contact_of(world, region);
-  const std::uint32_t block = block_of(identity);
-  const auto layers = world.mdr_layers.rows<MdrLayer>({block * kMdrLayers, kMdrLayers});
+  const auto layers =
+      world.mdr_layers.rows<MdrLayer>({block_of(identity) * kMdrLayers, kMdrLayers});
+  Springs springs{tables, {state.flat_share, state.elongation}, state.radius, {}, layers};
+  std::ranges::copy(layers, springs.before.begin());
+  RegionSupport& support = world.regions.at<RegionSupport>(region);
+  support.translation_step = support.rotation_step = glm::dvec3(0.0);  // region_motion has it
+  Outcome outcome;
+  outcome.round = round_contact(world, region);
+  if (outcome.round.force > 0.0) {
+    const OwnAnswer body = own_answer(world, region, middle_of(world, region, outcome.round));
+    if (body.any) {
+      const glm::dvec3 last = -glm::dvec3(tangential.force, tangential.couple);
+      const ContactLoads more = settle(world, region, springs, body, last, outcome);
+      const glm::dvec2 slide =
+          slide_at(world.regions.at<RegionMotion>(region), outcome.round.center) -
+          outcome.contact.slide;
+      const double spin = world.regions.at<RegionMotion>(region).spin - outcome.contact.spin;
+      if (outcome.round.force > 0.0) {
+        move_by_own_answer(world, region, body, more, ContactLoads(slide, spin, 0.0));
+      }
+    } else {
+      outcome.contact = layers_contact(world, region, outcome.round);
+      outcome.forces = move_springs(springs, outcome.round, outcome.contact);
+    }
+  }
+  const RoundContact& round = outcome.round;
   normal = RegionNormal{};
   tangential = RegionFriction{};
   if (round.force <= 0.0) {
@@ -250,19 +274,11 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
     set_cells(world, region, round, 0.0);
     return;
   }
-  const MdrContact contact = layers_contact(world, region, round);
-  const MdrPlaces places = places_of(tables, round.pressure);
-  const MdrPressure pressure_before{state.flat_share, state.elongation};
-  if (state.radius != round.radius || pressure_before != round.pressure) {
-    resize_layers({places_of(tables, pressure_before), state.radius}, {places, round.radius},
-                  layers);
-  }
-  const MdrForces forces = move_layers(places, tables.limit_curve, contact, layers);
   state.radius = round.radius;
   state.flat_share = round.pressure.flat_share;
   state.elongation = round.pressure.elongation;
-  move_friction(contact, forces.slipped, state.kinetic_share);
-
+  move_friction(outcome.contact, outcome.forces.slipped, state.kinetic_share);
+  const MdrForces& forces = outcome.forces;
   normal.force = round.force;
   normal.stiffness = 2.0 * elasticity.contact_modulus() * round.radius * round.slide_stiffness;
   tangential.force = forces.force;
@@ -275,17 +291,6 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
 }
 
 }  // namespace
-
-double layer_force_share(double chi, double poisson_ratio) {
-  const double nu = poisson_ratio;
-  const double x = std::clamp(chi, 0.0, 0.5);
-  const double a = -(1.2876 - 1.4678 * nu + 1.3442 * nu * nu) / (1.0 - nu);
-  const double b = (0.6387 - 1.0277 * nu + 1.5164 * nu * nu) / (1.0 - nu);
-  const double t = 2.0 / pi * x;
-  const double cube = a * a * a;
-  return 1.0 - a * t + a * a * t * t - (cube + 4.0 * pi * pi / 15.0 * b) * t * t * t -
-         a * (cube + 0.6 * pi * pi * b) * t * t * t * t;
-}
 
 void mdr_forces(StepContext& context) {
   World& world = context.world;

@@ -12,11 +12,4 @@ namespace torsion {
 /// ellipse, RegionGeometry.
 void mdr_forces(StepContext& context);
 
-/// Normal force on a bonded incompressible or compressible layer over that on a half-space, at
-/// equal depth. Within 2 % up to chi = 0.26 (nu = 0.5), 7.7 % off at 0.5;
-/// larger values are taken as 0.5. Source:
-/// Dimitriadis et al., Biophys. J. 82 (2002) 2798.
-/// @param chi  sqrt(R depth) / thickness
-double layer_force_share(double chi, double poisson_ratio);
-
 }  // namespace torsion

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "systems/contact_models/mdr.hpp"
+#include "systems/contact_models/round_contact.hpp"
 #include "tests/reference/exact/hertz.hpp"
 #include "tests/reference/exact/layers.hpp"
 #include "tests/support/contact_scenes.hpp"

@@ -186,12 +186,15 @@ void follow_contact(StepContext& context, std::uint32_t region, const RegionPoin
     follow_material(context.world, region);
   }
   PlaneBox box = covered_box(grid, covered_cells(grid));
-  include_points(grid, contact, box);
-  if (!box.empty()) {
-    const MotionOverBody motion = motion_over_body(context.world, region);
-    const bool moves = motion.shift != glm::dvec3(0.0) || motion.turn != glm::dvec3(0.0);
-    approach(grid, box, moves);
+  if (box.empty()) {
+    // As above. Towards points it would shrink, and to none of a single one.
+    place_new_grid(context, region, contact);
+    return;
   }
+  include_points(grid, contact, box);
+  const MotionOverBody motion = motion_over_body(context.world, region);
+  const bool moves = motion.shift != glm::dvec3(0.0) || motion.turn != glm::dvec3(0.0);
+  approach(grid, box, moves);
   turn_normal_to(grid.frame, context.world.regions.at<RegionGeometry>(region).mean_normal);
 }
 

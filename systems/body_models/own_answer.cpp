@@ -67,6 +67,7 @@ OwnAnswer own_answer(const World& world, std::uint32_t region, const glm::dvec3&
   const glm::dvec3 force(wrench[0], wrench[1], wrench[2]);
   const glm::dvec3 couple(wrench[3], wrench[4], wrench[5]);
   answer.any = true;
+  answer.point = point;
   answer.known = {glm::dot(force, frame.tangent_x), glm::dot(force, frame.tangent_y),
                   glm::dot(couple - glm::cross(point - footing->center, force), frame.normal),
                   -glm::dot(force, frame.normal)};
@@ -81,7 +82,6 @@ OwnAnswer own_answer(const World& world, std::uint32_t region, const glm::dvec3&
 void move_by_own_answer(World& world, std::uint32_t region, const OwnAnswer& answer,
                         const ContactLoads& more, const ContactLoads& reckoned) {
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const glm::dvec3& point = world.regions.at<RegionGeometry>(region).rest_point;
   const Footing& footing = *footing_under(world, region);
   const Eigen::Vector4d loads(more.x, more.y, more.z, more.w);
   const Vector6 motion = answer.motions * loads;
@@ -93,7 +93,7 @@ void move_by_own_answer(World& world, std::uint32_t region, const OwnAnswer& ans
   const ContactLoads left = answer.compliance * more - reckoned;
   support.rotation_step = left.z * frame.normal;
   support.translation_step = left.x * frame.tangent_x + left.y * frame.tangent_y +
-                             glm::cross(support.rotation_step, support.about - point);
+                             glm::cross(support.rotation_step, support.about - answer.point);
   RegionReaction& reaction = world.regions.at<RegionReaction>(region);
   Eigen::Map<Vector6>(reaction.wrench.data()) += answer.wrenches * loads;
   reaction.active = 0;

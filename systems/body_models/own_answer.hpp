@@ -18,6 +18,7 @@ using ContactLoads = glm::dvec4;
 
 struct OwnAnswer {
   bool any = false;            // else the body does not give way, or not so that it is known
+  glm::dvec3 point{0.0};       // m, body: where the loads act
   glm::dmat4 compliance{0.0};  // motions by loads: the others' answers are in it, where they matter
   ContactLoads known{0.0};     // to which the body has given way already
   // Of loads of 1, about the footing's centre: wrenches, and what they move.

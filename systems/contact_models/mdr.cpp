@@ -140,103 +140,123 @@ struct Outcome {
   MdrForces forces;
 };
 
-/// Of the springs on the material: along x and y, N, and the couple over the radius.
-glm::dvec3 spring_load(const MdrForces& forces, double radius) {
-  return -glm::dvec3(forces.force, forces.couple / radius);
-}
-
-/// Stiffnesses of springs that all stick, with turns times the radius.
-glm::dvec3 spring_stiffness(const MdrContact& contact) {
+/// Stiffnesses of springs that all stick and of the contact along its normal, with turns times the
+/// radius.
+glm::dvec4 stiffness_of(const Outcome& outcome, double modulus) {
+  const MdrContact& contact = outcome.contact;
   const double slide = contact.slide_stiffness * 8.0 * contact.shear_modulus * contact.radius /
                        (2.0 - contact.poisson_ratio);
   const double turn = contact.turn_stiffness * 16.0 / 3.0 * contact.shear_modulus * contact.radius;
-  return {slide, slide, turn};
+  return {slide, slide, turn, normal_slope(outcome.round, modulus)};
 }
 
-/// The springs' motion x when the body gives way to their load l(x): x = free - C (l(x) - known),
-/// by Broyden's method (Dennis and Schnabel, Numerical Methods for Unconstrained Optimization, 8),
-/// from springs that go on as they did in the last step. All with turns times the radius.
-/// @param compliance  C
-/// @param free        the tool's motion over the material, without what the load adds to it
-/// @param known       the load that is in it
-/// @param last        load of the last step
-/// @param outcome     its contact's slide and spin, and its forces, out
-void move_in_balance(const Springs& springs, const glm::dmat3& compliance, const glm::dvec3& free,
-                     const glm::dvec3& known, const glm::dvec3& last, Outcome& outcome) {
-  constexpr int kMostTries = 8;
-  constexpr double kClose = 0.03;  // of the motion
-  const glm::dvec3 stiffness = spring_stiffness(outcome.contact);
-  glm::dmat3 slope(1.0);
-  for (int column = 0; column < 3; ++column) {
-    slope[column] += compliance[column] * stiffness[column];
-  }
-  const double radius = outcome.round.radius;
-  glm::dvec3 x = glm::inverse(slope) * (free - compliance * (last - known));
-  glm::dvec3 way(0.0);
-  glm::dvec3 lacking_before(0.0);
-  for (int k = 0; k < kMostTries; ++k) {
-    outcome.contact.slide = glm::dvec2(x);
-    outcome.contact.spin = x.z / radius;
+/// A contact on a body that gives way, and what it was asked.
+struct Balance {
+  const World& world;
+  std::uint32_t region;
+  const Springs& springs;
+  RoundContact seen;  // when the body has not given way in this step
+  double modulus;     // E*, Pa
+  glm::dvec4 turns;   // 1, 1, its radius, 1
+
+  /// The loads on the material, of the couple over the radius, when the springs have moved and the
+  /// contact is as deep as that.
+  /// @param motion  along x and y, turning times the radius, and the depth, m
+  ContactLoads load_at(const glm::dvec4& motion, Outcome& outcome) const {
+    outcome.round = pressed_to(motion.w, modulus, seen);
+    outcome.contact = layers_contact(world, region, outcome.round);
+    outcome.contact.slide = glm::dvec2(motion);
+    outcome.contact.spin = motion.z / turns.z;
     outcome.forces = move_springs(springs, outcome.round, outcome.contact);
-    const glm::dvec3 lacking =
-        x - free + compliance * (spring_load(outcome.forces, radius) - known);
-    if (glm::length(lacking) <= kClose * (glm::length(x) + glm::length(free))) {
-      return;
-    }
-    if (k > 0) {
-      const glm::dvec3 off = lacking - lacking_before - slope * way;
-      slope += glm::outerProduct(off, way) / glm::dot(way, way);
-    }
-    way = -(glm::inverse(slope) * lacking);
-    lacking_before = lacking;
-    x += way;
+    return {-outcome.forces.force, -outcome.forces.couple / turns.z, outcome.round.force};
   }
-}
+};
 
-/// The contact and its springs when the body has given way to what they come to.
+/// Springs and depth when the body gives way to their loads l: z = free - C (l(z) - known), by
+/// Broyden's method (Dennis and Schnabel, Numerical Methods for Unconstrained Optimization, 8) from
+/// springs that all stick.
 /// @param last  of the springs in the last step, N and N m, on the material
 /// @return the loads beyond those that the body had given way to
-ContactLoads settle(const World& world, std::uint32_t region, const Springs& springs,
-                    const OwnAnswer& body, const glm::dvec3& last, Outcome& outcome) {
-  constexpr int kMostPasses = 3;
-  constexpr double kClose = 0.01;  // of the depth
+ContactLoads settle(const Balance& balance, const OwnAnswer& body, const glm::dvec3& last,
+                    Outcome& outcome) {
+  constexpr int kMostTries = 8;
+  constexpr double kClose = 0.03;      // of the springs' motion
+  constexpr double kClosePart = 1e-3;  // of how far they go until all slips
+  constexpr double kCloseDepth = 3e-3;
+  constexpr double kLeastDepth =
+      1e-3;  // of that seen: a contact that parts does so in the next step
+  const RoundContact& seen = balance.seen;
+  const glm::dvec4& turns = balance.turns;
+  const ContactLoads known = body.known / turns;
+  glm::dmat4 compliance = body.compliance;
+  for (int column = 0; column < 4; ++column) {
+    compliance[column] *= turns[column] * turns;
+  }
+  outcome.contact = layers_contact(balance.world, balance.region, seen);
+  const glm::dvec4 free =
+      turns * glm::dvec4(outcome.contact.slide, outcome.contact.spin, seen.depth);
+  const glm::dvec4 stiffness = stiffness_of(outcome, balance.modulus);
+  const double slips = outcome.contact.friction * seen.force / stiffness.x;
+  glm::dmat4 slope(1.0);
+  for (int column = 0; column < 4; ++column) {
+    slope[column] += compliance[column] * stiffness[column];
+  }
+  const ContactLoads at_rest = ContactLoads(last, seen.force) / turns;
+  glm::dvec4 at(0.0, 0.0, 0.0, seen.depth);
+  glm::dvec4 way = glm::inverse(slope) * (free - at - compliance * (at_rest - known));
+  glm::dvec4 before(0.0);
+  ContactLoads load(0.0);
+  for (int k = 0; k < kMostTries; ++k) {
+    at += way;
+    at.w = std::max(at.w, kLeastDepth * seen.depth);
+    load = balance.load_at(at, outcome);
+    const glm::dvec4 lacking = at - free + compliance * (load - known);
+    const double moved = glm::length(glm::dvec3(at));
+    if (glm::length(glm::dvec3(lacking)) <= kClose * moved + kClosePart * slips &&
+        std::abs(lacking.w) <= kCloseDepth * at.w) {
+      break;
+    }
+    if (k > 0) {
+      slope += glm::outerProduct(lacking - before - slope * way, way) / glm::dot(way, way);
+    }
+    before = lacking;
+    way = -(glm::inverse(slope) * lacking);
+  }
+  return turns * (load - known);
+}
+
+/// The contact and its springs in this step, with the body's answer to them where it is known.
+Outcome find_outcome(World& world, std::uint32_t region, const Springs& springs) {
+  RegionSupport& support = world.regions.at<RegionSupport>(region);
+  support.translation_step = support.rotation_step = glm::dvec3(0.0);  // region_motion has it
+  Outcome outcome;
+  outcome.round = round_contact(world, region);
+  if (outcome.round.force <= 0.0) {
+    return outcome;
+  }
+  const OwnAnswer body = own_answer(world, region, middle_of(world, region, outcome.round));
+  if (!body.any) {
+    outcome.contact = layers_contact(world, region, outcome.round);
+    outcome.forces = move_springs(springs, outcome.round, outcome.contact);
+    return outcome;
+  }
   const double modulus =
       world.bodies.at<Elasticity>(world.regions.at<RegionIdentity>(region).body).contact_modulus();
-  const RoundContact seen = outcome.round;
-  const glm::dmat4& yields = body.compliance;
-  const glm::dvec3 known(body.known);
-  ContactLoads more(last - known, 0.0);
-  double deeper = 0.0;
-  for (int pass = 0; pass < kMostPasses; ++pass) {
-    const double before = deeper;
-    deeper = -(yields[0].w * more.x + yields[1].w * more.y + yields[2].w * more.z);
-    if (pass > 0 && std::abs(deeper - before) <= kClose * outcome.round.depth) {
-      break;
-    }
-    outcome.round = give_way({yields[3].w, body.known.w, deeper}, modulus, seen);
-    outcome.contact = layers_contact(world, region, outcome.round);
-    more.w = outcome.round.force - body.known.w;
-    if (outcome.round.force <= 0.0) {
-      break;
-    }
-    const glm::dvec3 turns(1.0, 1.0, outcome.round.radius);
-    glm::dmat3 compliance(yields);
-    for (int column = 0; column < 3; ++column) {
-      compliance[column] *= turns[column] * turns;
-    }
-    const glm::dvec3 moved(outcome.contact.slide, outcome.contact.spin);
-    move_in_balance(springs, compliance, turns * (moved - more.w * glm::dvec3(yields[3])),
-                    known / turns, last / turns, outcome);
-    const glm::dvec3 load = turns * spring_load(outcome.forces, outcome.round.radius);
-    more = ContactLoads(load - known, more.w);
-  }
-  return more;
+  const Balance balance{world,         region,  springs,
+                        outcome.round, modulus, {1.0, 1.0, outcome.round.radius, 1.0}};
+  const RegionFriction& friction = world.regions.at<RegionFriction>(region);
+  const ContactLoads more =
+      settle(balance, body, -glm::dvec3(friction.force, friction.couple), outcome);
+  const RegionMotion& motion = world.regions.at<RegionMotion>(region);
+  const glm::dvec2 slide = slide_at(motion, outcome.round.center) - outcome.contact.slide;
+  move_by_own_answer(world, region, body, more,
+                     ContactLoads(slide, motion.spin - outcome.contact.spin, 0.0));
+  return outcome;
 }
 
 void move_region(StepContext& context, const MdrTables& tables, std::uint32_t region) {
   World& world = context.world;
   const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
   MdrState& state = world.regions.at<MdrState>(region);
   RegionNormal& normal = world.regions.at<RegionNormal>(region);
   RegionFriction& tangential = world.regions.at<RegionFriction>(region);
@@ -244,28 +264,9 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
       world.mdr_layers.rows<MdrLayer>({block_of(identity) * kMdrLayers, kMdrLayers});
   Springs springs{tables, {state.flat_share, state.elongation}, state.radius, {}, layers};
   std::ranges::copy(layers, springs.before.begin());
-  RegionSupport& support = world.regions.at<RegionSupport>(region);
-  support.translation_step = support.rotation_step = glm::dvec3(0.0);  // region_motion has it
-  Outcome outcome;
-  outcome.round = round_contact(world, region);
-  if (outcome.round.force > 0.0) {
-    const OwnAnswer body = own_answer(world, region, middle_of(world, region, outcome.round));
-    if (body.any) {
-      const glm::dvec3 last = -glm::dvec3(tangential.force, tangential.couple);
-      const ContactLoads more = settle(world, region, springs, body, last, outcome);
-      const glm::dvec2 slide =
-          slide_at(world.regions.at<RegionMotion>(region), outcome.round.center) -
-          outcome.contact.slide;
-      const double spin = world.regions.at<RegionMotion>(region).spin - outcome.contact.spin;
-      if (outcome.round.force > 0.0) {
-        move_by_own_answer(world, region, body, more, ContactLoads(slide, spin, 0.0));
-      }
-    } else {
-      outcome.contact = layers_contact(world, region, outcome.round);
-      outcome.forces = move_springs(springs, outcome.round, outcome.contact);
-    }
-  }
+  const Outcome outcome = find_outcome(world, region, springs);
   const RoundContact& round = outcome.round;
+  const MdrForces& forces = outcome.forces;
   normal = RegionNormal{};
   tangential = RegionFriction{};
   if (round.force <= 0.0) {
@@ -277,10 +278,10 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
   state.radius = round.radius;
   state.flat_share = round.pressure.flat_share;
   state.elongation = round.pressure.elongation;
-  move_friction(outcome.contact, outcome.forces.slipped, state.kinetic_share);
-  const MdrForces& forces = outcome.forces;
+  move_friction(outcome.contact, forces.slipped, state.kinetic_share);
   normal.force = round.force;
-  normal.stiffness = 2.0 * elasticity.contact_modulus() * round.radius * round.slide_stiffness;
+  normal.stiffness =
+      normal_slope(round, world.bodies.at<Elasticity>(identity.body).contact_modulus());
   tangential.force = forces.force;
   tangential.couple = forces.couple;
   tangential.stick_share = forces.stick_radius * forces.stick_radius;

@@ -133,30 +133,18 @@ RoundContact round_contact(const World& world, std::uint32_t region) {
   return contact;
 }
 
-RoundContact give_way(const GivingWay& body, double modulus, RoundContact contact) {
-  constexpr double kDeepest = 4.0;  // times the depth: as far as the power may be carried on
-  constexpr double kClose = 1e-12;
-  constexpr int kMostPasses = 50;
-  if (contact.force <= 0.0) {
-    return contact;
-  }
-  const double slope = 2.0 * modulus * contact.radius * contact.slide_stiffness;
-  const double power = std::clamp(slope * contact.depth / contact.force, 1.0, 2.0);
-  const double yields = body.compliance / contact.depth;
-  const double free = 1.0 + body.deeper / contact.depth + yields * std::max(body.known, 0.0);
-  // x + C F x^m / d = free rises in x and is convex: from its right Newton's method falls to x.
-  double x = std::clamp(free, 0.0, kDeepest);
-  for (int pass = 0; pass < kMostPasses && x > 0.0; ++pass) {
-    const double force = contact.force * std::pow(x, power);
-    const double step = (x + yields * force - free) / (1.0 + yields * power * force / x);
-    x = std::max(x - step, 0.0);
-    if (std::abs(step) < kClose * x) {
-      break;
-    }
-  }
-  contact.depth *= x;
-  contact.force *= std::pow(x, power);
-  contact.radius *= std::pow(x, power - 1.0);
+double normal_slope(const RoundContact& contact, double modulus) {
+  return 2.0 * modulus * contact.radius * contact.slide_stiffness;
+}
+
+RoundContact pressed_to(double depth, double modulus, RoundContact contact) {
+  const double power =
+      std::clamp(normal_slope(contact, modulus) * contact.depth / contact.force, 1.0, 2.0);
+  const double share = depth / contact.depth;
+  const double wider = std::pow(share, power - 1.0);
+  contact.depth = depth;
+  contact.force *= share * wider;
+  contact.radius *= wider;
   return contact;
 }
 

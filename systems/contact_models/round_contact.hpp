@@ -27,19 +27,14 @@ struct RoundContact {
 /// From the shapes where those are known, else from the region's cells.
 RoundContact round_contact(const World& world, std::uint32_t region);
 
-/// How much deeper or less deep the tool comes to lie when the body gives way.
-struct GivingWay {
-  double compliance = 0.0;  // m/N, along the normal
-  double known = 0.0;       // N: of the normal force, to which it has given way already
-  double deeper = 0.0;      // m: by other loads
-};
-
-/// The contact when the body has given way under its own force F: F = f(d + deeper - C (F -
-/// known)). Near its depth d f goes with a power of that, f = F (d' / d)^m, by the slope that all
-/// round contacts have, dF/dd = 2 E* a (Popov and Hess, 2015, 2.2), so that a goes with the power m
-/// - 1.
+/// dF/dd, which of all round contacts is 2 E* a. Source: Popov and Hess, 2015, 2.2.
 /// @param modulus  E*, Pa
-RoundContact give_way(const GivingWay& body, double modulus, RoundContact contact);
+double normal_slope(const RoundContact& contact, double modulus);
+
+/// The contact at another depth: near its own, d, its force goes with a power m of that, by its
+/// slope there, and so its radius with the power m - 1.
+/// @param depth  m, > 0
+RoundContact pressed_to(double depth, double modulus, RoundContact contact);
 
 /// Normal force on a bonded incompressible or compressible layer over that on a half-space, at
 /// equal depth. Within 2 % up to chi = 0.26 (nu = 0.5), 7.7 % off at 0.5;

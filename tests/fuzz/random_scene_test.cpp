@@ -34,7 +34,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Seed{458, "ContactOfANanometre"},
                     Seed{1049, "RegionsWhoseCouplingsAreMoreThanThemselves"},
                     Seed{1264, "ContactBesideItsFirstGrid"},
-                    Seed{1187, "LittleFrictionOnAnEndThatIsSoftSideways"}),
+                    Seed{1187, "LittleFrictionOnAnEndThatIsSoftSideways"},
+                    Seed{1345, "MdrOnABodyThatIsSoftSideways"}),
     [](const testing::TestParamInfo<Seed>& seed) { return std::string(seed.param.what); });
 
 }  // namespace

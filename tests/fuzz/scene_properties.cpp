@@ -227,12 +227,14 @@ std::optional<std::string> not_solved(const Run& run) {
 
 std::optional<std::string> not_smooth(const Run& run) {
   constexpr double kBar = 0.5;
+  // Of the force there: one that grows to thirty times its median bends by that in a step.
+  constexpr double kFree = 0.05;
   if (run.into_a_side) {
     return std::nullopt;  // a jolt, and another one where it leaves it over the edge
   }
   for (std::size_t tool = 0; tool < run.forces.size(); ++tool) {
     const double median = median_length(run.forces[tool]);
-    const Standout worst = largest_standout(run.forces[tool]);
+    const Standout worst = largest_standout(run.forces[tool], kFree);
     if (worst.size > kBar * median) {
       return fmt::format("tool {}: the force stands out by {:.3g} of the median in step {}", tool,
                          worst.size / median, worst.step);

@@ -34,7 +34,8 @@ struct Standout {
   double size = 0.0;  // N, or as the vectors
 };
 
-inline Standout largest_standout(const std::vector<glm::dvec3>& vectors) {
+/// @param free  share of the neighbours' median that does not count
+inline Standout largest_standout(const std::vector<glm::dvec3>& vectors, double free = 0.0) {
   constexpr std::size_t kBeside = 5;
   Standout largest;
   for (std::size_t step = kBeside; step + kBeside < vectors.size(); ++step) {
@@ -48,7 +49,7 @@ inline Standout largest_standout(const std::vector<glm::dvec3>& vectors) {
       }
       middle[axis] = median(neighbours);
     }
-    const double size = glm::length(vectors[step] - middle);
+    const double size = glm::length(vectors[step] - middle) - free * glm::length(middle);
     largest = size > largest.size ? Standout{step, size} : largest;
   }
   return largest;

@@ -87,14 +87,15 @@ SurfaceLoad answered_load(const TractionColumns& cells, const double* x, const d
   return load_of(work.discs, work.moves_x.data(), work.moves_y.data());
 }
 
-/// What the cells ask for when the body moves along with what they come to; and the square.
-/// @param motion  in: of the body, with which the cells have found their ways; out: its motion when
-///                they go there
+/// What the cells ask for when the body moves along with what they come to.
+/// @param load  on the body: in: with whose motion the cells have found their ways; out: when they
+///              go there
+/// @return TractionSweep::square
 double ask_in_balance(const PatchProblem& problem, const StepRequest& request,
-                      const TractionColumns& cells, PatchWork& work, SurfaceMotion& motion) {
+                      const TractionColumns& cells, PatchWork& work, SurfaceLoad& load) {
   ask_for_both(problem, request, {cells.residual_x, cells.residual_y}, work,
                {cells.asked_x, cells.asked_y});
-  const SurfaceLoad load = answered_load(cells, cells.asked_x, cells.asked_y, work);
+  const SurfaceLoad asked = answered_load(cells, cells.asked_x, cells.asked_y, work);
   glm::dmat3 answers(0.0);  // of the cells to the body's motions
   for (std::size_t k = 0; k < 3; ++k) {
     move_as_one(problem.support, k, work.moves_x.data(), work.moves_y.data());
@@ -104,18 +105,19 @@ double ask_in_balance(const PatchProblem& problem, const StepRequest& request,
     answers[static_cast<int>(k)] = answered_load(cells, asks.x, asks.y, work);
   }
   const glm::dmat3& yields = problem.support.slides;
-  const SurfaceMotion more = glm::inverse(glm::dmat3(1.0) + request.share * yields * answers) *
-                             (request.share * yields * load - motion);
+  const SurfaceLoad more = glm::inverse(glm::dmat3(1.0) + request.share * answers * yields) *
+                           (request.share * asked - load);
+  const SurfaceMotion moves = yields * more;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double share = -more[static_cast<int>(k)];
+    const double share = -moves[static_cast<int>(k)];
     add_scaled(cells.count, share, work.rigid_asks_x[k].data(), cells.asked_x);
     add_scaled(cells.count, share, work.rigid_asks_y[k].data(), cells.asked_y);
   }
   // The residual is what the cells see of it and the body's motion.
   const double square =
       dot(cells.count, cells.residual_x, cells.residual_y, cells.asked_x, cells.asked_y) +
-      glm::dot(motion, answered_load(cells, cells.asked_x, cells.asked_y, work));
-  motion += more;
+      glm::dot(yields * load, answered_load(cells, cells.asked_x, cells.asked_y, work));
+  load += more;
   return square;
 }
 
@@ -162,7 +164,7 @@ TractionSweep find_balanced_step(const PatchProblem& problem, const StepRequest&
   DiscColumns& discs = work.discs;
   set_columns(problem, request.stiffness, discs);
   const glm::dmat3& yields = problem.support.slides;
-  const SurfaceLoad load = load_of(discs, cells.traction_x, cells.traction_y);
+  const SurfaceLoad before = load_of(discs, cells.traction_x, cells.traction_y);
   // How far the body goes when each cell answers on its own: with that the others' ways are found,
   // for without it all might seem to slip.
   const double* const stiffness = discs.stiffness.data();
@@ -170,20 +172,22 @@ TractionSweep find_balanced_step(const PatchProblem& problem, const StepRequest&
                     discs.trial_x.data());
   find_trials_alone(cells.count, stiffness, cells.traction_y, cells.target_y, cells.moved_y,
                     discs.trial_y.data());
-  SurfaceMotion motion = project_in_balance({yields, SurfaceMotion(0.0), load}, cells.limit, discs);
+  const BodyAnswer alone =
+      project_in_balance({yields, before, SurfaceLoad(0.0)}, cells.limit, discs);
   TractionColumns moved = cells;
   moved.target_x = work.target_x.data();
   moved.target_y = work.target_y.data();
-  take_off_motion(discs, motion, cells.target_x, cells.target_y, work.target_x.data(),
+  take_off_motion(discs, alone.motion, cells.target_x, cells.target_y, work.target_x.data(),
                   work.target_y.data());
   find_ways(moved, request.stiffness);
   TractionSweep sweep;
-  sweep.square = ask_in_balance(problem, request, cells, work, motion);
+  SurfaceLoad load = alone.load;
+  sweep.square = ask_in_balance(problem, request, cells, work, load);
   const Mix mix{request.share, request.before > 0.0 ? sweep.square / request.before : 0.0};
   find_trials(moved, mix, stiffness, cells.step_x, cells.step_y, discs.trial_x.data(),
               discs.trial_y.data());
   const SurfaceLoad kept = mix.kept * load_of(discs, cells.step_x, cells.step_y);
-  project_in_balance({yields, motion, load + kept}, cells.limit, discs);
+  project_in_balance({yields, before + kept, load}, cells.limit, discs);
   sweep.step = step_to_results(discs, cells);
   return sweep;
 }

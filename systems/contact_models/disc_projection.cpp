@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Dense>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
 #include "systems/contact_models/patch_passes.hpp"
 #include "systems/contact_models/wide_lanes.hpp"
@@ -106,6 +106,15 @@ glm::dmat3 answers_of(const DiscColumns& columns) {
   return {sum_of(totals[0]), xy, xt, xy, sum_of(totals[2]), yt, xt, yt, sum_of(totals[5])};
 }
 
+/// The x of matrix x = right: with pivots, for a body may yield along some motion alone, and by a
+/// million times what its cells do.
+glm::dvec3 solved(const glm::dmat3& matrix, const glm::dvec3& right) {
+  const Eigen::Map<const Eigen::Matrix3d> columns(&matrix[0][0]);
+  const Eigen::Vector3d x =
+      columns.partialPivLu().solve(Eigen::Vector3d(right.x, right.y, right.z));
+  return {x[0], x[1], x[2]};
+}
+
 /// The farthest that a cell goes by a motion, m.
 double farthest(const DiscColumns& columns, const SurfaceMotion& motion) {
   // The first cell is at the grid's corner.
@@ -115,31 +124,36 @@ double farthest(const DiscColumns& columns, const SurfaceMotion& motion) {
 
 /// Where the search is.
 struct Search {
-  SurfaceMotion motion{0.0};   // beside the known one
-  SurfaceMotion lacking{0.0};  // the whole motion, less the one by the results' load
+  BodyAnswer answer;
+  // Of all of the body's motion, and of the load that makes it, less those by the results.
+  SurfaceMotion lacking{0.0};
+  SurfaceLoad lacking_load{0.0};  // the function's gradient
 };
 
-void go_to(const SurfaceMotion& motion, const BodyInBalance& body, const double* limit,
+void go_to(const BodyAnswer& answer, const BodyInBalance& body, const double* limit,
            DiscColumns& columns, Search& search) {
-  project(columns.place_x.size(), motion, columns.place_x.data(), columns.place_y.data(),
+  project(columns.place_x.size(), answer.motion, columns.place_x.data(), columns.place_y.data(),
           columns.stiffness.data(), limit, columns.trial_x.data(), columns.trial_y.data(),
           columns.result_x.data(), columns.result_y.data(), columns.answer_xx.data(),
           columns.answer_xy.data(), columns.answer_yy.data());
-  const SurfaceLoad load = load_of(columns, columns.result_x.data(), columns.result_y.data());
-  search = {motion, body.known + motion - body.yields * (load - body.known_load)};
+  const SurfaceLoad found =
+      load_of(columns, columns.result_x.data(), columns.result_y.data()) - body.before;
+  search = {answer, answer.motion + body.yields * (body.known - found), answer.load - found};
 }
 
 /// A step of Newton's method, shortened where the function goes up at its end.
-void take_newton_step(const BodyInBalance& body, const glm::dmat3& stiffness, const double* limit,
-                      DiscColumns& columns, Search& search) {
-  const SurfaceMotion from = search.motion;
-  const SurfaceMotion way =
-      -(glm::inverse(glm::dmat3(1.0) + body.yields * answers_of(columns)) * search.lacking);
-  const double downhill = glm::dot(way, stiffness * search.lacking);
+void take_newton_step(const BodyInBalance& body, const double* limit, DiscColumns& columns,
+                      Search& search) {
+  const Search from = search;
+  const glm::dmat3 answers = answers_of(columns);
+  const SurfaceMotion way = -solved(glm::dmat3(1.0) + body.yields * answers, from.lacking);
+  const SurfaceLoad by_load = -(from.lacking_load + answers * way);  // which makes that way
+  const double downhill = glm::dot(way, from.lacking_load);
   double length = 1.0;
   for (int k = 0; k < kMostLengths; ++k) {
-    go_to(from + length * way, body, limit, columns, search);
-    const double slope = glm::dot(way, stiffness * search.lacking);
+    go_to({from.answer.motion + length * way, from.answer.load + length * by_load}, body, limit,
+          columns, search);
+    const double slope = glm::dot(way, search.lacking_load);
     if (!(slope > kUphill * std::abs(downhill))) {
       return;
     }
@@ -169,20 +183,19 @@ void take_off_motion(const DiscColumns& columns, const SurfaceMotion& motion, co
            from_y, x, y);
 }
 
-SurfaceMotion project_in_balance(const BodyInBalance& body, const double* limit,
-                                 DiscColumns& columns) {
-  const glm::dmat3 stiffness = glm::inverse(body.yields);
-  Search search;
-  go_to(search.motion, body, limit, columns, search);
+BodyAnswer project_in_balance(const BodyInBalance& body, const double* limit,
+                              DiscColumns& columns) {
   const std::size_t count = columns.place_x.size();
   const double by_friction = largest(count, limit) / largest(count, columns.stiffness.data());  // m
   const double close =
-      kBalanced * by_friction + kRounding * (farthest(columns, body.known) +
-                                             farthest(columns, body.yields * body.known_load));
+      kBalanced * by_friction + kRounding * (farthest(columns, body.yields * body.known) +
+                                             farthest(columns, body.yields * body.before));
+  Search search;
+  go_to({SurfaceMotion(0.0), body.known}, body, limit, columns, search);
   for (int pass = 0; pass < kMostPasses && farthest(columns, search.lacking) > close; ++pass) {
-    take_newton_step(body, stiffness, limit, columns, search);
+    take_newton_step(body, limit, columns, search);
   }
-  return search.motion;
+  return {search.answer.motion, search.answer.load - search.lacking_load};
 }
 
 }  // namespace torsion

@@ -32,9 +32,17 @@ struct DiscColumns {
 
 /// What the body does meanwhile.
 struct BodyInBalance {
-  glm::dmat3 yields{0.0};       // SurfaceMotion by SurfaceLoad
-  SurfaceMotion known{0.0};     // that the trials count on
-  SurfaceLoad known_load{0.0};  // for which the body has moved already
+  glm::dmat3 yields{0.0};   // SurfaceMotion by SurfaceLoad, symmetric, not negative
+  SurfaceLoad before{0.0};  // for which the body has moved already
+  SurfaceLoad known{0.0};   // beyond that: to whose motion the trials have gone
+};
+
+/// What it comes to.
+struct BodyAnswer {
+  // Beyond that of the known load. Not by the load, which has too few digits: the cells of a soft
+  // body respond to the last ones.
+  SurfaceMotion motion{0.0};
+  SurfaceLoad load{0.0};  // of the results, beyond `before`
 };
 
 SurfaceLoad load_of(const DiscColumns& columns, const double* x, const double* y);
@@ -43,13 +51,10 @@ SurfaceLoad load_of(const DiscColumns& columns, const double* x, const double* y
 void take_off_motion(const DiscColumns& columns, const SurfaceMotion& motion, const double* from_x,
                      const double* from_y, double* x, double* y);
 
-/// The results are the trials, less what the cells' stiffness makes of the motion that the trials
-/// do not count on, each on its disc; and the motion m is the one by that load:
-///   m = yields (load of the results - known_load).
-/// That is where a convex function has its least: Newton's method with a line search.
+/// The results are the trials, less what the cells' stiffness makes of the body's motion beyond
+/// that of the known load, each on its disc; and the body moves by the load that they are. That is
+/// where a convex function of the motion has its least: Newton's method with a line search.
 /// @param limit  Pa, (n): the discs' radii
-/// @return m - known
-SurfaceMotion project_in_balance(const BodyInBalance& body, const double* limit,
-                                 DiscColumns& columns);
+BodyAnswer project_in_balance(const BodyInBalance& body, const double* limit, DiscColumns& columns);
 
 }  // namespace torsion

@@ -14,8 +14,8 @@
 namespace torsion {
 namespace {
 
-constexpr std::uint32_t kSide = 7;
-constexpr std::size_t kCells = std::size_t{kSide} * kSide;
+constexpr std::uint32_t kAcross = 7;
+constexpr std::size_t kDiscs = std::size_t{kAcross} * kAcross;
 
 /// Cells, discs and trials of all kinds: inside, far outside, without a disc.
 struct Problem {
@@ -24,15 +24,16 @@ struct Problem {
   BodyInBalance body;
 
   /// @param yields  a motion of 1 by such a load: 1 is about as soft as the cells together
-  Problem(unsigned seed, double yields) {
+  /// @param rank    of the body's compliance: it yields along so many motions
+  Problem(unsigned seed, double yields, int rank) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-    const std::size_t count = whole_lanes(kCells);
+    const std::size_t count = whole_lanes(kDiscs);
     columns.reserve(count);
     limit.assign(count, 0.0);
-    for (std::size_t k = 0; k < kCells; ++k) {
-      columns.place_x[k] = static_cast<double>(k % kSide) - 3.0;
-      columns.place_y[k] = 0.7 * (static_cast<double>(k / kSide) - 3.0);
+    for (std::size_t k = 0; k < kDiscs; ++k) {
+      columns.place_x[k] = static_cast<double>(k % kAcross) - 3.0;
+      columns.place_y[k] = 0.7 * (static_cast<double>(k / kAcross) - 3.0);
       columns.stiffness[k] = 1.5 + uniform(random);
       columns.trial_x[k] = 3.0 * uniform(random);
       columns.trial_y[k] = 3.0 * uniform(random) + 1.0;
@@ -40,13 +41,15 @@ struct Problem {
     }
     glm::dmat3 root(0.0);
     for (int column = 0; column < 3; ++column) {
-      for (int row = 0; row < 3; ++row) {
+      for (int row = 0; row < rank; ++row) {
         root[column][row] = uniform(random) + (row == column ? 1.0 : 0.0);
       }
     }
-    body.yields = yields / static_cast<double>(kCells) * (glm::transpose(root) * root);
-    body.known = {0.3 * uniform(random), 0.3 * uniform(random), 0.1 * uniform(random)};
-    body.known_load = {uniform(random), uniform(random), uniform(random)};
+    body.yields = yields / static_cast<double>(kDiscs) * (glm::transpose(root) * root);
+    body.before = {uniform(random), uniform(random), uniform(random)};
+    // As from the step before it: of a motion about as far as the trials go.
+    body.known =
+        1.0 / (1.0 + yields) * SurfaceLoad(uniform(random), uniform(random), uniform(random));
   }
 };
 
@@ -55,12 +58,14 @@ struct Problem {
 // pulls outwards.
 TEST(DiscProjectionTest, BodyMovesByTheLoadAndEveryCellIsAtItsLeast) {
   for (const double yields : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
-    for (unsigned seed = 0; seed < 50; ++seed) {
-      Problem problem(seed, yields);
+    for (unsigned seed = 0; seed < 60; ++seed) {
+      Problem problem(seed, yields, 1 + static_cast<int>(seed % 3));
       DiscColumns& columns = problem.columns;
-      const SurfaceMotion motion = project_in_balance(problem.body, problem.limit.data(), columns);
+      const BodyInBalance& body = problem.body;
+      const BodyAnswer answer = project_in_balance(body, problem.limit.data(), columns);
+      const SurfaceMotion& motion = answer.motion;
       glm::dvec3 load(0.0);
-      for (std::size_t k = 0; k < kCells; ++k) {
+      for (std::size_t k = 0; k < kDiscs; ++k) {
         const glm::dvec2 result(columns.result_x[k], columns.result_y[k]);
         const glm::dvec2 moved(motion.x - motion.z * columns.place_y[k],
                                motion.y + motion.z * columns.place_x[k]);
@@ -78,10 +83,11 @@ TEST(DiscProjectionTest, BodyMovesByTheLoadAndEveryCellIsAtItsLeast) {
           EXPECT_LT(std::abs(left.x * out.y - left.y * out.x), 1e-13 * scale);
         }
       }
-      const glm::dvec3 by_load = problem.body.yields * (load - problem.body.known_load);
-      const glm::dvec3 lacking = problem.body.known + motion - by_load;
+      const SurfaceMotion by_load = body.yields * (load - body.before);
+      const SurfaceMotion lacking = body.yields * body.known + motion - by_load;
       // The search ends at 1e-6 of what friction moves a cell by, and at rounding.
       EXPECT_LT(glm::length(lacking), 1e-5 + 1e-13 * glm::length(by_load)) << yields << " " << seed;
+      EXPECT_LT(glm::length(answer.load - (load - body.before)), 1e-12 * kDiscs);
     }
   }
 }

@@ -187,7 +187,7 @@ void follow_contact(StepContext& context, std::uint32_t region, const RegionPoin
   }
   PlaneBox box = covered_box(grid, covered_cells(grid));
   if (box.empty()) {
-    // As above. Towards points it would shrink, and to none of a single one.
+    // Here, too. A grid that only approached its points would shrink to a point under a single one.
     place_new_grid(context, region, contact);
     return;
   }

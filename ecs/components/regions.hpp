@@ -60,8 +60,8 @@ struct RegionSupport {
 /// much: by it they move this one, as a rigid body, by minus `motion` times the change. Without it
 /// each of two tools that pinch a soft body would feel it move away by far, and the other's answer
 /// a step later. Written by: compliance and, when a region splits off or takes over, region_grids
-/// and group_regions; zero where the body gives way by little. With contact model mdr `wrench` is what
-/// the region's own support counts on, whether others answer or not, and mdr writes it, too.
+/// and group_regions; zero where the body gives way by little. With contact model mdr `wrench` is
+/// what the region's own support counts on, whether others answer or not, and mdr writes it, too.
 struct RegionReaction {
   std::array<double, 36> motion{};  // 6 x 6, body axes, about RegionSupport::about
   std::array<double, 6> wrench{};   // on the material, about it, that the others have answered to

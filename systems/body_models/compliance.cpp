@@ -323,8 +323,12 @@ void take_answers(World& world, std::uint32_t row) {
     RegionReaction& reaction = world.regions.at<RegionReaction>(region);
     RegionSupport& support = world.regions.at<RegionSupport>(region);
     const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-    if (identity.body != row || world.bodies.at<BodyModels>(row).contact == ContactModel::kMdr) {
-      continue;  // mdr has moved its own already (own_answer.hpp)
+    if (identity.body != row) {
+      continue;
+    }
+    if (world.bodies.at<BodyModels>(row).contact == ContactModel::kMdr) {
+      reaction.active = 0;
+      continue;  // mdr has moved its support by that already (own_answer.hpp)
     }
     support.translation_step = glm::dvec3(0.0);
     support.rotation_step = glm::dvec3(0.0);

@@ -94,9 +94,8 @@ void move_by_own_answer(World& world, std::uint32_t region, const OwnAnswer& ans
   support.rotation_step = left.z * frame.normal;
   support.translation_step = left.x * frame.tangent_x + left.y * frame.tangent_y +
                              glm::cross(support.rotation_step, support.about - answer.point);
-  RegionReaction& reaction = world.regions.at<RegionReaction>(region);
-  Eigen::Map<Vector6>(reaction.wrench.data()) += answer.wrenches * loads;
-  reaction.active = 0;
+  auto& wrench = world.regions.at<RegionReaction>(region).wrench;
+  Eigen::Map<Vector6>(wrench.data()) += answer.wrenches * loads;
 }
 
 }  // namespace torsion

@@ -25,10 +25,6 @@ constexpr double kLargestBulkModulus = 1e4;
 constexpr std::size_t kPortsAtOnce = 8;  // solved together: enough for the matrix products' speed
 constexpr double kShareOfFactor = 0.3;   // of the time, roughly, for the progress
 
-Eigen::Index rows_of(std::size_t nodes) {
-  return 3 * static_cast<Eigen::Index>(nodes);
-}
-
 /// Eigen cuts large products into blocks by the processor's caches, and with them the order in
 /// which sums are rounded. These sizes make it the same on every machine.
 void fix_product_blocks() {

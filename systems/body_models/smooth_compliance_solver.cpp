@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::size_t kLeafNodes = 24;  // fewer make more fronts than they save arithmetic
 
-Eigen::Index rows_of_points(std::size_t nodes) {
-  return 3 * static_cast<Eigen::Index>(nodes);
-}
-
 /// Orders `nodes` after what is ordered already: both sides of a plane of the lattice, then the
 /// plane. Returns the rows of the fronts at the top of what it made.
 std::vector<std::uint32_t> dissect(const SolidGrid& grid, std::vector<std::uint32_t> nodes,
@@ -119,8 +115,8 @@ void add_blocks(const Part& part, const std::vector<std::uint32_t>& places,
       if (places[j] == kNoRow || places[i] == kNoRow || places[i] < places[j]) {
         continue;
       }
-      matrix.block<3, 3>(rows_of_points(places[i]), rows_of_points(places[j])) +=
-          part.template block<3, 3>(rows_of_points(i), rows_of_points(j));
+      matrix.block<3, 3>(rows_of(places[i]), rows_of(places[j])) +=
+          part.template block<3, 3>(rows_of(i), rows_of(j));
     }
   }
 }
@@ -128,8 +124,8 @@ void add_blocks(const Part& part, const std::vector<std::uint32_t>& places,
 /// Eliminates a front's own nodes; leaves in the lower triangle of `rest` what that makes of its
 /// boundary. False when a pivot is not positive.
 bool eliminate(Eigen::MatrixXd& matrix, StiffnessFront& front, Eigen::MatrixXd& rest) {
-  const Eigen::Index own = rows_of_points(front.count);
-  const Eigen::Index outer = rows_of_points(front.boundary.size());
+  const Eigen::Index own = rows_of(front.count);
+  const Eigen::Index outer = rows_of(front.boundary.size());
   front.diagonal = matrix.topLeftCorner(own, own);
   Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factored(front.diagonal);
   if (factored.info() != Eigen::Success) {
@@ -166,7 +162,7 @@ Result<StiffnessFactor> factor_stiffness(
   for (std::size_t f = 0; f < factor.fronts.size(); ++f) {
     StiffnessFront& front = factor.fronts[f];
     find_boundary(grid, elements[f], factor, front);
-    const Eigen::Index size = rows_of_points(front.count + front.boundary.size());
+    const Eigen::Index size = rows_of(front.count + front.boundary.size());
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
     for (const std::uint32_t element : elements[f]) {
       places.clear();
@@ -199,19 +195,19 @@ Result<StiffnessFactor> factor_stiffness(
 void solve_stiffness(const StiffnessFactor& factor, NodeColumns& columns) {
   NodeColumns outer;
   for (const StiffnessFront& front : factor.fronts) {
-    auto own = columns.middleRows(rows_of_points(front.first), rows_of_points(front.count));
+    auto own = columns.middleRows(rows_of(front.first), rows_of(front.count));
     front.diagonal.triangularView<Eigen::Lower>().solveInPlace(own);
     outer.noalias() = front.below * own;
     for (std::size_t k = 0; k < front.boundary.size(); ++k) {
-      columns.middleRows<3>(rows_of_points(front.boundary[k])) -= outer.middleRows<3>(rows_of_points(k));
+      columns.middleRows<3>(rows_of(front.boundary[k])) -= outer.middleRows<3>(rows_of(k));
     }
   }
   for (std::size_t f = factor.fronts.size(); f-- > 0;) {
     const StiffnessFront& front = factor.fronts[f];
-    auto own = columns.middleRows(rows_of_points(front.first), rows_of_points(front.count));
-    outer.resize(rows_of_points(front.boundary.size()), columns.cols());
+    auto own = columns.middleRows(rows_of(front.first), rows_of(front.count));
+    outer.resize(rows_of(front.boundary.size()), columns.cols());
     for (std::size_t k = 0; k < front.boundary.size(); ++k) {
-      outer.middleRows<3>(rows_of_points(k)) = columns.middleRows<3>(rows_of_points(front.boundary[k]));
+      outer.middleRows<3>(rows_of(k)) = columns.middleRows<3>(rows_of(front.boundary[k]));
     }
     own.noalias() -= front.below.transpose() * outer;
     front.diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace(own);

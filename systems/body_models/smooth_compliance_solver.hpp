@@ -15,6 +15,10 @@ namespace torsion {
 /// Columns of values at the free nodes, three rows a node, in the order of a StiffnessFactor.
 using NodeColumns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+inline Eigen::Index rows_of(std::size_t nodes) {
+  return 3 * static_cast<Eigen::Index>(nodes);
+}
+
 /// A block of nodes that are eliminated together.
 struct StiffnessFront {
   std::uint32_t first = 0;              // its nodes are first to first + count in the order

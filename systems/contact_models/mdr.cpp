@@ -84,11 +84,15 @@ MdrContact layers_contact(const World& world, std::uint32_t region, const RoundC
   return contact;
 }
 
+/// Of springs that all stick, N/m.
+double slide_stiffness(const MdrContact& contact) {
+  return contact.slide_stiffness * 8.0 * contact.shear_modulus * contact.radius /
+         (2.0 - contact.poisson_ratio);
+}
+
 /// mu_s comes down to mu_d over a short slip and is back after as long an elastic path.
 void move_friction(const MdrContact& contact, double slipped, double& kinetic_share) {
-  const double stiffness = contact.slide_stiffness * 8.0 * contact.shear_modulus * contact.radius /
-                           (2.0 - contact.poisson_ratio);
-  const double inverse = inverse_of(contact.friction * contact.force / stiffness);
+  const double inverse = inverse_of(contact.friction * contact.force / slide_stiffness(contact));
   const double path = glm::length(contact.slide) + std::abs(contact.spin) * contact.radius;
   kinetic_share += (1.0 - kinetic_share) * travelled(slipped, inverse / kSlipLength);
   kinetic_share *= 1.0 - travelled(std::max(path - slipped, 0.0), inverse);
@@ -144,8 +148,7 @@ struct Outcome {
 /// radius.
 glm::dvec4 stiffness_of(const Outcome& outcome, double modulus) {
   const MdrContact& contact = outcome.contact;
-  const double slide = contact.slide_stiffness * 8.0 * contact.shear_modulus * contact.radius /
-                       (2.0 - contact.poisson_ratio);
+  const double slide = slide_stiffness(contact);
   const double turn = contact.turn_stiffness * 16.0 / 3.0 * contact.shear_modulus * contact.radius;
   return {slide, slide, turn, normal_slope(outcome.round, modulus)};
 }
@@ -183,8 +186,7 @@ ContactLoads settle(const Balance& balance, const OwnAnswer& body, const glm::dv
   constexpr double kClose = 0.03;      // of the springs' motion
   constexpr double kClosePart = 1e-3;  // of how far they go until all slips
   constexpr double kCloseDepth = 3e-3;
-  constexpr double kLeastDepth =
-      1e-3;  // of that seen: a contact that parts does so in the next step
+  constexpr double kLeastDepth = 1e-3;  // of that seen: what parts does so in the next step
   const RoundContact& seen = balance.seen;
   const glm::dvec4& turns = balance.turns;
   const ContactLoads known = body.known / turns;
@@ -207,14 +209,19 @@ ContactLoads settle(const Balance& balance, const OwnAnswer& body, const glm::dv
   glm::dvec4 before(0.0);
   ContactLoads load(0.0);
   for (int k = 0; k < kMostTries; ++k) {
+    const glm::dvec4 from = at;
     at += way;
     at.w = std::max(at.w, kLeastDepth * seen.depth);
+    way = at - from;
     load = balance.load_at(at, outcome);
     const glm::dvec4 lacking = at - free + compliance * (load - known);
     const double moved = glm::length(glm::dvec3(at));
     if (glm::length(glm::dvec3(lacking)) <= kClose * moved + kClosePart * slips &&
         std::abs(lacking.w) <= kCloseDepth * at.w) {
       break;
+    }
+    if (way == glm::dvec4(0.0)) {
+      break;  // it parts, and nothing else moves
     }
     if (k > 0) {
       slope += glm::outerProduct(lacking - before - slope * way, way) / glm::dot(way, way);

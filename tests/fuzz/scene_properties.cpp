@@ -128,8 +128,8 @@ struct Run {
   bool into_a_side = false;  // whether a tool that moved over the body met a side of it
   double friction = 0.0;     // the largest of a region's over what its pressure can hold
   int friction_step = -1;
-  int pressed = 0;   // steps with a force of `patch`
-  int unsolved = 0;  // those whose equations were far from solved
+  int pressed = 0;   // steps with a force
+  int unsolved = 0;  // those that left equations of `patch` far from solved
 };
 
 /// Whether a region is on a side of the body, which tools come down on from above.
@@ -144,7 +144,9 @@ bool meets_a_side(const World& world) {
 /// Adds what a step's regions say of themselves.
 void look_at_regions(const World& world, int step, Run& run) {
   constexpr double kUnsolved = 0.1;
-  constexpr double kDrag = 0.05;  // of the normal force: what a step may owe its energy
+  // Of the normal force: what a step may owe its energy (patch_energy.cpp), 2 % of it in a round
+  // contact; a long one turns more easily for its radius.
+  constexpr double kDrag = 0.05;
   double residual = 0.0;
   bool pressed = false;
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {

@@ -39,7 +39,8 @@ enum class Fault : std::uint32_t {
   kRegionsFull =
       1U << 3U,  // more than kMaxRegionsPerBody regions on a body, or the regions table is full
   kResultNotFinite = 1U << 4U,  // a wrench came out as NaN or infinity
-  kForceTooLarge = 1U << 5U,    // a region's force is beyond what its overlap can carry
+  kForceTooLarge =
+      1U << 5U,  // a region's force is beyond what its overlap or the tools' work allow
 };
 
 /// One row: the clock and the state of the run. Written by: the step itself.
@@ -66,8 +67,8 @@ struct Settings {
 };
 
 // Parallel columns of each table. What a column means is said at its struct in ecs/components.hpp.
-using BodyTable =
-    Table<Entity, Pose, Elasticity, Friction, FixedRegion, BodyModels, OwnedRows, Bounds>;
+using BodyTable = Table<Entity, Pose, Elasticity, Friction, FixedRegion, BodyModels, OwnedRows,
+                        Bounds, StoredEnergy>;
 using ToolTable =
     Table<Entity, ToolPose, ToolMotion, MassProperties, ToolWrench, OwnedRows, Bounds>;
 using RegionTable =

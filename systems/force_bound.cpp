@@ -11,22 +11,23 @@
 #include "systems/fault.hpp"
 #include "systems/frames.hpp"
 #include "systems/grid_cells.hpp"
+#include "systems/region_wrenches.hpp"
 #include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {
-
-/// A region's overlap with the body's rest shape.
-struct RestOverlap {
-  double depth = 0.0;   // m, the largest
-  double radius = 0.0;  // m, of a disc that holds it
-};
 
 constexpr double kDeeper = 3.0;  // than the deepest sample, at most
 
 bool moves_as_a_whole(const World& world, std::uint32_t body) {
   return world.bodies.at<BodyModels>(body).body == BodyModel::kCompliance;
 }
+
+/// What holds a region's contact.
+struct RestOverlap {
+  double depth = 0.0;   // m, the largest under the rest shape
+  double radius = 0.0;  // m, of a disc
+};
 
 RestOverlap rest_overlap(const StepContext& context, std::uint32_t region) {
   const World& world = context.world;
@@ -53,12 +54,13 @@ RestOverlap rest_overlap(const StepContext& context, std::uint32_t region) {
   // Samples lie within the overlap; it ends between them and their neighbours, which are at most as
   // far away as what makes two points one region.
   const double threshold = world.bodies.at<BodyModels>(identity.body).region_threshold;
-  overlap.radius = (overlap.depth > 0.0 ? 0.5 * glm::length(highest - lowest) : 0.0) + threshold;
+  const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+  const double by_samples = overlap.depth > 0.0 ? 0.5 * glm::length(highest - lowest) : 0.0;
+  overlap.radius = std::max(by_samples, geometry.radius) + threshold;
   return overlap;
 }
 
-/// How deep the tool is under the rest surface at the cells of a region of a body that moves as a
-/// whole, m: a distance a cell, so only where the samples have not settled it.
+/// How deep the tool is under the rest surface at a region's cells, m: a distance a cell.
 double deepest_cell(StepContext& context, std::uint32_t region) {
   const Grid grid = grid_of(context, region);
   const Pose moved = moved_grid_in_body(grid.frame, grid.carrier, grid.support);
@@ -77,54 +79,97 @@ double deepest_cell(StepContext& context, std::uint32_t region) {
   return deepest;
 }
 
-/// A punch of radius a takes 2 E* a d on a half-space and 3 pi G a^4 d / (2 h^3) on a thin bonded
-/// layer without volume change (Johnson, Contact Mechanics, 1985, (3.36), 5.8); twice their sum is
+double depth_by_cells(StepContext& context, std::uint32_t body) {
+  double depth = 0.0;
+  for (std::uint32_t region = 0; region < context.world.regions.size(); ++region) {
+    if (context.world.regions.at<RegionIdentity>(region).body == body) {
+      depth += deepest_cell(context, region);
+    }
+  }
+  return depth;
+}
+
+/// A punch of radius a has 2 E* a on a half-space and 3 pi G a^4 / (2 h^3) on a thin bonded layer
+/// without volume change (Johnson, Contact Mechanics, 1985, (3.36), 5.8), N/m; twice their sum is
 /// for curved bodies and for cells that are too coarse.
-double most_of_punch(const World& world, std::uint32_t body, double radius, double depth) {
+double stiffness_of_punch(const World& world, std::uint32_t body, double radius) {
   constexpr double kSafety = 2.0;
   constexpr double kLayer = 0.6;  // 3 pi / 16
   const Bounds& bounds = world.bodies.at<Bounds>(body);
   const glm::dvec3 extent = bounds.highest - bounds.lowest;
   const double thin = radius / std::min({extent.x, extent.y, extent.z});
   const double modulus = world.bodies.at<Elasticity>(body).contact_modulus();
-  return kSafety * 2.0 * modulus * radius * depth * (1.0 + kLayer * thin * thin * thin);
+  return kSafety * 2.0 * modulus * radius * (1.0 + kLayer * thin * thin * thin);
+}
+
+/// What a body's regions are together.
+struct Regions {
+  std::uint32_t count = 0;
+  RestOverlap overlap;       // all depths, and the largest radius
+  double force = 0.0;        // N, the largest
+  bool unannounced = false;  // whether any has come up or has changed without the tool's motion
+};
+
+bool unannounced(std::uint32_t event) {
+  return event != static_cast<std::uint32_t>(RegionEvent::kNone) &&
+         event != static_cast<std::uint32_t>(RegionEvent::kGridLaidAnew);
+}
+
+Regions regions_on(const StepContext& context, std::uint32_t body) {
+  const World& world = context.world;
+  Regions regions;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    if (world.regions.at<RegionIdentity>(region).body == body) {
+      const RestOverlap overlap = rest_overlap(context, region);
+      regions.count += 1;
+      regions.overlap.depth += overlap.depth;
+      regions.overlap.radius = std::max(regions.overlap.radius, overlap.radius);
+      regions.force = std::max(regions.force, world.regions.at<RegionNormal>(region).force);
+      regions.unannounced |= unannounced(world.regions.at<RegionWrench>(region).event_now);
+    }
+  }
+  return regions;
 }
 
 void bound_forces_on(StepContext& context, std::uint32_t body) {
+  constexpr double kSameSize = 1.1;
+  constexpr double kDrift =
+      0.02;  // of the peak: closed paths give up to 1 % (scene_properties.cpp)
   World& world = context.world;
-  double depth = 0.0;  // m, of all regions together, as samples show them
-  double radius = 0.0;
-  double largest = 0.0;  // N
-  const auto is_on_it = [&](std::uint32_t region) {
-    return world.regions.at<RegionIdentity>(region).body == body;
-  };
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    if (is_on_it(region)) {
-      const RestOverlap overlap = rest_overlap(context, region);
-      depth += overlap.depth;
-      radius = std::max(radius, overlap.radius);
-      largest = std::max(largest, world.regions.at<RegionNormal>(region).force);
-    }
+  StoredEnergy& energy = world.bodies.at<StoredEnergy>(body);
+  const Regions regions = regions_on(context, body);
+  if (regions.count == 0) {
+    energy = {};
+    return;
   }
+  const double stiffness = stiffness_of_punch(world, body, regions.overlap.radius);
+  const double work = std::isfinite(energy.work) ? energy.work : 0.0;
+  // The sum of the work drifts by what steps leave unsolved. What the last step's force needs has
+  // been there, give or take the size of the contact as samples and cells show it.
+  const double needed = 0.5 * energy.force * energy.force / stiffness;
+  energy.most = std::max(energy.most + work, kSameSize * needed + std::max(work, 0.0));
+  if (regions.unannounced) {
+    const double depth = moves_as_a_whole(world, body)
+                             ? std::max(regions.overlap.depth, depth_by_cells(context, body))
+                             : regions.overlap.depth;
+    energy.most = std::max(energy.most, 0.5 * stiffness * depth * depth);
+  }
+  energy.peak = std::max(energy.peak, energy.most);
   // Written so that NaN is left to who looks for that.
-  if (largest > most_of_punch(world, body, radius, depth) && moves_as_a_whole(world, body)) {
-    depth = 0.0;
-    for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-      if (is_on_it(region)) {
-        depth += std::max(rest_overlap(context, region).depth, deepest_cell(context, region));
-      }
-    }
-  }
-  if (largest > most_of_punch(world, body, radius, depth)) {
+  const double allowed = std::max(energy.most, kDrift * energy.peak);
+  const bool too_much = regions.force * regions.force > 2.0 * stiffness * allowed;
+  const bool too_hard = regions.force > stiffness * regions.overlap.depth;
+  if (too_much || (too_hard && !moves_as_a_whole(world, body))) {
     raise(world.clock.at<Clock>(0), Fault::kForceTooLarge);
+    return;
   }
+  energy.force = regions.force;
 }
 
 }  // namespace
 
 void bound_forces(StepContext& context) {
   for (std::uint32_t body = 0; body < context.world.bodies.size(); ++body) {
-    // The force of `paper` is a formula of the depth, which stiffens without bound.
     if (context.world.bodies.at<BodyModels>(body).contact != ContactModel::kPaper) {
       bound_forces_on(context, body);
     }

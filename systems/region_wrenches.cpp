@@ -99,6 +99,12 @@ void fade_event(RegionWrench& wrench, const Wrench& computed, double foretold, d
   }
 }
 
+/// What a tool's holder, who balances the wrench, does in a step, J.
+double work_against(const Wrench& wrench, const ToolMotion& motion, double dt) {
+  return -dt * (glm::dot(wrench.force, motion.velocity) +
+                glm::dot(wrench.torque, motion.angular_velocity));
+}
+
 /// What the computed wrench of a tool becomes, given whether this step had a fault.
 void let_out(ToolWrench& wrench, const Wrench& computed, bool faulty, double dt) {
   if (faulty && wrench.state != WrenchState::kFalling) {
@@ -132,12 +138,19 @@ void let_out(ToolWrench& wrench, const Wrench& computed, bool faulty, double dt)
 void region_wrenches(StepContext& context) {
   World& world = context.world;
   const double dt = world.clock.at<Clock>(0).dt;
+  for (StoredEnergy& energy : world.bodies.column<StoredEnergy>()) {
+    energy.work = 0.0;
+  }
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
     RegionWrench& wrench = world.regions.at<RegionWrench>(region);
     const bool begins = wrench.event_now == static_cast<std::uint32_t>(RegionEvent::kBegins);
+    const Wrench before = wrench.on_tool;
     fade_event(wrench, computed_wrench(world, region),
                world.regions.at<PatchState>(region).along_last,
                begins ? share_by_motion(world, region) : 0.0, dt / kEventFade);
+    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+    world.bodies.at<StoredEnergy>(identity.body).work += work_against(
+        (before + wrench.on_tool) * 0.5, world.tools.at<ToolMotion>(identity.tool), dt);
   }
   bound_forces(context);
 }
@@ -159,12 +172,9 @@ void sum_wrenches(StepContext& context) {
     ToolWrench& wrench = world.tools.at<ToolWrench>(tool);
     const Wrench before = wrench.total;
     let_out(wrench, computed, clock.faults != 0, clock.dt);
-    // The holder balances the contact: its work is minus the contact's, by the trapezoidal rule.
-    const ToolMotion& motion = world.tools.at<ToolMotion>(tool);
-    const Wrench mean = (before + wrench.total) * 0.5;
-    wrench.work -=
-        (glm::dot(mean.force, motion.velocity) + glm::dot(mean.torque, motion.angular_velocity)) *
-        clock.dt;
+    // By the trapezoidal rule.
+    wrench.work +=
+        work_against((before + wrench.total) * 0.5, world.tools.at<ToolMotion>(tool), clock.dt);
   }
 }
 

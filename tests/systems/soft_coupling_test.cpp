@@ -228,5 +228,42 @@ TEST(ForceBoundTest, AForceBeyondARigidPunchIsAFaultAndFades) {
   EXPECT_GT(hand.wrench().force.y, 0.8 * before);
 }
 
+// A ball's force takes 2/5 of force times depth to reach (Hertz). Five times that force at the same
+// place is still less than a rigid punch would have that holds the samples in contact, but needs
+// 25 times the energy.
+TEST(ForceBoundTest, AForceForWhichNobodyHasWorkedIsAFault) {
+  SceneDescription scene = ball_on_cube();
+  scene.bodies[0].models.contact = ContactModel::kMdr;
+  scene.bodies[0].models.body = BodyModel::kNone;
+  Hand hand(scene);
+  hand.step_to({{glm::dvec3(0.0, 0.151, 0.0), glm::dquat(1, 0, 0, 0)}});
+  hand.move({0.0, -0.0025, 0.0}, {0.0, 1.0, 0.0}, 0.0, 100);
+  ASSERT_EQ(hand.clock().faults_ever, 0U);
+  Simulation& simulation = hand.simulation();
+  StepContext context{simulation.world, hand.poses, *simulation.scratch};
+  RegionNormal& normal = simulation.world.regions.at<RegionNormal>(0);
+  normal.force *= 5.0;
+  region_wrenches(context);
+  EXPECT_TRUE(raised(hand.clock().faults, Fault::kForceTooLarge));
+}
+
+// Pressed in, dragged about and let go a hundred times: what the sum of the work drifts by is no
+// fault.
+TEST(ForceBoundTest, ALongSessionHasNoFault) {
+  for (const ContactModel model : {ContactModel::kMdr, ContactModel::kPatch}) {
+    SceneDescription scene = ball_on_cube();
+    scene.bodies[0].models.contact = model;
+    scene.bodies[0].models.body = BodyModel::kNone;
+    Hand hand(scene);
+    hand.step_to({{glm::dvec3(0.0, 0.149, 0.0), glm::dquat(1, 0, 0, 0)}});
+    for (int k = 0; k < 100; ++k) {
+      const double side = k % 2 == 0 ? 1.0 : -1.0;
+      hand.move({1e-3 * side, -0.0015, 0.0}, {0.0, 1.0, 0.0}, 0.1 * side, 10);
+      hand.move({0.0, 0.0015, 0.0}, {0.0, 1.0, 0.0}, 0.0, 10);
+    }
+    EXPECT_EQ(hand.clock().faults_ever, 0U);
+  }
+}
+
 }  // namespace
 }  // namespace torsion::test

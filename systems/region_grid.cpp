@@ -1,6 +1,7 @@
 #include "systems/region_grid.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "systems/contact_axes.hpp"
@@ -18,6 +19,7 @@ namespace {
 
 constexpr int kMostPasses = 10;  // of one grid in one step: a new region finds its size by doubling
 constexpr double kSmallestFill = 0.45;  // of the grid by the contact, else the grid is made smaller
+constexpr double kTurn = 0.5;           // of the angle by which a grid lies askew, in a step
 constexpr double kSettled =
     0.02;  // of the grid: what it is off by when a region begins, splits or takes over another
 
@@ -37,6 +39,10 @@ void follow_material(World& world, std::uint32_t region) {
   tractions.origin += slide + std::sin(angle) * glm::cross(frame.normal, arm);
   turn_axes(tractions, angle);
   turn_axes(frame, angle);
+}
+
+bool has_mdr(const Grid& grid) {
+  return grid.world.bodies.at<BodyModels>(grid.identity.body).contact == ContactModel::kMdr;
 }
 
 /// True when the contact reaches the grid's edge, so that some of it may lie outside.
@@ -59,13 +65,62 @@ bool settled(const Grid& grid, const PlaneBox& box) {
   return std::max(off.x, off.y) < kSettled;
 }
 
+/// The box of the contact in axes that are turned by `angle` from the grid's.
+PlaneBox turned_box(const Grid& grid, const CellBits& covered, double angle) {
+  const glm::dvec2 x(std::cos(angle), std::sin(angle));
+  const glm::dvec2 y(-x.y, x.x);
+  const glm::dvec2 half = cell_half_size(grid);
+  PlaneBox box;
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    for (std::uint64_t left = covered[j]; left != 0; left &= left - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+      const glm::dvec2 center = cell_center(grid.frame, grid.side, i, j);
+      const glm::dvec2 at(glm::dot(x, center), glm::dot(y, center));
+      // As in covered_box.
+      const glm::dvec2 reach = half * (2.0 * grid.cells[j * grid.side + i].coverage - 1.0);
+      const glm::dvec2 along(glm::dot(glm::abs(x), reach), glm::dot(glm::abs(y), reach));
+      box.include(at - along, at + along);
+    }
+  }
+  return box;
+}
+
+/// Turns the grid, and what the springs of mdr know in its axes.
+void turn_grid(const Grid& grid, std::uint32_t region, double angle) {
+  turn_axes(grid.frame, angle);
+  const glm::dmat2 back(std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle));
+  if (has_mdr(grid)) {
+    const Range layers{block_of(grid.identity) * kMdrLayers, kMdrLayers};
+    for (MdrLayer& layer : grid.world.mdr_layers.rows<MdrLayer>(layers)) {
+      layer.shift = back * layer.shift;
+    }
+  }
+  RegionFriction& friction = grid.world.regions.at<RegionFriction>(region);
+  friction.force = back * friction.force;
+}
+
+/// Lays the grid's axes along a long contact, whose width a grid askew would see with a
+/// cell or two.
+/// @param part  of the angle between them that it turns by
+/// @return the contact's box in the grid's axes then
+PlaneBox align_grid(const Grid& grid, std::uint32_t region, const CellBits& covered, double part) {
+  const double angle = part * contact_axes(grid, covered_moments(grid)).angle;
+  if (angle == 0.0) {
+    return covered_box(grid, covered);
+  }
+  const PlaneBox box = turned_box(grid, covered, angle);
+  turn_grid(grid, region, angle);
+  return box;
+}
+
 /// Passes over the grid until it holds the whole contact and little else. In most steps it does at
 /// once, and moves with the contact from step to step; when something happened to the region it
 /// settles within the step, so that what fades in is not the grid's way to its place.
-void find_contact(const Grid& grid, const RegionPoints& contact, double start_depth,
-                  bool event_now) {
+void find_contact(const Grid& grid, std::uint32_t region, const RegionPoints& contact,
+                  double start_depth, bool event_now) {
   for (int pass = 0; pass < kMostPasses; ++pass) {
-    PlaneBox box = covered_box(grid, find_cells(grid, contact));
+    const CellBits covered = find_cells(grid, contact);
+    PlaneBox box = covered_box(grid, covered);
     if (box.empty()) {
       if (pass > 0) {
         return;
@@ -79,6 +134,9 @@ void find_contact(const Grid& grid, const RegionPoints& contact, double start_de
       box.highest += 0.5 * grid.frame.half_size;
     } else if (event_now ? settled(grid, box) : !fills_too_little(grid, box)) {
       return;
+    }
+    if (event_now && !reaches_edge(grid, box)) {
+      box = align_grid(grid, region, covered, 1.0);
     }
     fit(grid, box);
     restart_heights(grid, start_depth);
@@ -181,19 +239,20 @@ void follow_contact(StepContext& context, std::uint32_t region, const RegionPoin
     turn_normal_to(grid.frame, context.world.regions.at<RegionGeometry>(region).mean_normal);
     return;
   }
+  const MotionOverBody motion = motion_over_body(context.world, region);
+  const bool moves = motion.shift != glm::dvec3(0.0) || motion.turn != glm::dvec3(0.0);
   // The springs of mdr are round: they need no grid that turns with what sticks.
-  if (context.world.bodies.at<BodyModels>(grid.identity.body).contact != ContactModel::kMdr) {
+  if (!has_mdr(grid)) {
     follow_material(context.world, region);
   }
-  PlaneBox box = covered_box(grid, covered_cells(grid));
+  const CellBits covered = covered_cells(grid);
+  PlaneBox box = align_grid(grid, region, covered, moves ? kTurn : 0.0);
   if (box.empty()) {
     // Here, too. A grid that only approached its points would shrink to a point under a single one.
     place_new_grid(context, region, contact);
     return;
   }
   include_points(grid, contact, box);
-  const MotionOverBody motion = motion_over_body(context.world, region);
-  const bool moves = motion.shift != glm::dvec3(0.0) || motion.turn != glm::dvec3(0.0);
   approach(grid, box, moves);
   turn_normal_to(grid.frame, context.world.regions.at<RegionGeometry>(region).mean_normal);
 }
@@ -216,7 +275,7 @@ void region_grids(StepContext& context) {
       if (has_patch(context.world, grid.identity)) {
         center_patch(grid, contact, depth);
       } else {
-        find_contact(grid, contact, depth,
+        find_contact(grid, region, contact, depth,
                      context.world.regions.at<RegionWrench>(region).event_now != 0);
       }
     }

@@ -22,15 +22,35 @@ constexpr std::size_t moment(int p, int q) {
   return static_cast<std::size_t>(degree * (degree + 1) / 2 + q);
 }
 
-/// Moments of the cells' places, in half grid sizes, and of their depths: weighted with the share
-/// in contact and the square of the depth, and with that share alone.
+/// Moments of the cells' places, in half grid sizes, and of their depths: by weight_of and, of the
+/// area, by the share in contact alone. Of the middle by that share and the square of the depth.
 struct Moments {
   std::array<double, kMoments> of_place{};
   std::array<double, 6> of_depth{};
   std::array<double, 6> of_area{};
+  glm::dvec2 of_middle{0.0};
+  double squares = 0.0;
 };
 
-Moments add_cells(std::uint32_t side, std::span<const CellGeometry> cells) {
+double largest_depth(std::span<const CellGeometry> cells) {
+  double most = 0.0;
+  for (const CellGeometry& cell : cells) {
+    most = cell.coverage > 0.0 ? std::max(most, cell.depth) : most;
+  }
+  return most;
+}
+
+/// Of a cell in contact, whose depth is `relative` of the largest. The rim's cells, whose middles
+/// may not touch, count little, but alone say how a contact falls off that is narrower than two
+/// cells and lies across them: without them it would seem flat.
+double weight_of(double relative) {
+  constexpr double kRim = 0.01;
+  const double deep = std::max(relative, 0.0);
+  const double square = (2.0 - relative) * (2.0 - relative);
+  return deep * deep + kRim / (square * square);
+}
+
+Moments add_cells(std::uint32_t side, std::span<const CellGeometry> cells, double largest) {
   Moments sums;
   const double step = 2.0 / static_cast<double>(side);
   std::uint32_t cell = 0;
@@ -41,10 +61,16 @@ Moments add_cells(std::uint32_t side, std::span<const CellGeometry> cells) {
     std::array<double, 3> row_depth{};
     std::array<double, 3> row_area{};
     for (std::uint32_t i = 0; i < side; ++i, ++cell) {
-      const double depth = std::max(cells[cell].depth, 0.0);
-      const double x = (static_cast<double>(i) + 0.5) * step - 1.0;
       double area = cells[cell].coverage;
-      double power = area * depth * depth;
+      if (area <= 0.0) {
+        continue;
+      }
+      const double depth = cells[cell].depth;
+      const double x = (static_cast<double>(i) + 0.5) * step - 1.0;
+      const double deep = std::max(depth, 0.0) / largest;
+      sums.squares += area * deep * deep;
+      sums.of_middle += area * deep * deep * glm::dvec2(x, y);
+      double power = area * weight_of(depth / largest);
       for (std::size_t p = 0; p < row.size(); ++p) {
         row[p] += power;
         if (p < row_depth.size()) {
@@ -150,24 +176,16 @@ constexpr double kCylinder = 0.8;
 /// The apex of a paraboloid of two cells' width lies a quarter deeper than the nearest centres.
 constexpr double kBetweenCells = 1.25;
 
-double largest_depth(std::span<const CellGeometry> cells) {
-  double most = 0.0;
-  for (const CellGeometry& cell : cells) {
-    most = cell.coverage > 0.0 ? std::max(most, cell.depth) : most;
-  }
-  return most;
-}
-
 }  // namespace
 
 ContactShape fit_contact_shape(const RegionFrame& frame, std::uint32_t side,
                                std::span<const CellGeometry> cells) {
   ContactShape shape;
-  const Moments sums = add_cells(side, cells);
-  const double weight = sums.of_place[0];
-  if (weight <= 0.0) {
+  const double largest = largest_depth(cells);
+  if (largest <= 0.0) {
     return shape;
   }
+  const Moments sums = add_cells(side, cells, largest);
   const Vector6 c = solve(sums);
   const glm::dvec2 scale = frame.half_size;
   // depth = c0 + g . x - x' K x / 2
@@ -176,8 +194,8 @@ ContactShape fit_contact_shape(const RegionFrame& frame, std::uint32_t side,
   fit.gradient = {c(1) / scale.x, c(2) / scale.y};
   fit.curvature << -2.0 * c(3) / (scale.x * scale.x), -c(4) / (scale.x * scale.y),
       -c(4) / (scale.x * scale.y), -2.0 * c(5) / (scale.y * scale.y);
-  const Eigen::Vector2d middle(sums.of_place[moment(1, 0)] / weight * scale.x,
-                               sums.of_place[moment(0, 1)] / weight * scale.y);
+  const glm::dvec2 weighted = sums.of_middle / sums.squares * scale;
+  const Eigen::Vector2d middle(weighted.x, weighted.y);
   const Area area = area_of(sums, side, scale);
   const double depth = std::max(fit.at(middle), 1e-300);
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal;
@@ -212,7 +230,7 @@ ContactShape fit_contact_shape(const RegionFrame& frame, std::uint32_t side,
   shape.apex = {apex.x(), apex.y()};
   // Where the cells do not say much (a thin contact that lies across them), the paraboloid may go
   // anywhere beyond them, but no deeper than they lie by what may be between two of them.
-  shape.depth = std::min(fit.at(deepest), kBetweenCells * largest_depth(cells));
+  shape.depth = std::min(fit.at(deepest), kBetweenCells * largest);
   return shape;
 }
 

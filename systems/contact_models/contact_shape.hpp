@@ -22,11 +22,11 @@ struct ContactShape {
   double extent_2 = 0.0;
 };
 
-/// Least squares over the cells in contact, weighted by their share in it and the square of their
-/// depth, for what lies near the apex matters most. In a direction in which the depth hardly falls
-/// off, because the contact is flat and ends at an edge, no apex can be told: there the place is
-/// that of a stamp's force, and the depth is that over the middle of the area, which a tilt about
-/// it does not change.
+/// Least squares over the cells in contact, weighted by their share in it and about the square of
+/// their depth, for what lies near the apex matters most. In a direction in which the depth hardly
+/// falls off, because the contact is flat and ends at an edge, no apex can be told: there the place
+/// is that of a stamp's force, and the depth is that over the middle of the area, which a tilt
+/// about it does not change.
 /// @param cells  (side x side)
 ContactShape fit_contact_shape(const RegionFrame& frame, std::uint32_t side,
                                std::span<const CellGeometry> cells);

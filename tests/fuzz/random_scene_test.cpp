@@ -25,17 +25,18 @@ TEST_P(RandomSceneTest, KeepsAllProperties) {
 
 INSTANTIATE_TEST_SUITE_P(
     Seeds, RandomSceneTest,
-    testing::Values(Seed{20, "PaperGridThatGoesToAndFroUnderAToolThatStands"},
-                    Seed{44, "MdrGridThatGoesToAndFro"}, Seed{117, "CylinderOnACylinder"},
-                    Seed{74, "ForceOfACompliantBodyBetweenSamples"},
-                    Seed{306, "LastForceOfACompliantBody"},
-                    Seed{321, "OneContactInTwoRegionsThatTakeCellsFromEachOther"},
-                    Seed{456, "CoarseBallInTwoRegions"}, Seed{484, "NeighboursThatTouch"},
-                    Seed{458, "ContactOfANanometre"},
-                    Seed{1049, "RegionsWhoseCouplingsAreMoreThanThemselves"},
-                    Seed{1264, "ContactBesideItsFirstGrid"},
-                    Seed{1187, "LittleFrictionOnAnEndThatIsSoftSideways"},
-                    Seed{1345, "MdrOnABodyThatIsSoftSideways"}),
+    testing::Values(
+        Seed{20, "PaperGridThatGoesToAndFroUnderAToolThatStands"},
+        Seed{44, "MdrGridThatGoesToAndFro"}, Seed{117, "CylinderOnACylinder"},
+        Seed{74, "ForceOfACompliantBodyBetweenSamples"}, Seed{306, "LastForceOfACompliantBody"},
+        Seed{321, "OneContactInTwoRegionsThatTakeCellsFromEachOther"},
+        Seed{456, "CoarseBallInTwoRegions"}, Seed{484, "NeighboursThatTouch"},
+        Seed{458, "ContactOfANanometre"}, Seed{1049, "RegionsWhoseCouplingsAreMoreThanThemselves"},
+        Seed{1264, "ContactBesideItsFirstGrid"},
+        Seed{1187, "LittleFrictionOnAnEndThatIsSoftSideways"},
+        Seed{1345, "MdrOnABodyThatIsSoftSideways"}, Seed{1099, "PaperOnALongContactAskew"},
+        Seed{1148, "MdrWhereASideCutsABall"}, Seed{1265, "MdrOnALongContactAskew"},
+        Seed{1344, "HardlyAnyForceAfterALongWay"}),
     [](const testing::TestParamInfo<Seed>& seed) { return std::string(seed.param.what); });
 
 }  // namespace

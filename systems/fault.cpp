@@ -17,8 +17,8 @@ std::string_view fault_text(Fault fault) {
     case Fault::kResultNotFinite:
       return "a force came out as NaN or infinity; please report the scene";
     case Fault::kForceTooLarge:
-      return "a contact's force came out beyond what a rigid punch of its size would need to be "
-             "pressed in as deep; please report the scene";
+      return "a contact's force came out beyond what its depth or the tools' work allow; please "
+             "report the scene";
   }
   return "unknown fault";
 }

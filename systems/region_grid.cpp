@@ -116,14 +116,15 @@ PlaneBox align_grid(const Grid& grid, std::uint32_t region, const CellBits& cove
 /// Passes over the grid until it holds the whole contact and little else. In most steps it does at
 /// once, and moves with the contact from step to step; when something happened to the region it
 /// settles within the step, so that what fades in is not the grid's way to its place.
-void find_contact(const Grid& grid, std::uint32_t region, const RegionPoints& contact,
-                  double start_depth, bool event_now) {
+/// @return whether the grid was laid anew
+bool fit_to_contact(const Grid& grid, std::uint32_t region, const RegionPoints& contact,
+                    double start_depth, bool event_now) {
   for (int pass = 0; pass < kMostPasses; ++pass) {
     const CellBits covered = find_cells(grid, contact);
     PlaneBox box = covered_box(grid, covered);
     if (box.empty()) {
       if (pass > 0) {
-        return;
+        return true;
       }
       // Cells look for the tool where it was; of a thin one that has turned none may find it.
       restart_heights(grid, start_depth);
@@ -133,7 +134,7 @@ void find_contact(const Grid& grid, std::uint32_t region, const RegionPoints& co
       box.lowest -= 0.5 * grid.frame.half_size;
       box.highest += 0.5 * grid.frame.half_size;
     } else if (event_now ? settled(grid, box) : !fills_too_little(grid, box)) {
-      return;
+      return pass > 0;
     }
     if (event_now && !reaches_edge(grid, box)) {
       box = align_grid(grid, region, covered, 1.0);
@@ -141,6 +142,7 @@ void find_contact(const Grid& grid, std::uint32_t region, const RegionPoints& co
     fit(grid, box);
     restart_heights(grid, start_depth);
   }
+  return true;
 }
 
 double deepest_point(std::span<const ContactPoint> points, std::uint32_t cluster,
@@ -275,8 +277,10 @@ void region_grids(StepContext& context) {
       if (has_patch(context.world, grid.identity)) {
         center_patch(grid, contact, depth);
       } else {
-        find_contact(grid, region, contact, depth,
-                     context.world.regions.at<RegionWrench>(region).event_now != 0);
+        const bool event_now = context.world.regions.at<RegionWrench>(region).event_now != 0;
+        if (fit_to_contact(grid, region, contact, depth, event_now)) {
+          look_along_normal(grid, contact);
+        }
       }
     }
     context.world.regions.at<RegionGeometry>(region) = summarize_cells(grid);

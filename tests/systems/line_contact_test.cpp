@@ -79,8 +79,9 @@ Pressing press_capsule(const LineCase& line, double angle) {
 class LineContactTest : public testing::TestWithParam<LineCase> {};
 
 // Askew, the contact is 1.3 cells wide on 12 cells: a model of the deepest line of cells knows
-// neither its width nor its curvature, and once had 40 % more force at one angle than at the next.
-// Within a tenth of a cell's share of the width, as whole cells in the grid along it have it.
+// neither its width nor its curvature, and paper once had 39 % more force at one angle than at
+// another. Along it there are nine cells across, whose rims tell its two ends to about a tenth of a
+// cell each: 2 % of its width.
 TEST_P(LineContactTest, TheForceIsTheSameAtAnyAngle) {
   const Pressing along = press_capsule(GetParam(), 0.0);
   ASSERT_GT(along.force, 0.0);

@@ -79,6 +79,7 @@ double deepest_cell(StepContext& context, std::uint32_t region) {
   return deepest;
 }
 
+/// Of all of a body's regions together, m.
 double depth_by_cells(StepContext& context, std::uint32_t body) {
   double depth = 0.0;
   for (std::uint32_t region = 0; region < context.world.regions.size(); ++region) {
@@ -132,9 +133,8 @@ Regions regions_on(const StepContext& context, std::uint32_t body) {
 }
 
 void bound_forces_on(StepContext& context, std::uint32_t body) {
-  constexpr double kSameSize = 1.1;
-  constexpr double kDrift =
-      0.02;  // of the peak: closed paths give up to 1 % (scene_properties.cpp)
+  constexpr double kSameSize = 1.1;  // the contact's, as samples and cells show it step by step
+  constexpr double kDrift = 0.02;  // of the peak: a closed path may give 1 % (scene_properties.cpp)
   World& world = context.world;
   StoredEnergy& energy = world.bodies.at<StoredEnergy>(body);
   const Regions regions = regions_on(context, body);
@@ -143,27 +143,28 @@ void bound_forces_on(StepContext& context, std::uint32_t body) {
     return;
   }
   const double stiffness = stiffness_of_punch(world, body, regions.overlap.radius);
-  const double work = std::isfinite(energy.work) ? energy.work : 0.0;
-  // The sum of the work drifts by what steps leave unsolved. What the last step's force needs has
-  // been there, give or take the size of the contact as samples and cells show it.
+  // A force that is wrong has done no work, neither in its own step nor in the next.
+  const double work = energy.faulty == 0 && std::isfinite(energy.work) ? energy.work : 0.0;
+  // The sum of the work drifts by what steps leave unsolved, but what the last force needs has been
+  // there.
   const double needed = 0.5 * energy.force * energy.force / stiffness;
-  energy.most = std::max(energy.most + work, kSameSize * needed + std::max(work, 0.0));
+  double most = std::max(energy.most + work, kSameSize * needed + std::max(work, 0.0));
   if (regions.unannounced) {
     const double depth = moves_as_a_whole(world, body)
                              ? std::max(regions.overlap.depth, depth_by_cells(context, body))
                              : regions.overlap.depth;
-    energy.most = std::max(energy.most, 0.5 * stiffness * depth * depth);
+    most = std::max(most, 0.5 * stiffness * depth * depth);
   }
-  energy.peak = std::max(energy.peak, energy.most);
   // Written so that NaN is left to who looks for that.
-  const double allowed = std::max(energy.most, kDrift * energy.peak);
+  const double allowed = std::max(most, kDrift * energy.peak);
   const bool too_much = regions.force * regions.force > 2.0 * stiffness * allowed;
   const bool too_hard = regions.force > stiffness * regions.overlap.depth;
   if (too_much || (too_hard && !moves_as_a_whole(world, body))) {
     raise(world.clock.at<Clock>(0), Fault::kForceTooLarge);
+    energy.faulty = 1;
     return;
   }
-  energy.force = regions.force;
+  energy = {most, std::max(energy.peak, most), energy.work, regions.force};
 }
 
 }  // namespace

@@ -55,6 +55,24 @@ PlaneBox covered_box(const Grid& grid, const CellBits& covered) {
   return box;
 }
 
+PlaneBox covered_box(const Grid& grid, const CellBits& covered, double angle) {
+  const glm::dvec2 x(std::cos(angle), std::sin(angle));
+  const glm::dvec2 y(-x.y, x.x);
+  const glm::dvec2 half = cell_half_size(grid);
+  PlaneBox box;
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    for (std::uint64_t left = covered[j]; left != 0; left &= left - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+      const glm::dvec2 center = cell_center(grid.frame, grid.side, i, j);
+      const glm::dvec2 at(glm::dot(x, center), glm::dot(y, center));
+      const glm::dvec2 reach = half * (2.0 * grid.cells[j * grid.side + i].coverage - 1.0);
+      const glm::dvec2 along(glm::dot(glm::abs(x), reach), glm::dot(glm::abs(y), reach));
+      box.include(at - along, at + along);
+    }
+  }
+  return box;
+}
+
 glm::dvec2 half_size_for(const Grid& grid, const PlaneBox& box) {
   const glm::dvec2 half = 0.5 * (box.highest - box.lowest);
   if (has_patch(grid.world, grid.identity)) {

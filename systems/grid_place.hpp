@@ -23,6 +23,9 @@ struct PlaneBox {
 /// edge runs.
 PlaneBox covered_box(const Grid& grid, const CellBits& covered);
 
+/// Likewise along axes that are turned by `angle` from the grid's, rad.
+PlaneBox covered_box(const Grid& grid, const CellBits& covered, double angle);
+
 /// Half the sides of the grid that suits a contact. A sliver is given a tenth of its length in
 /// width, so that no cell degenerates.
 glm::dvec2 half_size_for(const Grid& grid, const PlaneBox& box);

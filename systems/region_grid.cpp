@@ -1,7 +1,6 @@
 #include "systems/region_grid.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "systems/contact_axes.hpp"
@@ -65,26 +64,6 @@ bool settled(const Grid& grid, const PlaneBox& box) {
   return std::max(off.x, off.y) < kSettled;
 }
 
-/// The box of the contact in axes that are turned by `angle` from the grid's.
-PlaneBox turned_box(const Grid& grid, const CellBits& covered, double angle) {
-  const glm::dvec2 x(std::cos(angle), std::sin(angle));
-  const glm::dvec2 y(-x.y, x.x);
-  const glm::dvec2 half = cell_half_size(grid);
-  PlaneBox box;
-  for (std::uint32_t j = 0; j < grid.side; ++j) {
-    for (std::uint64_t left = covered[j]; left != 0; left &= left - 1) {
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
-      const glm::dvec2 center = cell_center(grid.frame, grid.side, i, j);
-      const glm::dvec2 at(glm::dot(x, center), glm::dot(y, center));
-      // As in covered_box.
-      const glm::dvec2 reach = half * (2.0 * grid.cells[j * grid.side + i].coverage - 1.0);
-      const glm::dvec2 along(glm::dot(glm::abs(x), reach), glm::dot(glm::abs(y), reach));
-      box.include(at - along, at + along);
-    }
-  }
-  return box;
-}
-
 /// Turns the grid, and what the springs of mdr know in its axes.
 void turn_grid(const Grid& grid, std::uint32_t region, double angle) {
   turn_axes(grid.frame, angle);
@@ -99,8 +78,7 @@ void turn_grid(const Grid& grid, std::uint32_t region, double angle) {
   friction.force = back * friction.force;
 }
 
-/// Lays the grid's axes along a long contact, whose width a grid askew would see with a
-/// cell or two.
+/// Lays the grid's axes along a long contact, across which a grid askew has only a cell or two.
 /// @param part  of the angle between them that it turns by
 /// @return the contact's box in the grid's axes then
 PlaneBox align_grid(const Grid& grid, std::uint32_t region, const CellBits& covered, double part) {
@@ -108,7 +86,7 @@ PlaneBox align_grid(const Grid& grid, std::uint32_t region, const CellBits& cove
   if (angle == 0.0) {
     return covered_box(grid, covered);
   }
-  const PlaneBox box = turned_box(grid, covered, angle);
+  const PlaneBox box = covered_box(grid, covered, angle);
   turn_grid(grid, region, angle);
   return box;
 }
@@ -248,7 +226,7 @@ void follow_contact(StepContext& context, std::uint32_t region, const RegionPoin
     follow_material(context.world, region);
   }
   const CellBits covered = covered_cells(grid);
-  PlaneBox box = align_grid(grid, region, covered, moves ? kTurn : 0.0);
+  PlaneBox box = moves ? align_grid(grid, region, covered, kTurn) : covered_box(grid, covered);
   if (box.empty()) {
     // Here, too. A grid that only approached its points would shrink to a point under a single one.
     place_new_grid(context, region, contact);

@@ -79,13 +79,14 @@ struct OwnedRows {
                      // force there, m/N; then 3 rows a port of 3 an anchor, turns by it, rad/N
 };
 
-/// What bounds the forces of a body's regions, whatever model they come from. Written by:
-/// region_wrenches.
+/// What bounds the forces of a body's regions (force_bound.hpp). Written by: region_wrenches.
 struct StoredEnergy {
   double most = 0.0;   // J: what the regions' contacts may hold; 0 where there are none
   double peak = 0.0;   // J: the largest that `most` has been
   double work = 0.0;   // J: what the tools have done on the body in this step
-  double force = 0.0;  // N: the largest normal force of a region
+  double force = 0.0;  // N: the largest normal force of a region in the last step without a fault
+  std::uint32_t faulty = 0;  // 1: the last step had one, and its force is half of this one's work
+  std::uint32_t padding = 0;
 };
 
 /// Axis-aligned box of the rest shape in the owner's frame. Written by: load.

@@ -247,6 +247,25 @@ TEST(ForceBoundTest, AForceForWhichNobodyHasWorkedIsAFault) {
   EXPECT_TRUE(raised(hand.clock().faults, Fault::kForceTooLarge));
 }
 
+// A step with a wrong force leaves no work behind by which the next wrong one would be allowed.
+TEST(ForceBoundTest, AWrongForceHasDoneNoWork) {
+  SceneDescription scene = ball_on_cube();
+  scene.bodies[0].models.contact = ContactModel::kMdr;
+  scene.bodies[0].models.body = BodyModel::kNone;
+  Hand hand(scene);
+  hand.step_to({{glm::dvec3(0.0, 0.151, 0.0), glm::dquat(1, 0, 0, 0)}});
+  hand.move({0.0, -0.0025, 0.0}, {0.0, 1.0, 0.0}, 0.0, 100);
+  Simulation& simulation = hand.simulation();
+  StepContext context{simulation.world, hand.poses, *simulation.scratch};
+  for (const double times : {1000.0, 5.0}) {
+    simulation.world.regions.at<RegionNormal>(0).force *= times;
+    region_wrenches(context);
+    EXPECT_TRUE(raised(hand.clock().faults, Fault::kForceTooLarge)) << times;
+    hand.move({0.0, -2.5e-5, 0.0}, {0.0, 1.0, 0.0}, 0.0, 1);
+    EXPECT_FALSE(raised(hand.clock().faults, Fault::kForceTooLarge)) << times;
+  }
+}
+
 // Pressed in, dragged about and let go a hundred times: what the sum of the work drifts by is no
 // fault.
 TEST(ForceBoundTest, ALongSessionHasNoFault) {

@@ -20,8 +20,8 @@ constexpr std::uint32_t kInk = rgba(25, 28, 33, 255);
 constexpr std::uint32_t kFault = rgba(190, 20, 20, 235);
 constexpr std::uint32_t kWhite = rgba(255, 255, 255, 255);
 // As render/arrows.cpp draws them, sRGB.
-constexpr std::uint32_t kForceColor = rgba(39, 111, 196, 255);
-constexpr std::uint32_t kTorqueColor = rgba(225, 129, 0, 255);
+constexpr std::uint32_t kForceText = rgba(39, 111, 196, 255);
+constexpr std::uint32_t kTorqueText = rgba(225, 129, 0, 255);
 
 std::uint32_t color_of(const glm::dvec3& color) {
   const auto byte = [](double value) {
@@ -129,8 +129,8 @@ void append_legend(const OverlayFont& font, const OverlayContent& content, doubl
                     color);
     font.append_text(list, text, left + pad + 1.6 * line, y, kInk);
   };
-  row(force, kForceColor, top + pad);
-  row(torque, kTorqueColor, top + pad + line);
+  row(force, kForceText, top + pad);
+  row(torque, kTorqueText, top + pad + line);
 }
 
 }  // namespace

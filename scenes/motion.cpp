@@ -12,7 +12,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kSameWithin = 1e-6;  // relative: what floats in a file leave of equal numbers
+constexpr double kSameNumber = 1e-6;  // relative: what floats in a file leave of equal numbers
 
 Interpolation interpolation_of(const std::string& name) {
   if (name == "STEP") {
@@ -61,12 +61,12 @@ MotionLink rest_link(const tinygltf::Node& node) {
 bool is_uneven(const glm::dvec3& scale) {
   const double most = std::max({scale.x, scale.y, scale.z});
   const double least = std::min({scale.x, scale.y, scale.z});
-  return most - least > kSameWithin * std::max(std::abs(most), std::abs(least));
+  return most - least > kSameNumber * std::max(std::abs(most), std::abs(least));
 }
 
 bool is_turned(const MotionLink& link) {
   return !link.animated_rotation.empty() ||
-         std::hypot(link.rotation.x, link.rotation.y, link.rotation.z) > kSameWithin;
+         std::hypot(link.rotation.x, link.rotation.y, link.rotation.z) > kSameNumber;
 }
 
 /// Turns below an uneven scale would change the tool's shape as it moves.

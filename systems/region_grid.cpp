@@ -17,8 +17,9 @@ namespace torsion {
 namespace {
 
 constexpr int kMostPasses = 10;  // of one grid in one step: a new region finds its size by doubling
-constexpr double kSmallestFill = 0.45;  // of the grid by the contact, else the grid is made smaller
-constexpr double kTurn = 0.5;           // of the angle by which a grid lies askew, in a step
+constexpr double kSmallestBoxFill =
+    0.45;                      // of the grid by the contact, else the grid is made smaller
+constexpr double kTurn = 0.5;  // of the angle by which a grid lies askew, in a step
 constexpr double kSettled =
     0.02;  // of the grid: what it is off by when a region begins, splits or takes over another
 
@@ -53,7 +54,7 @@ bool reaches_edge(const Grid& grid, const PlaneBox& box) {
 
 bool fills_too_little(const Grid& grid, const PlaneBox& box) {
   const glm::dvec2 fill = (box.highest - box.lowest) / (2.0 * grid.frame.half_size);
-  return std::max(fill.x, fill.y) < kSmallestFill;
+  return std::max(fill.x, fill.y) < kSmallestBoxFill;
 }
 
 /// True when a further pass would leave the grid where it is.

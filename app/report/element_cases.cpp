@@ -12,7 +12,6 @@
 namespace torsion {
 namespace {
 
-constexpr double kClearance = 1e-5;  // m
 constexpr double kFieldReach = 8.0;  // contact radii
 constexpr int kFieldPoints = 80;
 
@@ -50,7 +49,7 @@ std::vector<PathPoint> path_of(const ElementCurve& curve, const Pose& touching, 
                                                                   : Leg::kUnload;
     }
     PathPoint point;
-    const double depth = path.empty() ? -kClearance : row.depth;
+    const double depth = path.empty() ? -kStartClearance : row.depth;
     point.tool = {touching.position - glm::dvec3(0.0, depth, 0.0),
                   glm::angleAxis(row.twist, glm::dvec3(0.0, 1.0, 0.0))};
     point.steps = path.empty() ? 1 : steps;

@@ -40,6 +40,8 @@ struct PlotAxis {
   double scale = 1.0;  // from SI to that unit
 };
 
+inline constexpr double kStartClearance = 1e-5;  // m: how far above the body a path begins
+
 /// One scene with a path and a solution that is known otherwise.
 struct ReferenceCase {
   std::string name;         // in report.csv

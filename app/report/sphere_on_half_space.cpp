@@ -11,8 +11,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kHalfSize = 2.0;    // m: 440 contact radii, so that the block is a half-space
-constexpr double kClearance = 1e-5;  // m
+constexpr double kHalfSize = 2.0;  // m: 440 contact radii, so that the block is a half-space
 constexpr int kPressPoints = 8;
 
 }  // namespace
@@ -69,7 +68,7 @@ Pose pose_at(double depth, double turn, double shift) {
 
 std::vector<PathPoint> press(const SphereOnHalfSpace& sphere, bool force_is_normal) {
   std::vector<PathPoint> path{
-      {pose_at(-kClearance, 0.0, 0.0), 1, Leg::kApproach, 0.0, kNoReference, kNoReference}};
+      {pose_at(-kStartClearance, 0.0, 0.0), 1, Leg::kApproach, 0.0, kNoReference, kNoReference}};
   for (int i = 1; i <= kPressPoints; ++i) {
     PathPoint point;
     const double depth = kPaperBallDepth * i / kPressPoints;

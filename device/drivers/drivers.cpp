@@ -15,12 +15,10 @@ struct Ids {
 constexpr Ids kFalconIds{0x0403, 0xCB48};
 constexpr Ids kOdriveIds{0x1209, 0x0D32};
 constexpr Ids kWoodenMbed{0x1234, 0x0006};
-constexpr std::uint16_t k3Dconnexion = 0x256F;
-constexpr std::uint8_t kHid = 3;
 
 bool has_hid(const UsbIdentity& identity) {
   return std::ranges::any_of(identity.interfaces, [](const UsbInterface& interface) {
-    return interface.device_class == kHid && interface.protocol == 0;
+    return interface.device_class == kHidClass && interface.protocol == 0;
   });
 }
 

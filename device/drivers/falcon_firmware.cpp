@@ -35,8 +35,6 @@ constexpr std::array kLoading = {ftdi(kReset, kPurgeReceived),
                                  ftdi(kModem, kDtrHigh)};
 constexpr std::array kWriting = {ftdi(kModem, kDtrLow), ftdi(kBaud, k140000)};
 
-constexpr std::size_t kStatusBytes = 2;
-
 }  // namespace
 
 std::span<const UsbSetup> falcon_normal_set_up() {
@@ -52,7 +50,7 @@ std::span<const UsbSetup> falcon_writing_set_up() {
 }
 
 void take_echo(FalconEcho& echo, Bytes usb_packet) {
-  for (const std::uint8_t byte : usb_packet.subspan(std::min(kStatusBytes, usb_packet.size()))) {
+  for (const std::uint8_t byte : usb_packet.subspan(std::min(kFtdiStatus, usb_packet.size()))) {
     if (echo.count == echo.bytes.size()) {
       std::ranges::copy(Bytes(echo.bytes).subspan(1), echo.bytes.begin());
       echo.count -= 1;

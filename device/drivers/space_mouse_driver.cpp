@@ -7,7 +7,6 @@
 namespace torsion {
 namespace {
 
-constexpr std::uint8_t kHid = 3;
 constexpr double kTick = 1e-3;             // s: the pose goes on at the rate of the physics
 constexpr double kLongestReport = 0.25;    // s: a deflection that nobody repeats is forgotten
 constexpr double kLargestSpeed = 0.1;      // m/s
@@ -20,7 +19,7 @@ constexpr std::uint8_t kSetReport = 9;
 constexpr std::uint16_t kLightReport = 0x0204;  // output report 4
 
 bool is_candidate(const UsbInterface& interface) {
-  return interface.device_class == kHid && interface.protocol == 0 &&
+  return interface.device_class == kHidClass && interface.protocol == 0 &&
          find_endpoint(interface, UsbEndpointKind::kInterrupt, kUsbIn) != nullptr;
 }
 

@@ -8,7 +8,6 @@ namespace {
 constexpr std::uint8_t kFirst = '<';
 constexpr std::uint8_t kLast = '>';
 constexpr std::uint8_t kZero = 'A';  // numbers are sent as 'A' + 4 bits, the lowest first
-constexpr std::size_t kStatusBytes = 2;
 constexpr std::size_t kFlags = 13;
 
 void put_nibbles(std::span<std::uint8_t> bytes, std::size_t at, std::int16_t value) {
@@ -66,7 +65,7 @@ std::optional<FalconInput> decode_falcon(Bytes packet) {
 
 std::optional<FalconInput> take_ftdi_packet(FalconStream& stream, Bytes usb_packet) {
   std::optional<FalconInput> last;
-  for (const std::uint8_t byte : usb_packet.subspan(std::min(kStatusBytes, usb_packet.size()))) {
+  for (const std::uint8_t byte : usb_packet.subspan(std::min(kFtdiStatus, usb_packet.size()))) {
     if (byte == kFirst) {
       stream.count = 0;
     } else if (stream.count == 0) {

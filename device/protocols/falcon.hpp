@@ -12,6 +12,7 @@
 namespace torsion {
 
 inline constexpr std::size_t kFalconPacket = 16;
+inline constexpr std::size_t kFtdiStatus = 2;  // bytes at the head of each packet of its USB bridge
 inline constexpr std::int16_t kFalconLargestMotor = 4095;
 
 struct FalconOutput {

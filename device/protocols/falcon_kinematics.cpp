@@ -115,7 +115,7 @@ glm::dmat3 falcon_jacobian(const glm::dvec3& position) {
 
 std::optional<glm::dvec3> falcon_forward(const glm::dvec3& angles, const glm::dvec3& near) {
   constexpr int kMostSteps = 30;
-  constexpr double kLongestStep = 0.02;  // m: farther, the legs may leave their reach
+  constexpr double kLongestIteration = 0.02;  // m: farther, the legs may leave their reach
   glm::dvec3 position = near;
   for (int step = 0; step < kMostSteps; ++step) {
     const auto found = falcon_inverse(position);
@@ -131,7 +131,7 @@ std::optional<glm::dvec3> falcon_forward(const glm::dvec3& angles, const glm::dv
     if (!(length < 1.0)) {
       return std::nullopt;  // a singular pose, or NaN
     }
-    position += length > kLongestStep ? move * (kLongestStep / length) : move;
+    position += length > kLongestIteration ? move * (kLongestIteration / length) : move;
   }
   return std::nullopt;
 }

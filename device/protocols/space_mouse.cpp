@@ -6,7 +6,6 @@ namespace torsion {
 namespace {
 
 constexpr std::uint16_t kLogitech = 0x046D;
-constexpr std::uint16_t k3Dconnexion = 0x256F;
 constexpr std::int32_t kUsualDeflection = 350;
 constexpr std::uint32_t kAxisBits = 16;
 

@@ -13,6 +13,8 @@
 
 namespace torsion {
 
+inline constexpr std::uint16_t k3Dconnexion = 0x256F;  // vendor id
+
 /// Where the six axes and the buttons are in the reports of one device.
 struct SpaceMouseLayout {
   std::array<HidField, 6> axes;  // X, Y, Z, Rx, Ry, Rz

@@ -15,6 +15,7 @@
 namespace torsion {
 
 inline constexpr std::uint8_t kUsbIn = 0x80;  // in an endpoint's address and a control's type
+inline constexpr std::uint8_t kHidClass = 3;  // of interfaces
 
 enum class UsbEndpointKind : std::uint8_t { kBulk, kInterrupt };
 
@@ -26,7 +27,7 @@ struct UsbEndpoint {
 
 struct UsbInterface {
   std::uint8_t number = 0;
-  std::uint8_t device_class = 0;  // 3: HID
+  std::uint8_t device_class = 0;
   std::uint8_t subclass = 0;
   std::uint8_t protocol = 0;  // of HID: 1 a keyboard, 2 a mouse
   std::vector<UsbEndpoint> endpoints;

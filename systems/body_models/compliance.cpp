@@ -10,6 +10,7 @@
 #include "systems/body_models/dense_solve.hpp"
 #include "systems/body_models/region_couplings.hpp"
 #include "systems/fault.hpp"
+#include "systems/matrix6.hpp"
 #include "systems/scratch.hpp"
 
 namespace torsion {
@@ -22,10 +23,6 @@ using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6 * kMa
 /// No compliance of a body takes more than this of the contacts' own away (region_stands.cpp); what
 /// footings of other steps make of it must not either.
 constexpr double kLeastPivot = 0.25;
-
-Eigen::Vector3d eigen(const glm::dvec3& v) {
-  return {v.x, v.y, v.z};
-}
 
 /// The material's motion at `point` as the region's support has it.
 Vector6 support_at(const RegionSupport& support, const glm::dvec3& point) {

@@ -16,15 +16,12 @@
 #include "systems/contact_models/layer_coupling.hpp"
 #include "systems/contact_models/layer_thickness.hpp"
 #include "systems/contact_models/stuck_stiffness.hpp"
+#include "systems/matrix6.hpp"
 #include "systems/patch_grid.hpp"
 #include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {
-
-Eigen::Vector3d eigen(const glm::dvec3& v) {
-  return {v.x, v.y, v.z};
-}
 
 /// The smallest eigenvalue that K^(1/2) C K^(1/2) may have: -1 would leave no compliance at all,
 /// and interpolation between ports could bring it below.

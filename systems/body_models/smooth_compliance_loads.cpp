@@ -25,10 +25,6 @@ constexpr double kNearInElements = 1.5;  // at least
 /// On surfaces across an edge, where tractions are bounded, only what no contact could fit into.
 constexpr double kNearAcrossEdge = 0.02;  // of the shortest side
 
-Eigen::Vector3d eigen(const glm::dvec3& v) {
-  return {v.x, v.y, v.z};
-}
-
 Eigen::Index row_of(std::uint32_t node) {
   return 3 * Eigen::Index{node};
 }

@@ -10,10 +10,6 @@
 
 namespace torsion {
 
-inline Eigen::Vector3d eigen(const glm::dvec3& v) {
-  return {v.x, v.y, v.z};
-}
-
 /// What acts on a held tool where it is, about its mass centre, world axes: forces and torques
 /// (N, N m) to first order in small shifts and turns of the tool (m, rad).
 struct ToolBalance {

@@ -16,10 +16,10 @@ struct Place {
   double x = 0.0;
   double y = 0.0;
 };
-using Things = Table<Mass, Place>;
+using Masses = Table<Mass, Place>;
 
-Things things(std::uint32_t rows, std::uint32_t capacity) {
-  Things table;
+Masses things(std::uint32_t rows, std::uint32_t capacity) {
+  Masses table;
   table.reserve(capacity);
   table.append(rows);
   for (std::uint32_t row = 0; row < rows; ++row) {
@@ -30,13 +30,13 @@ Things things(std::uint32_t rows, std::uint32_t capacity) {
 }
 
 TEST(TableTest, EveryColumnIsAlignedToACacheLine) {
-  const Things table = things(1, 5);
+  const Masses table = things(1, 5);
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(table.column<Mass>().data()) % 64, 0U);
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(table.column<Place>().data()) % 64, 0U);
 }
 
 TEST(TableTest, AppendedRowsAreZeroEvenWhereARowWasBefore) {
-  Things table = things(3, 3);
+  Masses table = things(3, 3);
   table.clear();
   const Range rows = table.append(2).value();
   EXPECT_EQ(rows, (Range{0, 2}));
@@ -45,7 +45,7 @@ TEST(TableTest, AppendedRowsAreZeroEvenWhereARowWasBefore) {
 }
 
 TEST(TableTest, AppendBeyondTheCapacityChangesNothing) {
-  Things table = things(2, 3);
+  Masses table = things(2, 3);
   EXPECT_FALSE(table.append(2).has_value());
   EXPECT_EQ(table.size(), 2U);
   EXPECT_TRUE(table.append(1).has_value());
@@ -54,7 +54,7 @@ TEST(TableTest, AppendBeyondTheCapacityChangesNothing) {
 }
 
 TEST(TableTest, EraseKeepsTheOrderInEveryColumn) {
-  Things table = things(4, 4);
+  Masses table = things(4, 4);
   table.erase(1);
   ASSERT_EQ(table.size(), 3U);
   const float masses[] = {0.0F, 2.0F, 3.0F};
@@ -68,7 +68,7 @@ TEST(TableTest, EraseKeepsTheOrderInEveryColumn) {
 }
 
 TEST(TableTest, ColumnsStayWhereTheyAre) {
-  Things table = things(1, 100);
+  Masses table = things(1, 100);
   const Mass* const before = table.column<Mass>().data();
   table.append(99);
   table.erase(0);
@@ -77,7 +77,7 @@ TEST(TableTest, ColumnsStayWhereTheyAre) {
 }
 
 TEST(TableTest, NoRowsNeedNoMemory) {
-  Things table;
+  Masses table;
   table.reserve(0);
   EXPECT_TRUE(table.append(0).has_value());
   EXPECT_FALSE(table.append(1).has_value());
@@ -85,8 +85,8 @@ TEST(TableTest, NoRowsNeedNoMemory) {
 }
 
 TEST(TableTest, CopiedRowsAreEqual) {
-  const Things from = things(3, 3);
-  Things to;
+  const Masses from = things(3, 3);
+  Masses to;
   to.reserve(5);
   to.append(5);
   to.copy_rows(from);
@@ -95,9 +95,9 @@ TEST(TableTest, CopiedRowsAreEqual) {
 }
 
 TEST(TableTest, OnlyReserveAllocates) {
-  Things table;
+  Masses table;
   table.reserve(50);
-  Things other = things(50, 50);
+  Masses other = things(50, 50);
   const test::AllocationGuard guard;
   table.append(20);
   table.erase(3);
@@ -110,7 +110,7 @@ TEST(TableTest, OnlyReserveAllocates) {
 
 TEST(TableDeathTest, ARowThatIsNotThereStopsTheProgram) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
-  Things table = things(2, 8);
+  Masses table = things(2, 8);
   EXPECT_DEATH(static_cast<void>(table.at<Mass>(2)), "assertion failed");
   EXPECT_DEATH(static_cast<void>(table.rows<Mass>({1, 2})), "assertion failed");
   EXPECT_DEATH(table.erase(2), "assertion failed");

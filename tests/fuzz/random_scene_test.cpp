@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/fuzz/scene_properties.hpp"
+#include "tests/support/studies.hpp"
 
 namespace torsion::test {
 namespace {
@@ -13,11 +14,15 @@ namespace {
 struct Seed {
   std::uint64_t seed;
   const char* what;
+  bool chosen = false;  // for every run; the others with all cases
 };
 
 class RandomSceneTest : public testing::TestWithParam<Seed> {};
 
 TEST_P(RandomSceneTest, KeepsAllProperties) {
+  if (test::is_left_out(GetParam().chosen)) {
+    GTEST_SKIP() << test::kLeftOut;
+  }
   const RandomScene scene = random_scene(GetParam().seed);
   const std::optional<std::string> broken = broken_property(scene);
   EXPECT_FALSE(broken.has_value()) << *broken << "\n" << scene.text;
@@ -26,17 +31,18 @@ TEST_P(RandomSceneTest, KeepsAllProperties) {
 INSTANTIATE_TEST_SUITE_P(
     Seeds, RandomSceneTest,
     testing::Values(
-        Seed{20, "PaperGridThatGoesToAndFroUnderAToolThatStands"},
-        Seed{44, "MdrGridThatGoesToAndFro"}, Seed{117, "CylinderOnACylinder"},
+        Seed{20, "PaperGridThatGoesToAndFroUnderAToolThatStands", true},
+        Seed{44, "MdrGridThatGoesToAndFro"}, Seed{117, "CylinderOnACylinder", true},
         Seed{74, "ForceOfACompliantBodyBetweenSamples"}, Seed{306, "LastForceOfACompliantBody"},
         Seed{321, "OneContactInTwoRegionsThatTakeCellsFromEachOther"},
-        Seed{456, "CoarseBallInTwoRegions"}, Seed{484, "NeighboursThatTouch"},
-        Seed{458, "ContactOfANanometre"}, Seed{1049, "RegionsWhoseCouplingsAreMoreThanThemselves"},
-        Seed{1264, "ContactBesideItsFirstGrid"},
+        Seed{456, "CoarseBallInTwoRegions"}, Seed{484, "NeighboursThatTouch", true},
+        Seed{458, "ContactOfANanometre"},
+        Seed{1049, "RegionsWhoseCouplingsAreMoreThanThemselves", true},
+        Seed{1264, "ContactBesideItsFirstGrid", true},
         Seed{1187, "LittleFrictionOnAnEndThatIsSoftSideways"},
-        Seed{1345, "MdrOnABodyThatIsSoftSideways"}, Seed{1099, "PaperOnALongContactAskew"},
-        Seed{1148, "MdrWhereASideCutsABall"}, Seed{1265, "MdrOnALongContactAskew"},
-        Seed{1344, "HardlyAnyForceAfterALongWay"}),
+        Seed{1345, "MdrOnABodyThatIsSoftSideways"}, Seed{1099, "PaperOnALongContactAskew", true},
+        Seed{1148, "MdrWhereASideCutsABall", true}, Seed{1265, "MdrOnALongContactAskew", true},
+        Seed{1344, "HardlyAnyForceAfterALongWay", true}),
     [](const testing::TestParamInfo<Seed>& seed) { return std::string(seed.param.what); });
 
 }  // namespace

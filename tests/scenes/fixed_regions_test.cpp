@@ -162,7 +162,7 @@ TEST(FixedRegionsTest, MarksThatNothingAsksForHoldNothing) {
   expect_held(body_of(scene), [](const glm::dvec3&) { return false; });
 }
 
-std::string problems_of(const GltfBuilder& scene) {
+std::string problems_of_pins(const GltfBuilder& scene) {
   const LoadedScene loaded = load_text(scene.text());
   EXPECT_FALSE(loaded.scene.has_value());
   return to_text(loaded.problems);
@@ -172,14 +172,14 @@ TEST(FixedRegionsTest, NodesThatWouldDoNothingAreRefused) {
   GltfBuilder scene = good_scene();
   scene.node("cube")["extras"]["torsion_fixed"] = "bottom_face";
   add_fixed_node(scene, {}, "fixed_point");
-  const std::string text = problems_of(scene);
+  const std::string text = problems_of_pins(scene);
   EXPECT_NE(text.find("would do nothing"), std::string::npos) << text;
 }
 
 TEST(FixedRegionsTest, ChildrenThatAreNotThereAreMissed) {
   GltfBuilder scene = good_scene();
   scene.node("cube")["extras"]["torsion_fixed"] = "children";
-  const std::string text = problems_of(scene);
+  const std::string text = problems_of_pins(scene);
   EXPECT_NE(text.find("fixed_point, fixed_box or fixed_sphere"), std::string::npos) << text;
 }
 
@@ -187,14 +187,14 @@ TEST(FixedRegionsTest, SecondFixedPointIsRefused) {
   GltfBuilder scene = good_scene();
   add_fixed_node(scene, {{"translation", {0.0, 0.0, 0.0}}}, "fixed_point");
   add_fixed_node(scene, {{"translation", {0.01, 0.0, 0.0}}}, "fixed_point");
-  const std::string text = problems_of(scene);
+  const std::string text = problems_of_pins(scene);
   EXPECT_NE(text.find("this is the second"), std::string::npos) << text;
 }
 
 TEST(FixedRegionsTest, FlatVolumeIsRefused) {
   GltfBuilder scene = good_scene();
   add_fixed_node(scene, {{"scale", {0.1, 0.0, 0.1}}}, "fixed_box");
-  const std::string text = problems_of(scene);
+  const std::string text = problems_of_pins(scene);
   EXPECT_NE(text.find("no extent along one axis"), std::string::npos) << text;
 }
 

@@ -10,7 +10,7 @@ namespace torsion::test {
 namespace {
 
 // Positions are floats of about 0.1 m in the file: half a unit in their last place is 4e-9 m.
-constexpr double kFloatTolerance = 1e-8;
+constexpr double kFloatError = 1e-8;
 
 const SceneDescription& scene_of(const LoadedScene& loaded) {
   EXPECT_TRUE(loaded.scene.has_value()) << to_text(loaded.problems);
@@ -40,7 +40,7 @@ TEST(LoadGltfTest, PlainSceneHasTheDefaultsOfTheConventions) {
   EXPECT_EQ(body.models.body, BodyModel::kAuto);
   EXPECT_EQ(body.models.tolerance, 0.05);
   EXPECT_EQ(body.fixed.kind, FixedKind::kPoint);
-  expect_near(body.fixed.point, {0.0, -0.05, 0.0}, kFloatTolerance);
+  expect_near(body.fixed.point, {0.0, -0.05, 0.0}, kFloatError);
   ASSERT_EQ(body.parts.size(), 1U);
   EXPECT_EQ(body.parts[0].shape.kind, ShapeKind::kMesh);
   EXPECT_EQ(body.parts[0].surface.positions.size(), 8U);
@@ -81,7 +81,7 @@ TEST(LoadGltfTest, KeysOfABodyReachTheDescription) {
   EXPECT_EQ(body.models.tolerance, 0.01);
   EXPECT_EQ(body.models.region_threshold, 0.002);
   EXPECT_EQ(body.parts[0].shape.kind, ShapeKind::kBox);
-  expect_near(body.parts[0].shape.half_extent, glm::dvec3(0.05), kFloatTolerance);
+  expect_near(body.parts[0].shape.half_extent, glm::dvec3(0.05), kFloatError);
   EXPECT_EQ(body.fixed.kind, FixedKind::kFace);
 }
 
@@ -114,13 +114,13 @@ TEST(LoadGltfTest, NodeScaleGoesIntoTheMeshAndNotIntoTheFrame) {
   const LoadedScene loaded = load_text(builder.text());
   ASSERT_EQ(scene_of(loaded).bodies.size(), 1U);
   const BodyDescription& body = scene_of(loaded).bodies[0];
-  expect_near(body.pose.position, {0.0, 0.05, 0.0}, kFloatTolerance);
+  expect_near(body.pose.position, {0.0, 0.05, 0.0}, kFloatError);
   EXPECT_NEAR(body.pose.rotation.w, 1.0, 1e-12);
   glm::dvec3 highest(0.0);
   for (const glm::dvec3& position : body.parts[0].surface.positions) {
     highest = glm::max(highest, position);
   }
-  expect_near(highest, {0.1, 0.05, 0.025}, kFloatTolerance);
+  expect_near(highest, {0.1, 0.05, 0.025}, kFloatError);
 }
 
 TEST(LoadGltfTest, MeshesBelowAToolAreItsParts) {
@@ -138,7 +138,7 @@ TEST(LoadGltfTest, MeshesBelowAToolAreItsParts) {
   EXPECT_EQ(tool.parts[0].shape.kind, ShapeKind::kMesh);
   EXPECT_EQ(tool.parts[1].node, "grip");
   EXPECT_EQ(tool.parts[1].shape.kind, ShapeKind::kSphere);
-  expect_near(tool.parts[1].shape.pose.position, {0.0, 0.03, 0.0}, kFloatTolerance);
+  expect_near(tool.parts[1].shape.pose.position, {0.0, 0.03, 0.0}, kFloatError);
   EXPECT_EQ(tool.draw.positions.size(), 16U);
 }
 
@@ -150,7 +150,7 @@ TEST(LoadGltfTest, ToolHasTheMassPropertiesOfASolidBox) {
   ASSERT_EQ(scene_of(loaded).tools.size(), 1U);
   const MassProperties& mass = scene_of(loaded).tools[0].mass;
   EXPECT_EQ(mass.mass, 2.0);
-  expect_near(mass.center, glm::dvec3(0.0), kFloatTolerance);
+  expect_near(mass.center, glm::dvec3(0.0), kFloatError);
   // A cuboid of edges a, b, c: I_xx = m (b^2 + c^2) / 12. Edges are floats, exact within 1e-7.
   const glm::dvec3 edge(0.02, 0.04, 0.06);
   for (int i = 0; i < 3; ++i) {
@@ -194,8 +194,7 @@ TEST(LoadGltfTest, OpenMeshIsFineWhereAnExactShapeIsFelt) {
   const LoadedScene loaded = load_text(builder.text());
   ASSERT_EQ(scene_of(loaded).bodies.size(), 1U);
   EXPECT_EQ(scene_of(loaded).bodies[0].draw.triangles.size(), 10U);
-  expect_near(scene_of(loaded).bodies[0].parts[0].shape.half_extent, glm::dvec3(0.05),
-              kFloatTolerance);
+  expect_near(scene_of(loaded).bodies[0].parts[0].shape.half_extent, glm::dvec3(0.05), kFloatError);
 }
 
 TEST(LoadGltfTest, FaultOfAMeshIsSaidOnceWhateverTheShape) {

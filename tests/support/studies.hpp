@@ -10,4 +10,12 @@ inline bool all_cases() {
   return std::getenv("TORSION_ALL_CASES") != nullptr;
 }
 
+/// True where a case is left to `./dev test --all`: skip it, so that the run says so.
+/// @param chosen  one of the few of its kind that every run looks at
+inline bool is_left_out(bool chosen) {
+  return !chosen && !all_cases();
+}
+
+inline constexpr const char* kLeftOut = "one of many of its kind: ./dev test --all looks at it";
+
 }  // namespace torsion::test

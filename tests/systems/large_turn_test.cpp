@@ -25,7 +25,7 @@ constexpr double kColumnRadius = 0.02;  // m: of the column
 constexpr double kColumnHeight = 0.12;  // m
 constexpr double kContact = 0.008;
 
-constexpr std::uint32_t kRings = 40;
+constexpr std::uint32_t kRingsOfBody = 40;
 constexpr std::uint32_t kAround = 36;
 constexpr std::uint32_t kEnd = 27;  // rings from here on are nearer to the load than a diameter
 
@@ -37,18 +37,18 @@ DrawMesh column_mesh() {
     mesh.normals.emplace_back(0.0F, 1.0F, 0.0F);
     mesh.fixed.push_back(y == 0.0);
   };
-  for (std::uint32_t ring = 0; ring <= kRings; ++ring) {
+  for (std::uint32_t ring = 0; ring <= kRingsOfBody; ++ring) {
     for (std::uint32_t k = 0; k < kAround; ++k) {
-      add(kColumnRadius, kColumnHeight * ring / kRings, 2.0 * std::numbers::pi * k / kAround);
+      add(kColumnRadius, kColumnHeight * ring / kRingsOfBody, 2.0 * std::numbers::pi * k / kAround);
     }
   }
   add(0.0, 0.0, 0.0);
   add(0.0, kColumnHeight, 0.0);
-  const std::uint32_t top = kRings * kAround;
+  const std::uint32_t top = kRingsOfBody * kAround;
   const std::uint32_t middles = top + kAround;
   for (std::uint32_t k = 0; k < kAround; ++k) {
     const std::uint32_t next = (k + 1) % kAround;
-    for (std::uint32_t ring = 0; ring < kRings; ++ring) {
+    for (std::uint32_t ring = 0; ring < kRingsOfBody; ++ring) {
       const std::uint32_t low = ring * kAround;
       const std::uint32_t high = low + kAround;
       mesh.triangles.emplace_back(low + k, high + k, low + next);
@@ -179,15 +179,16 @@ constexpr double kQuarter = 0.5 * std::numbers::pi;
 // and 1.3 %. Displacements linear in the angle would be off by sqrt(1 + (pi/2)^2) - 1 = 86 %.
 TEST_F(LargeTurnTest, SectionsOfAColumnTurnedBy90DegreesKeepTheirRadius) {
   draw(glm::dvec3(0.0), couple_for(kQuarter));
-  for (std::uint32_t ring = 0; ring <= kRings; ++ring) {
+  for (std::uint32_t ring = 0; ring <= kRingsOfBody; ++ring) {
     EXPECT_LT(swelling_of(ring), ring < kEnd ? 0.003 : 0.015) << "ring " << ring;
-    EXPECT_LT(glm::distance(middle_of(ring), kColumnHeight * ring / kRings * kUp),
+    EXPECT_LT(glm::distance(middle_of(ring), kColumnHeight * ring / kRingsOfBody * kUp),
               0.01 * kColumnRadius);
   }
   const double column = 0.5 * kAround * std::sin(2.0 * std::numbers::pi / kAround) * kColumnRadius *
                         kColumnRadius * kColumnHeight;  // a prism with kAround sides
   // Sections turn against each other, so the flat triangles between them cut off some of the
-  // column: a chord between two rings, pi / 2 / kRings apart at most, (pi / 80)^2 / 2 = 0.08 %.
+  // column: a chord between two rings, pi / 2 / kRingsOfBody apart at most, (pi / 80)^2 / 2 = 0.08
+  // %.
   EXPECT_NEAR(volume() / column, 1.0, 0.015);
 }
 
@@ -195,7 +196,7 @@ TEST_F(LargeTurnTest, SectionsTurnAsFarAsSaintVenantSays) {
   draw(glm::dvec3(0.0), couple_for(kQuarter));
   // Away from the ends, where the couple and the clamp are felt.
   for (std::uint32_t ring = 8; ring <= 28; ++ring) {
-    const double y = kColumnHeight * ring / kRings;
+    const double y = kColumnHeight * ring / kRingsOfBody;
     for (std::uint32_t k = 0; k < kAround; ++k) {
       const glm::dvec3 from = rest(ring * kAround + k);
       const glm::dvec3 to = moved(ring * kAround + k);

@@ -12,6 +12,7 @@
 
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
+#include "tests/support/studies.hpp"
 #include "tests/systems/soft_bodies.hpp"
 
 namespace torsion {
@@ -104,6 +105,9 @@ class MeshBodyTest : public testing::TestWithParam<MeshCase> {};
 constexpr double kBound = 0.007;
 
 TEST_P(MeshBodyTest, GivesWayLikeTheExactShape) {
+  if (test::is_left_out(GetParam().poisson == 0.5)) {
+    GTEST_SKIP() << test::kLeftOut;
+  }
   const std::vector<Wrench> exact = press_slide_twist(GetParam(), false);
   const std::vector<Wrench> mesh = press_slide_twist(GetParam(), true);
   double force = 0.0;

@@ -13,6 +13,7 @@
 #include "systems/body_models/footing_response.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
+#include "tests/support/studies.hpp"
 
 namespace torsion {
 namespace {
@@ -86,6 +87,9 @@ class PatchComplianceTest : public testing::TestWithParam<CalmCase> {};
 // threshold (1e-9 of the mean pressure). While it moves, the contact is
 // never lost, and never presses more than thrice as at first.
 TEST_P(PatchComplianceTest, ComesToRestAfterAnyMotion) {
+  if (test::is_left_out(GetParam().side == 12)) {
+    GTEST_SKIP() << test::kLeftOut;
+  }
   const Ground& ground = GetParam().ground;
   Hand hand = hand_over(ground, GetParam().side, 2);
   std::mt19937 random(7);
@@ -134,6 +138,9 @@ double largest_bend(Hand& hand, const glm::dvec3& way, double turn, int steps) {
 // disc pressed in, 2 E* a (Johnson, Contact Mechanics, 1985, (3.36)); along and around it is
 // softer.
 TEST_P(PatchComplianceTest, AddsInAStepWhatTheStepBeforeAdded) {
+  if (test::is_left_out(GetParam().side == 12)) {
+    GTEST_SKIP() << test::kLeftOut;
+  }
   const Ground& ground = GetParam().ground;
   Hand hand = hand_over(ground, GetParam().side, 2);
   std::mt19937 random(7);
@@ -157,6 +164,9 @@ TEST_P(PatchComplianceTest, AddsInAStepWhatTheStepBeforeAdded) {
 
 // A step's sweeps are enough: twenty times as many press and turn to the same wrench.
 TEST_P(PatchComplianceTest, MoreSweepsEndAtTheSameWrench) {
+  if (test::is_left_out(GetParam().side == 12)) {
+    GTEST_SKIP() << test::kLeftOut;
+  }
   const Ground& ground = GetParam().ground;
   Hand few = hand_over(ground, GetParam().side, 2);
   Hand many = hand_over(ground, GetParam().side, 40);

@@ -14,7 +14,7 @@ using test::BallScene;
 using test::kBallDepth;
 using test::PressedBall;
 
-struct Resolution {
+struct TorqueBounds {
   std::uint32_t side;
   std::uint32_t sweeps;
   double loading;    // bounds of the torque's error over the largest torque
@@ -25,9 +25,9 @@ struct Resolution {
 // staircase of a rim stands for the circle is luck: over ten depths the torque is 0.5 to 0.8 % and
 // 0.2 to 0.5 % off, and on the way back, where Masing's rule doubles what the first loading
 // has, 1.3 and 0.75 % at worst. Bounds are a third more.
-constexpr Resolution kCoarse{12, 2, 0.01, 0.017};
-constexpr Resolution kFine{16, 2, 0.0065, 0.01};
-constexpr Resolution kFinest{24, 40, 0.0026, 0.004};
+constexpr TorqueBounds kCoarse{12, 2, 0.01, 0.017};
+constexpr TorqueBounds kFine{16, 2, 0.0065, 0.01};
+constexpr TorqueBounds kFinest{24, 40, 0.0026, 0.004};
 
 // The goals, of loading and unloading: 2 % with 64 cells in contact, 0.7 % with 144.
 double goal(int cells) {
@@ -59,10 +59,10 @@ TorqueErrors twist_and_back(PressedBall& ball) {
   return worst;
 }
 
-class PatchTorsionTest : public testing::TestWithParam<Resolution> {};
+class PatchTorsionTest : public testing::TestWithParam<TorqueBounds> {};
 
 TEST_P(PatchTorsionTest, TwistAndUnloadingFollowLubkin) {
-  const Resolution& resolution = GetParam();
+  const TorqueBounds& resolution = GetParam();
   for (const double depth : {1.0, 1.3, 1.5, 1.7, 1.8}) {
     BallScene scene;
     scene.side = resolution.side;
@@ -77,7 +77,7 @@ TEST_P(PatchTorsionTest, TwistAndUnloadingFollowLubkin) {
 }
 
 TEST_P(PatchTorsionTest, NormalForceIsHertzsOnceSettled) {
-  const Resolution& resolution = GetParam();
+  const TorqueBounds& resolution = GetParam();
   BallScene scene;
   scene.side = resolution.side;
   scene.sweeps = resolution.sweeps;

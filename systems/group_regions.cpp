@@ -272,6 +272,36 @@ bool has_settled(const World& world, std::uint32_t region) {
   return state.started != 0 && state.residual < kSettled;
 }
 
+/// Points are sought under the body's rest shape. One that gives way may be dragged along by
+/// friction until the tool stands beside that shape with all its points: cells that carry a force
+/// where they are now are a contact without them. Where there are points they say which contacts
+/// there are.
+bool lives_without_points(const World& world, const ContactPair& pair, std::uint32_t region) {
+  return pair.points.count == 0 &&
+         world.bodies.at<BodyModels>(pair.body).body == BodyModel::kCompliance &&
+         world.regions.at<RegionNormal>(region).force > 0.0;
+}
+
+/// Regions that own no cluster go on without points, or end.
+void end_or_go_on(StepContext& context, const ContactPair& pair,
+                  std::span<const ContactPoint> points) {
+  World& world = context.world;
+  Scratch& scratch = context.scratch;
+  const auto regions = world.regions.column<RegionIdentity>();
+  for (std::uint32_t region = 0; region < regions.size(); ++region) {
+    if (!of_pair(regions[region], pair) || owns_cluster(scratch, region)) {
+      continue;
+    }
+    const std::uint32_t heir = heir_of(world, scratch, region, points);
+    if (heir == kNoRow && lives_without_points(world, pair, region)) {
+      follow_contact(context, region, {pair.points, kNoRow});
+    } else {
+      end_region(world, region, heir);
+      scratch.region_commands.destroy(regions[region].self);
+    }
+  }
+}
+
 /// Regions of patch that others take over hand them their tractions.
 void join_patches(StepContext& context, const ContactPair& pair,
                   std::span<const ContactPoint> points) {
@@ -301,13 +331,7 @@ void group_regions(StepContext& context) {
                                                pair.points.count);
     match_clusters(world, scratch, pair, points);
     note_splits(world, scratch, points);
-    const auto regions = world.regions.column<RegionIdentity>();
-    for (std::uint32_t region = 0; region < regions.size(); ++region) {
-      if (of_pair(regions[region], pair) && !owns_cluster(scratch, region)) {
-        end_region(world, region, heir_of(world, scratch, region, points));
-        scratch.region_commands.destroy(regions[region].self);
-      }
-    }
+    end_or_go_on(context, pair, points);
     for (std::uint32_t cluster = 0; cluster < pair.clusters; ++cluster) {
       const std::uint32_t owner = scratch.owners[cluster].region;
       if (owner != kNoRow) {

@@ -17,9 +17,8 @@ namespace torsion {
 namespace {
 
 constexpr int kMostPasses = 10;  // of one grid in one step: a new region finds its size by doubling
-constexpr double kSmallestBoxFill =
-    0.45;                      // of the grid by the contact, else the grid is made smaller
-constexpr double kTurn = 0.5;  // of the angle by which a grid lies askew, in a step
+constexpr double kSmallestBoxFill = 0.45;  // by the contact, else the grid is made smaller
+constexpr double kTurn = 0.5;              // of the angle by which a grid lies askew, in a step
 constexpr double kSettled =
     0.02;  // of the grid: what it is off by when a region begins, splits or takes over another
 
@@ -228,6 +227,9 @@ void follow_contact(StepContext& context, std::uint32_t region, const RegionPoin
   }
   const CellBits covered = covered_cells(grid);
   PlaneBox box = moves ? align_grid(grid, region, covered, kTurn) : covered_box(grid, covered);
+  if (box.empty() && contact.cluster == kNoRow) {
+    return;  // it has lost its points and its cells: they find nothing, or the tool again
+  }
   if (box.empty()) {
     // Here, too. A grid that only approached its points would shrink to a point under a single one.
     place_new_grid(context, region, contact);

@@ -67,8 +67,8 @@ inline std::uint32_t block_of(const RegionIdentity& region) {
 
 /// Which of a pair's clusters a region continues in this step.
 struct RegionPoints {
-  Range points;  // in Scratch::points: all of the pair
-  std::uint32_t cluster = kNoRow;
+  Range points;                    // in Scratch::points: all of the pair
+  std::uint32_t cluster = kNoRow;  // which of them; kNoRow: none, it lives by its cells alone
 };
 
 /// The cells of one region as columns, in the grid's frame.

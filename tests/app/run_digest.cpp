@@ -103,11 +103,8 @@ std::uint64_t digest_of(const PinnedRun& run) {
 
 std::string instruction_set() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") != 0) {
-    return "x86_64_avx512";
-  }
   if (__builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0) {
-    return "x86_64_avx2";
+    return "x86_64_fma";
   }
 #endif
   return "other";

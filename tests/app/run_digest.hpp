@@ -42,8 +42,9 @@ std::vector<PinnedRun> pinned_runs();
 /// What the run comes to on this machine.
 std::uint64_t digest_of(const PinnedRun& run);
 
-/// What results may depend on besides the program and the scene: x86_64_avx512, x86_64_avx2 or
-/// other (docs/architecture.md, Determinism).
+/// What results may depend on besides the program and the scene: x86_64_fma or other. AVX2
+/// and AVX-512 sum in the same order, with the same fused multiply-adds (docs/architecture.md,
+/// Determinism).
 std::string instruction_set();
 
 /// A line of the file of pinned results: instruction set, run, digest.

@@ -292,11 +292,10 @@ void end_or_go_on(StepContext& context, const ContactPair& pair,
     if (!of_pair(regions[region], pair) || owns_cluster(scratch, region)) {
       continue;
     }
-    const std::uint32_t heir = heir_of(world, scratch, region, points);
-    if (heir == kNoRow && lives_without_points(world, pair, region)) {
+    if (lives_without_points(world, pair, region)) {
       follow_contact(context, region, {pair.points, kNoRow});
     } else {
-      end_region(world, region, heir);
+      end_region(world, region, heir_of(world, scratch, region, points));
       scratch.region_commands.destroy(regions[region].self);
     }
   }

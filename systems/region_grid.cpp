@@ -227,12 +227,12 @@ void follow_contact(StepContext& context, std::uint32_t region, const RegionPoin
   }
   const CellBits covered = covered_cells(grid);
   PlaneBox box = moves ? align_grid(grid, region, covered, kTurn) : covered_box(grid, covered);
-  if (box.empty() && contact.cluster == kNoRow) {
-    return;  // it has lost its points and its cells: they find nothing, or the tool again
-  }
   if (box.empty()) {
     // Here, too. A grid that only approached its points would shrink to a point under a single one.
-    place_new_grid(context, region, contact);
+    // Without points it stays where it is, and its cells find nothing or the tool again.
+    if (contact.cluster != kNoRow) {
+      place_new_grid(context, region, contact);
+    }
     return;
   }
   include_points(grid, contact, box);

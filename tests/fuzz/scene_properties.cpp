@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -124,7 +126,7 @@ struct Run {
   std::vector<std::vector<glm::dvec3>> forces;   // (tools) (steps) N
   std::vector<std::vector<glm::dvec3>> torques;  // N m
   std::vector<double> work;                      // (steps) J, of all tools
-  std::vector<std::size_t> dragging_from;        // (tools) step, or that of its end
+  std::vector<std::vector<std::size_t>> let_go;  // (tools) steps in which friction alone let go
   std::uint32_t faults = 0;
   int fault_step = -1;
   bool into_a_side = false;  // whether a tool that moved over the body met a side of it
@@ -182,12 +184,17 @@ void look_at_regions(const World& world, int step, Run& run) {
   run.unsolved += residual > kUnsolved ? 1 : 0;
 }
 
+// Steps for which a contact that a tool lifts off from may be without points: its body answers
+// late.
+constexpr int kLate = 5;
+
 Run run(Simulation& simulation, const std::vector<std::vector<Pose>>& poses) {
   Run run;
   const World& world = simulation.world;
   run.forces.resize(world.tools.size());
   run.torques.resize(world.tools.size());
-  run.dragging_from.assign(world.tools.size(), poses.size());
+  run.let_go.resize(world.tools.size());
+  std::vector<int> dragged(world.tools.size(), 0);
   for (std::size_t index = 0; index < poses.size(); ++index) {
     step(simulation, poses[index]);
     double work = 0.0;
@@ -197,7 +204,12 @@ Run run(Simulation& simulation, const std::vector<std::vector<Pose>>& poses) {
       run.torques[tool].push_back(wrench.total.torque);
       work += wrench.work;
       if (only_drags(simulation, tool)) {
-        run.dragging_from[tool] = std::min(run.dragging_from[tool], index);
+        dragged[tool] += 1;
+      } else {
+        if (dragged[tool] > kLate) {
+          run.let_go[tool].push_back(index);
+        }
+        dragged[tool] = 0;
       }
     }
     run.work.push_back(work);
@@ -243,6 +255,24 @@ std::optional<std::string> not_solved(const Run& run) {
   return std::nullopt;
 }
 
+/// A contact that nothing but friction holds is gone when it begins to slip: without friction there
+/// is none where the tool is. Looks at what is before and after, each by itself.
+Standout worst_between(std::span<const glm::dvec3> forces, std::vector<std::size_t> let_go,
+                       double free) {
+  let_go.push_back(forces.size());
+  Standout worst;
+  std::size_t first = 0;
+  for (const std::size_t end : let_go) {
+    const auto part = forces.subspan(first, end - first);
+    const Standout one = largest_standout({part.begin(), part.end()}, free);
+    if (one.size > worst.size) {
+      worst = {first + one.step, one.size};
+    }
+    first = end;
+  }
+  return worst;
+}
+
 std::optional<std::string> not_smooth(const Run& run) {
   constexpr double kBar = 0.5;
   // Of the force there: one that grows to thirty times its median bends by that in a step.
@@ -252,11 +282,7 @@ std::optional<std::string> not_smooth(const Run& run) {
   }
   for (std::size_t tool = 0; tool < run.forces.size(); ++tool) {
     const double median = median_length(run.forces[tool]);
-    // A contact that nothing but friction holds is gone when it begins to slip: without friction
-    // there is none where the tool is.
-    std::vector<glm::dvec3> forces = run.forces[tool];
-    forces.resize(run.dragging_from[tool]);
-    const Standout worst = largest_standout(forces, kFree);
+    const Standout worst = worst_between(run.forces[tool], run.let_go[tool], kFree);
     if (worst.size > kBar * median) {
       return fmt::format("tool {}: the force stands out by {:.3g} of the median in step {}", tool,
                          worst.size / median, worst.step);

@@ -187,8 +187,8 @@ TEST_F(LargeTurnTest, SectionsOfAColumnTurnedBy90DegreesKeepTheirRadius) {
   const double column = 0.5 * kAround * std::sin(2.0 * std::numbers::pi / kAround) * kColumnRadius *
                         kColumnRadius * kColumnHeight;  // a prism with kAround sides
   // Sections turn against each other, so the flat triangles between them cut off some of the
-  // column: a chord between two rings, pi / 2 / kRingsOfBody apart at most, (pi / 80)^2 / 2 = 0.08
-  // %.
+  // column: a chord between two rings, pi / 2 / kRingsOfBody apart at most, is nearer to the axis
+  // by (pi / 80)^2 / 2 = 0.08 %.
   EXPECT_NEAR(volume() / column, 1.0, 0.015);
 }
 

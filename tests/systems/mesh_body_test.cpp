@@ -105,6 +105,7 @@ class MeshBodyTest : public testing::TestWithParam<MeshCase> {};
 constexpr double kBound = 0.007;
 
 TEST_P(MeshBodyTest, GivesWayLikeTheExactShape) {
+  // Of each shape and each way of holding it, and with either contact model, one at least.
   if (test::is_left_out(GetParam().poisson == 0.5)) {
     GTEST_SKIP() << test::kLeftOut;
   }

@@ -46,23 +46,24 @@ class Sums {
     return {places_.data(), static_cast<std::uint32_t>(places_.size())};
   }
 
-  /// What the sums come to, from a start.
+  /// What the sums come to; 5 where there is no cell.
   /// @param by  (InfluenceSums) sums
+  /// @param start  a displacement a cell, or none
   template <class By>
-  [[nodiscard]] std::vector<double> sum_by(const By& by) const {
+  [[nodiscard]] std::vector<double> sum_by(const By& by, const double* start) const {
     std::vector<double> displacement(start_.size(), 5.0);
-    by(InfluenceSums{block(), sources(), tables_.of(InfluenceKind::kZX), scales_.data(),
-                     start_.data(), displacement.data()});
+    by(InfluenceSums{block(), sources(), tables_.of(InfluenceKind::kZX), scales_.data(), start,
+                     displacement.data()});
     return displacement;
   }
+  [[nodiscard]] const double* start() const { return start_.data(); }
 
   /// @param by  (InfluenceSums) sums
   template <class By>
   void expect_right(const By& by) const {
     const double* const table = tables_.of(InfluenceKind::kZX);
     for (const double* const start : {static_cast<const double*>(nullptr), start_.data()}) {
-      std::vector<double> displacement(start_.size(), 5.0);
-      by(InfluenceSums{block(), sources(), table, scales_.data(), start, displacement.data()});
+      const std::vector<double> displacement = sum_by(by, start);
       for (std::uint32_t j = 0; j < side_; ++j) {
         for (std::uint32_t i = 0; i < side_; ++i) {
           const std::size_t cell = std::size_t{j} * pitch() + i;
@@ -129,7 +130,9 @@ TEST_P(SumInfluenceTest, HasTheSameBitsWithAvx2AndAvx512) {
     GTEST_SKIP() << "this processor has no AVX-512";
   }
   const Sums sums(GetParam());
-  EXPECT_EQ(sums.sum_by(sum_influence_avx2), sums.sum_by(sum_influence_avx512));
+  for (const double* const start : {static_cast<const double*>(nullptr), sums.start()}) {
+    EXPECT_EQ(sums.sum_by(sum_influence_avx2, start), sums.sum_by(sum_influence_avx512, start));
+  }
 }
 #endif
 

@@ -2,9 +2,10 @@
 
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <glm/geometric.hpp>
 
+#include "systems/least_squares.hpp"
 #include "systems/widest.hpp"
 
 namespace torsion {
@@ -28,7 +29,7 @@ std::vector<InterpolationRow> invert_interpolation(std::span<const glm::dvec3> c
   }
   // Complete orthogonal: centers that lie in one plane leave part of the affine field open; it is
   // set to zero.
-  const Eigen::MatrixXd inverse = matrix.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd inverse = pseudo_inverse(matrix);
   std::vector<InterpolationRow> rows;
   rows.reserve(static_cast<std::size_t>(side * side));
   for (Eigen::Index i = 0; i < side; ++i) {

@@ -5,8 +5,11 @@
 #include <complex>
 #include <limits>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <glm/geometric.hpp>
+
+#include "systems/geometry/cross.hpp"
+#include "systems/least_squares.hpp"
 
 namespace torsion {
 namespace {
@@ -16,10 +19,6 @@ using Complex = std::complex<double>;
 constexpr int kHarmonicDegree = 16;
 constexpr int kUnknowns = 2 * kHarmonicDegree + 1;
 constexpr int kBoundaryPoints = 3 * kUnknowns;
-
-double cross(const glm::dvec2& a, const glm::dvec2& b) {
-  return a.x * b.y - a.y * b.x;
-}
 
 /// Points equally spaced along the boundary, starting half a spacing after the first corner.
 void sample_boundary(const std::vector<Complex>& corners, std::vector<Complex>& points) {
@@ -108,7 +107,7 @@ double torsion_constant(const std::vector<glm::dvec2>& polygon) {
   sample_boundary(corners, points);
 
   // psi = h - r^2/2 with h harmonic; h = r^2/2 on the boundary.
-  Eigen::Matrix<double, Eigen::Dynamic, kUnknowns> basis(points.size(), kUnknowns);
+  Eigen::MatrixXd basis(points.size(), kUnknowns);
   Eigen::VectorXd wanted(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
@@ -121,7 +120,7 @@ double torsion_constant(const std::vector<glm::dvec2>& polygon) {
     }
     wanted(row) = 0.5 * std::norm(points[i]);
   }
-  const Eigen::Matrix<double, kUnknowns, 1> weights = basis.householderQr().solve(wanted);
+  const Eigen::VectorXd weights = least_squares(basis, wanted);
 
   const auto integrals = integrate_powers(corners);
   double harmonic = weights(0) * integrals[0].real();

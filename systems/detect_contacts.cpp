@@ -19,7 +19,7 @@ constexpr double kSmallestStep =
     1e-3;  // of the sample spacing: finer does not change the depth by a micrometre
 
 /// One tool over one body while it is searched.
-struct Search {
+struct ContactSearch {
   const World& world;
   Scratch& scratch;
   Range body_parts;
@@ -37,7 +37,7 @@ struct BallBlock {
 /// Marks the balls' samples whose ball reaches into the body, and lines up what is below the others
 /// that do.
 /// @param rows  of the tool's balls, at most BallBlock::kBalls of them
-void look_at(Search& search, std::span<const SurfaceBall> balls,
+void look_at(ContactSearch& search, std::span<const SurfaceBall> balls,
              std::span<const std::uint32_t> rows, BallBlock& block) {
   Scratch& scratch = search.scratch;
   const std::size_t count = rows.size();
@@ -71,7 +71,7 @@ void look_at(Search& search, std::span<const SurfaceBall> balls,
 /// Walks the tool's tree of balls, level by level: keeps the samples whose ball reaches into the
 /// body, in their order. The distance is at least |distance| in every part, so a ball farther away
 /// than its radius holds no contact.
-void find_candidates(Search& search) {
+void find_candidates(ContactSearch& search) {
   Scratch& scratch = search.scratch;
   const auto balls = search.world.balls.rows<SurfaceBall>(search.tool.balls);
   scratch.candidates.clear();
@@ -103,7 +103,7 @@ void find_candidates(Search& search) {
 
 /// Lowest among its neighbours; between equals the first. A neighbour that was not reached is
 /// farther away.
-bool is_local_minimum(const Search& search, const Candidate& candidate) {
+bool is_local_minimum(const ContactSearch& search, const Candidate& candidate) {
   const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(candidate.sample);
   for (const std::uint32_t neighbour : sample.neighbours) {
     if (neighbour == kNoRow) {
@@ -121,7 +121,7 @@ bool is_local_minimum(const Search& search, const Candidate& candidate) {
 }
 
 /// Whether no neighbour of a sample is in contact.
-bool stands_alone(const Search& search, const Candidate& candidate) {
+bool stands_alone(const ContactSearch& search, const Candidate& candidate) {
   const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(candidate.sample);
   return std::ranges::none_of(sample.neighbours, [&search](std::uint32_t neighbour) {
     if (neighbour == kNoRow) {
@@ -134,7 +134,7 @@ bool stands_alone(const Search& search, const Candidate& candidate) {
 
 /// Slides a point on the tool's surface towards the body, with step halving.
 /// @return the point, m, body, and its distance to the body
-ContactPoint descend(const Search& search, const Candidate& start) {
+ContactPoint descend(const ContactSearch& search, const Candidate& start) {
   const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(start.sample);
   const Pose& pose = search.tool_in_body;
   glm::dvec3 point = sample.position;  // tool frame
@@ -172,7 +172,7 @@ void add_point(Scratch& scratch, std::uint32_t sample, const ContactPoint& point
 }
 
 /// Pairs of contact points whose samples are neighbours, with rows counted from `first`.
-void pair_neighbours(const Search& search, std::uint32_t first) {
+void pair_neighbours(const ContactSearch& search, std::uint32_t first) {
   Scratch& scratch = search.scratch;
   for (const Candidate& candidate : scratch.candidates) {
     const std::uint32_t point = scratch.sample_states[candidate.sample].point;
@@ -194,7 +194,8 @@ void pair_neighbours(const Search& search, std::uint32_t first) {
 
 /// Deeper than half of the body, or with half of the tool's surface inside it, no side is "out" any
 /// more.
-bool too_deep(const Search& search, const Bounds& bounds, std::span<const ContactPoint> points) {
+bool too_deep(const ContactSearch& search, const Bounds& bounds,
+              std::span<const ContactPoint> points) {
   const glm::dvec3 size = bounds.highest - bounds.lowest;
   const double deepest = 0.5 * std::min({size.x, size.y, size.z});
   const auto beyond = [deepest](const ContactPoint& point) {
@@ -203,7 +204,7 @@ bool too_deep(const Search& search, const Bounds& bounds, std::span<const Contac
   return 2 * points.size() > search.tool.samples.count || std::ranges::any_of(points, beyond);
 }
 
-void find_points(Search& search) {
+void find_points(ContactSearch& search) {
   find_candidates(search);
   Scratch& scratch = search.scratch;
   for (const Candidate& candidate : scratch.candidates) {
@@ -236,9 +237,9 @@ void detect_contacts(StepContext& context) {
   for (std::uint32_t tool = 0; tool < world.tools.size(); ++tool) {
     for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
       const auto first = static_cast<std::uint32_t>(scratch.points.size());
-      Search search{world, scratch, world.bodies.at<OwnedRows>(body).parts,
-                    world.tools.at<OwnedRows>(tool),
-                    relative(world.bodies.at<Pose>(body), world.tools.at<ToolPose>(tool).now)};
+      ContactSearch search{
+          world, scratch, world.bodies.at<OwnedRows>(body).parts, world.tools.at<OwnedRows>(tool),
+          relative(world.bodies.at<Pose>(body), world.tools.at<ToolPose>(tool).now)};
       find_points(search);
       const Range points{first, static_cast<std::uint32_t>(scratch.points.size()) - first};
       const auto first_near = static_cast<std::uint32_t>(scratch.near_pairs.size());

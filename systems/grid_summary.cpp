@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "systems/distance_shapes.hpp"
 #include "systems/frames.hpp"
 #include "systems/gradient_length.hpp"
+#include "systems/lanes.hpp"
 #include "systems/widest.hpp"
 
 namespace torsion {
@@ -16,8 +16,7 @@ namespace {
 
 /// Sums over a grid's cells in contact, every eighth one after another.
 struct alignas(64) GeometryLanes {
-  using Lane = std::array<double, 8>;
-  Lane area{}, volume{}, depth{}, x{}, y{}, z{}, normal_x{}, normal_y{}, normal_z{};
+  Lanes area{}, volume{}, depth{}, x{}, y{}, z{}, normal_x{}, normal_y{}, normal_z{};
 };
 
 /// Reads columns up to a multiple of 8 cells, as Scratch lays them.
@@ -67,10 +66,6 @@ void add_up(const CellColumns& columns, double cell_area, std::size_t count,
   }
 }
 
-double sum(const GeometryLanes::Lane& lane) {
-  return std::accumulate(lane.begin(), lane.end(), 0.0);
-}
-
 }  // namespace
 
 RegionGeometry summarize_cells(const Grid& grid) {
@@ -80,17 +75,17 @@ RegionGeometry summarize_cells(const Grid& grid) {
   geometry.equivalent_point = grid.frame.origin;
   geometry.rest_point = grid.frame.origin;
   geometry.mean_normal = grid.frame.normal;
-  geometry.area = sum(lanes.area);
+  geometry.area = sum_of(lanes.area);
   geometry.largest_depth = *std::ranges::max_element(lanes.depth);
   if (geometry.area <= 0.0) {
     return geometry;
   }
-  const glm::dvec3 first_moment(sum(lanes.x), sum(lanes.y), sum(lanes.z));
+  const glm::dvec3 first_moment(sum_of(lanes.x), sum_of(lanes.y), sum_of(lanes.z));
   geometry.equivalent_point = grid_to_body(grid.frame, first_moment / geometry.area);
-  geometry.mean_depth = sum(lanes.volume) / geometry.area;
+  geometry.mean_depth = sum_of(lanes.volume) / geometry.area;
   geometry.rest_point = geometry.equivalent_point + grid.frame.normal * geometry.mean_depth;
   geometry.radius = std::sqrt(geometry.area / std::numbers::pi);
-  const glm::dvec3 normal(sum(lanes.normal_x), sum(lanes.normal_y), sum(lanes.normal_z));
+  const glm::dvec3 normal(sum_of(lanes.normal_x), sum_of(lanes.normal_y), sum_of(lanes.normal_z));
   if (glm::length(normal) > 0.1 * geometry.area) {
     geometry.mean_normal = glm::normalize(tangent_to_body(grid.frame, glm::dvec2(normal)) +
                                           grid.frame.normal * normal.z);

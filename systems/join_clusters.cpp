@@ -20,7 +20,7 @@ namespace torsion {
 namespace {
 
 constexpr double kLeastCoverage = 0.1;
-constexpr double kLeastFacing = 0.9;  // cosine between the normals of regions that may be one
+constexpr double kLeastAgreement = 0.9;  // cosine between the normals of regions that may be one
 
 /// A region's covered cells, and which contact points lie on them.
 struct RegionCover {
@@ -123,7 +123,7 @@ std::uint32_t cluster_on(const RegionCover& cover, std::span<const ContactPoint>
 bool touch(const RegionCover& one, const RegionCover& other) {
   const double reach = glm::length(one.frame.half_size) + glm::length(other.frame.half_size);
   if (glm::distance(one.finder.origin, other.finder.origin) > reach ||
-      glm::dot(one.normal, other.normal) < kLeastFacing) {
+      glm::dot(one.normal, other.normal) < kLeastAgreement) {
     return false;
   }
   CellBits beside = other.bits();

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <numeric>
 
 #include "systems/distance_shapes.hpp"
 
@@ -19,6 +20,10 @@ inline double largest_of(const Lanes& lanes) {
     most = larger(lane, most);
   }
   return most;
+}
+
+inline double sum_of(const Lanes& lanes) {
+  return std::accumulate(lanes.begin(), lanes.end(), 0.0);
 }
 
 }  // namespace torsion

@@ -30,7 +30,7 @@ struct CellBox {
 };
 
 /// The cells with pressure, of rims those of which most are in contact.
-struct LoadedCells {
+struct LoadedArea {
   CellBox box;  // empty when there are none
   CellMoments moments;
 };
@@ -42,10 +42,10 @@ bool is_loaded(const CellTraction& traction, const CellGeometry& geometry, doubl
 }
 
 /// @param least  share of a cell that is in contact
-LoadedCells loaded_cells(const Grid& grid, double least) {
+LoadedArea loaded_cells(const Grid& grid, double least) {
   const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
   const auto side = static_cast<int>(grid.side);
-  LoadedCells loaded{{{side, side}, {0, 0}}, {}};
+  LoadedArea loaded{{{side, side}, {0, 0}}, {}};
   for (int j = 0; j < side; ++j) {
     const CellTraction* const row = &tractions[static_cast<std::size_t>(j * side)];
     const CellGeometry* const places = &grid.cells[static_cast<std::size_t>(j * side)];
@@ -164,7 +164,7 @@ bool shift_frame(const Grid& grid, const CellBox& box, CellMove& move) {
 }
 
 /// How the loaded cells lie in their grid.
-struct Fit {
+struct GridFit {
   double least = kMostly;    // share of a cell that is in contact, with which it counts
   CellBox box;               // of them, and of lobes outside of the grid
   bool has_lobes = false;    // there are some
@@ -214,9 +214,9 @@ bool fill_their_box(const Grid& grid, double least, double loaded, double angle)
   return loaded * cell_area(grid.frame, grid.side) > kRectangular * size.x * size.y;
 }
 
-Fit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& contact) {
-  Fit fit;
-  LoadedCells loaded = loaded_cells(grid, fit.least);
+GridFit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& contact) {
+  GridFit fit;
+  LoadedArea loaded = loaded_cells(grid, fit.least);
   if (loaded.box.end.x == 0) {
     // Not one: an edge or a corner, finer than the cells.
     fit.least = 0.0;
@@ -256,7 +256,7 @@ Fit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& contact) 
 }
 
 /// Lays the grid along the loaded cells' axes and around them.
-void lay_frame(const Grid& grid, const RegionPoints& contact, const Fit& fit, double depth) {
+void lay_frame(const Grid& grid, const RegionPoints& contact, const GridFit& fit, double depth) {
   const PlaneBox loaded = fit.axes.angle == 0.0 ? extent_of(grid, fit.box)
                                                 : extent_along(grid, fit.least, fit.axes.angle);
   turn_axes(grid.frame, fit.axes.angle);
@@ -302,7 +302,7 @@ glm::dvec2 patch_half_size(const glm::dvec2& least) {
 
 void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const Grid grid = grid_of(context, region);
-  const Fit fit = fit_of(grid, region, contact);
+  const GridFit fit = fit_of(grid, region, contact);
   if (fit.box.end.x == 0 || !(fit.cut || fit.too_small || fit.other_shape || fit.axes.is_askew())) {
     return;
   }

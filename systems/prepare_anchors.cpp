@@ -13,6 +13,7 @@
 #include "systems/distance.hpp"
 #include "systems/fixed_volume.hpp"
 #include "systems/geometry/bounds.hpp"
+#include "systems/geometry/cross.hpp"
 
 namespace torsion {
 namespace {
@@ -209,10 +210,6 @@ RayEnd follow_ray(const Body& body, const glm::dvec3& start, const glm::dvec3& d
                           glm::dot(distance.gradient, axes.second));
   const double length = glm::length(normal);
   return {t, length > 0.05 ? normal / length : glm::dvec2(0.0)};
-}
-
-double cross(const glm::dvec2& a, const glm::dvec2& b) {
-  return a.x * b.y - a.y * b.x;
 }
 
 /// The outline's corner or bulge between two neighbouring ray ends, from its tangents there: a

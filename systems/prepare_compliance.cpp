@@ -116,12 +116,12 @@ void append_values(const Eigen::MatrixXd& matrix, std::size_t rows,
   }
 }
 
-constexpr double kFewestCells = 8.0;  // along any side (build_solid_grid)
+constexpr double kFewestGridCells = 8.0;  // along any side (build_solid_grid)
 
 /// Cells of a lattice over the bounds, in all.
 double cells_of(const glm::dvec3& extent, std::uint32_t along) {
   const double longest = std::max({extent.x, extent.y, extent.z});
-  const glm::dvec3 cells = glm::max(extent * (along / longest), glm::dvec3(kFewestCells));
+  const glm::dvec3 cells = glm::max(extent * (along / longest), glm::dvec3(kFewestGridCells));
   return cells.x * cells.y * cells.z;
 }
 
@@ -131,12 +131,12 @@ double across_wall(const glm::dvec3& extent, std::uint32_t elements, double wall
   const double longest = std::max({extent.x, extent.y, extent.z});
   double coarsest = 0.0;  // m
   for (int axis = 0; axis < 3; ++axis) {
-    const double cells = std::max(kFewestCells, elements * extent[axis] / longest);
+    const double cells = std::max(kFewestGridCells, elements * extent[axis] / longest);
     if (extent[axis] > 1.5 * wall) {
       coarsest = std::max(coarsest, extent[axis] / cells);
     }
   }
-  return coarsest > 0.0 ? wall / coarsest : kFewestCells;
+  return coarsest > 0.0 ? wall / coarsest : kFewestGridCells;
 }
 
 /// Of the bounds' volume, what is in the solid.

@@ -16,7 +16,8 @@
 namespace torsion {
 namespace {
 
-constexpr int kMostPasses = 10;  // of one grid in one step: a new region finds its size by doubling
+constexpr int kMostRegrids =
+    10;  // of one grid in one step: a new region finds its size by doubling
 constexpr double kSmallestBoxFill = 0.45;  // by the contact, else the grid is made smaller
 constexpr double kTurn = 0.5;              // of the angle by which a grid lies askew, in a step
 constexpr double kSettled =
@@ -97,7 +98,7 @@ PlaneBox align_grid(const Grid& grid, std::uint32_t region, const CellBits& cove
 /// @return whether the grid was laid anew
 bool fit_to_contact(const Grid& grid, std::uint32_t region, const RegionPoints& contact,
                     double start_depth, bool event_now) {
-  for (int pass = 0; pass < kMostPasses; ++pass) {
+  for (int pass = 0; pass < kMostRegrids; ++pass) {
     const CellBits covered = find_cells(grid, contact);
     PlaneBox box = covered_box(grid, covered);
     if (box.empty()) {

@@ -56,7 +56,8 @@ void halve_shared(World& world, std::uint32_t from, std::uint32_t region) {
 /// The region that was copied; its row may have changed since.
 std::uint32_t copied_from(const World& world, const PatchState& state) {
   const auto regions = world.regions.column<RegionIdentity>();
-  const auto found = std::ranges::find(regions, state.copy_of - 1, block_of);
+  const auto found = std::ranges::find(
+      regions, state.copy_of - 1, [](const RegionIdentity& region) { return block_of(region); });
   TORSION_ASSERT(found != regions.end());
   return static_cast<std::uint32_t>(found - regions.begin());
 }

@@ -10,7 +10,7 @@
 namespace torsion {
 namespace {
 
-constexpr int kMostSteps = 10;  // of Newton's method down to the tool's surface
+constexpr int kMostSurfaceSteps = 10;  // of Newton's method down to the tool's surface
 constexpr double kCloseEnough =
     0.02;                         // of a cell: where no cell steps farther, the step is the last
 constexpr double kAtRest = 1e-6;  // of a cell: one that steps less is left where it is
@@ -168,7 +168,7 @@ void find_tool_surface(const Grid& grid) {
   }
   const LeftCells& memory = grid.scratch.left_cells;
   LeftCells left = cells_left(memory, cell_length, columns.points.value, columns.points.z, {});
-  for (int step = 1; step < kMostSteps && !left.cells.empty(); ++step) {
+  for (int step = 1; step < kMostSurfaceSteps && !left.cells.empty(); ++step) {
     step_left_cells(grid, parts, frame, size, left);
     left = cells_left(memory, cell_length, left.points.value, left.points.z, left.cells);
   }

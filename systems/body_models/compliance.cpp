@@ -3,8 +3,6 @@
 #include <algorithm>
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <glm/geometric.hpp>
 
 #include "systems/body_models/dense_solve.hpp"
@@ -198,7 +196,7 @@ void sway(const CompliantBody& body, Stand& stand) {
   const Vector6 plain = stand.motion - now;
   const Eigen::Map<const Matrix6> own(footing.own.data());
   const Matrix6 newton = Matrix6::Identity() - own * wrench_by_place(stand);
-  const Vector6 step = newton.partialPivLu().solve(plain);
+  const Vector6 step = solve_lu(newton, plain);
   if (step.allFinite() && step.head<3>().norm() <= plain.head<3>().norm()) {
     stand.motion = now + step;
   }
@@ -271,11 +269,11 @@ void find_reactions(const CompliantBody& body,
     const auto at = static_cast<Eigen::Index>(6 * i);
     const Matrix6 block = inverse.block<6, 6>(at, at);
     Matrix6 answered = Matrix6::Zero();  // S - I, S the Schur complement
-    Eigen::SelfAdjointEigenSolver<Matrix6> solver(0.5 * (block + block.transpose()));
+    const EigenSystem6 system = eigen_system(0.5 * (block + block.transpose()));
     // The others take away at most what there is.
     const Vector6 left =
-        (solver.eigenvalues().cwiseMax(1e-12).cwiseInverse().array() - 1.0).cwiseMax(0.0).matrix();
-    answered = solver.eigenvectors() * left.asDiagonal() * solver.eigenvectors().transpose();
+        (system.values.cwiseMax(1e-12).cwiseInverse().array() - 1.0).cwiseMax(0.0).matrix();
+    answered = system.vectors * left.asDiagonal() * system.vectors.transpose();
     const Eigen::Map<const Matrix6> own(footing.own.data());
     const Matrix6 motion = own - roots[i].inverse * answered * roots[i].inverse;
     if (motion.allFinite()) {

@@ -13,7 +13,8 @@
 namespace torsion {
 namespace {
 
-constexpr std::size_t kNearest = 14;  // ports that a footing has at least, if the body has them
+constexpr std::size_t kNearestPorts =
+    14;                               // ports that a footing has at least, if the body has them
 constexpr double kBeyond = 1.3;       // reach over the contact's longer half axis
 constexpr double kLeastFacing = 0.4;  // cosine between a port's normal and the contact's
 constexpr double kMoved = 0.04;       // of its reach: a footing moved farther is laid anew
@@ -28,15 +29,16 @@ double stiffer(int degree, double size) {
   return base * std::pow(size, -2.0 * degree);
 }
 
-/// Distance that takes in kNearest ports; a little more than the farthest where there are fewer.
+/// Distance that takes in kNearestPorts ports; a little more than the farthest where there are
+/// fewer.
 double distance_to_enough(const PortCompliance& body, const ContactEllipse& contact) {
-  std::array<double, kNearest> nearest;
+  std::array<double, kNearestPorts> nearest;
   nearest.fill(kNeverSeen);
   for (const CompliancePort& port : body.ports) {
     const double distance = seen_distance(port, contact.center, contact.normal);
     if (distance < nearest.back()) {
       nearest.back() = distance;
-      for (std::size_t i = kNearest - 1; i > 0 && nearest[i] < nearest[i - 1]; --i) {
+      for (std::size_t i = kNearestPorts - 1; i > 0 && nearest[i] < nearest[i - 1]; --i) {
         std::swap(nearest[i], nearest[i - 1]);
       }
     }

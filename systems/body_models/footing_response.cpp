@@ -5,14 +5,12 @@
 namespace torsion {
 namespace {
 
-constexpr std::size_t kColumn = kSupportColumn;
-
 /// Values of one port or one row: the terms side by side in vectors, so that no sum is split.
-using TermRow = std::array<double, kColumn>;
+using TermRow = std::array<double, kSupportColumn>;
 
 TORSION_WIDEST
-void add_scaled(double scale, const TermRow& __restrict from, double* __restrict to) {
-  for (std::size_t k = 0; k < kColumn; ++k) {
+void add_terms(double scale, const TermRow& __restrict from, double* __restrict to) {
+  for (std::size_t k = 0; k < kSupportColumn; ++k) {
     to[k] += scale * from[k];
   }
 }
@@ -44,13 +42,14 @@ void find_response(const PortCompliance& body, const Footing& footing, FootingRe
           const double value = body.values[(3 * std::size_t{footing.ports[to]} + axis) * side +
                                            3 * std::size_t{footing.ports[from]} + force]
                                    .value;
-          add_scaled(footing.share * value, fit[from], moved[axis].data());
+          add_terms(footing.share * value, fit[from], moved[axis].data());
         }
       }
       for (std::size_t moment = 0; moment < kSupportTerms; ++moment) {
-        double* const column = &response.terms[(force * kColumn + moment) * 3 * kColumn];
+        double* const column =
+            &response.terms[(force * kSupportColumn + moment) * 3 * kSupportColumn];
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          add_scaled(moved[axis][moment], fit[to], column + axis * kColumn);
+          add_terms(moved[axis][moment], fit[to], column + axis * kSupportColumn);
         }
       }
     }

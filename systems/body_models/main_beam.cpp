@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kStations = static_cast<double>(kBeamStations);
 
-void add_scaled(const BeamSection& section, double weight, BeamSection& sum) {
+void add_section(const BeamSection& section, double weight, BeamSection& sum) {
   sum.area += weight * section.area;
   sum.bending_xx += weight * section.bending_xx;
   sum.bending_yy += weight * section.bending_yy;
@@ -48,13 +48,13 @@ void interpolate_sections(const World& world, Range anchors, const glm::dvec3& t
     sum += weight;
     const std::size_t first = static_cast<std::size_t>(anchors.first + j) * kBeamStations;
     for (std::size_t k = 0; k < kBeamStations; ++k) {
-      add_scaled(sections[first + k], weight, beam.sections[k]);
+      add_section(sections[first + k], weight, beam.sections[k]);
     }
   }
   const double scale = 1.0 / sum;
   for (BeamSection& section : beam.sections) {
     BeamSection mean;
-    add_scaled(section, scale, mean);
+    add_section(section, scale, mean);
     section = mean;
   }
   beam.has_sections = true;

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <glm/geometric.hpp>
 
 #include "systems/body_models/layer_motion.hpp"
@@ -30,17 +29,17 @@ constexpr double kStiffest = -0.75;
 /// A symmetric compliance over the contact's own: eigenvalues and what makes them a compliance
 /// again.
 struct RelativeCompliance {
-  Eigen::SelfAdjointEigenSolver<Matrix6> solver;
+  EigenSystem6 system;
   Matrix6 back;
 
   RelativeCompliance(const CompliantBody& body, const Stand& stand, const Matrix6& motion) {
     const StiffnessRoot root = stiffness_root(body, stand);
     const Matrix6 scaled = root.root * motion * root.root;
-    solver.compute(0.5 * (scaled + scaled.transpose()));
-    back = root.inverse * solver.eigenvectors();
+    system = eigen_system(0.5 * (scaled + scaled.transpose()));
+    back = root.inverse * system.vectors;
   }
   [[nodiscard]] Matrix6 at_least(double least) const {
-    return back * solver.eigenvalues().cwiseMax(least).asDiagonal() * back.transpose();
+    return back * system.values.cwiseMax(least).asDiagonal() * back.transpose();
   }
 };
 
@@ -106,7 +105,7 @@ void find_own_motion(const CompliantBody& body, const Stand& stand, Footing& foo
   Matrix6 motion = motion_between(body.ports, footing, footing);
   motion.topLeftCorner<3, 3>() += motion_by_bend(body, stand);
   const RelativeCompliance relative(body, stand, motion);
-  const double least = relative.solver.eigenvalues()[0];
+  const double least = relative.system.values[0];
   footing.share = std::min(1.0, kStiffest / std::min(least, -1e-300));
   footing.on_layer = 0;
   Eigen::Map<Matrix6>(footing.own.data()) = relative.at_least(0.0);

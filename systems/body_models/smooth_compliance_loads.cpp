@@ -6,12 +6,12 @@
 #include <numeric>
 #include <utility>
 
-#include <Eigen/QR>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "systems/least_squares.hpp"
 #include "systems/matrix6.hpp"
 #include "systems/smooth_step.hpp"
 
@@ -204,7 +204,7 @@ void add_left_out(const SolidGrid& grid, const Port& port, LeftOut left_out, Por
       spread += area * lever * lever.transpose();
     }
   }
-  const Eigen::MatrixXd amounts = spread.completeOrthogonalDecomposition().solve(left_out.wrench);
+  const Eigen::MatrixXd amounts = least_norm_solution(spread, left_out.wrench);
   for (std::size_t node = 0; node < grid.nodes.size(); ++node) {
     const double area = left_out.area[static_cast<Eigen::Index>(node)];
     if (area > 0.0) {
@@ -295,7 +295,7 @@ MotionFit fit_motion(const SolidGrid& grid, const glm::dvec3& point) {
         at.y * at.z, at.z * at.x;
     terms.row(k) *= trust[k];
   }
-  const Eigen::MatrixXd inverse = terms.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd inverse = pseudo_inverse(terms);
   fit.weights = inverse.topRows<4>() * trust.asDiagonal();
   for (int axis = 0; axis < 3; ++axis) {
     fit.weights.row(1 + axis) /= grid.spacing[axis];

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "systems/contact_models/friction_decay.hpp"
 #include "systems/distance_shapes.hpp"
@@ -123,10 +122,6 @@ void add_up(const BrushState& brush, const BrushBlock& __restrict block,
   }
 }
 
-double sum(const BrushLanes::Lane& lane) {
-  return std::accumulate(lane.begin(), lane.end(), 0.0);
-}
-
 }  // namespace
 
 void update_brushes(const BrushState& brush, BrushBlock& block, BrushLanes& lanes) {
@@ -146,14 +141,14 @@ void update_brushes(const BrushState& brush, BrushBlock& block, BrushLanes& lane
 
 BrushSums total(const BrushLanes& lanes) {
   BrushSums sums;
-  sums.area = sum(lanes.area);
-  sums.stuck_area = sum(lanes.stuck_area);
-  sums.force = {sum(lanes.force_x), sum(lanes.force_y)};
-  sums.couple = sum(lanes.couple);
-  sums.cut = {sum(lanes.cut_x), sum(lanes.cut_y)};
+  sums.area = sum_of(lanes.area);
+  sums.stuck_area = sum_of(lanes.stuck_area);
+  sums.force = {sum_of(lanes.force_x), sum_of(lanes.force_y)};
+  sums.couple = sum_of(lanes.couple);
+  sums.cut = {sum_of(lanes.cut_x), sum_of(lanes.cut_y)};
   sums.moved = *std::ranges::max_element(lanes.moved);
-  sums.stuck_couple = sum(lanes.stuck_couple);
-  sums.stuck_stiffness = sum(lanes.stuck_stiffness);
+  sums.stuck_couple = sum_of(lanes.stuck_couple);
+  sums.stuck_stiffness = sum_of(lanes.stuck_stiffness);
   return sums;
 }
 

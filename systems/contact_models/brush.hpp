@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "ecs/components.hpp"
+#include "systems/lanes.hpp"
 
 namespace torsion {
 
@@ -67,9 +68,8 @@ struct BrushSums {
 
 /// The same for every eighth cell, one after another.
 struct alignas(64) BrushLanes {
-  using Lane = std::array<double, 8>;
-  Lane area{}, stuck_area{}, force_x{}, force_y{}, couple{}, cut_x{}, cut_y{}, moved{};
-  Lane stuck_couple{}, stuck_stiffness{};
+  Lanes area{}, stuck_area{}, force_x{}, force_y{}, couple{}, cut_x{}, cut_y{}, moved{};
+  Lanes stuck_couple{}, stuck_stiffness{};
 };
 
 /// The return map of every cell (physics C2 points 5 and 6): elastic trial, capped at the friction

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 #include <glm/geometric.hpp>
 
 #include "systems/frames.hpp"
@@ -22,9 +22,10 @@ constexpr std::size_t moment(int p, int q) {
   return static_cast<std::size_t>(degree * (degree + 1) / 2 + q);
 }
 
-/// Moments of the cells' places, in half grid sizes, and of their depths: by weight_of and, of the
-/// area, by the share in contact alone. Of the middle by that share and the square of the depth.
-struct Moments {
+/// PlaceMoments of the cells' places, in half grid sizes, and of their depths: by weight_of and, of
+/// the area, by the share in contact alone. Of the middle by that share and the square of the
+/// depth.
+struct PlaceMoments {
   std::array<double, kMoments> of_place{};
   std::array<double, 6> of_depth{};
   std::array<double, 6> of_area{};
@@ -50,13 +51,13 @@ double weight_of(double relative) {
   return deep * deep + kRim / (square * square);
 }
 
-Moments add_cells(std::uint32_t side, std::span<const CellGeometry> cells, double largest) {
-  Moments sums;
+PlaceMoments add_cells(std::uint32_t side, std::span<const CellGeometry> cells, double largest) {
+  PlaceMoments sums;
   const double step = 2.0 / static_cast<double>(side);
   std::uint32_t cell = 0;
   for (std::uint32_t j = 0; j < side; ++j) {
     const double y = (static_cast<double>(j) + 0.5) * step - 1.0;
-    // Moments of one row in x, which y then multiplies.
+    // PlaceMoments of one row in x, which y then multiplies.
     std::array<double, 5> row{};
     std::array<double, 3> row_depth{};
     std::array<double, 3> row_area{};
@@ -97,7 +98,7 @@ Moments add_cells(std::uint32_t side, std::span<const CellGeometry> cells, doubl
 }
 
 /// Coefficients of 1, x, y, x^2, x y, y^2.
-Vector6 solve(const Moments& sums) {
+Vector6 solve(const PlaceMoments& sums) {
   constexpr std::array<std::array<int, 2>, 6> kPowers{
       {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};
   Matrix6 matrix;
@@ -112,7 +113,7 @@ Vector6 solve(const Moments& sums) {
   }
   // Few cells, or cells in a row, leave some of it open: those stay near zero.
   matrix.diagonal().array() += 1e-12 * matrix(0, 0);
-  return matrix.ldlt().solve(right);
+  return solve_ldlt(matrix, right);
 }
 
 /// Depth over a place.
@@ -132,7 +133,7 @@ struct Area {
   Eigen::Matrix2d spread;
 };
 
-Area area_of(const Moments& sums, std::uint32_t side, const glm::dvec2& scale) {
+Area area_of(const PlaceMoments& sums, std::uint32_t side, const glm::dvec2& scale) {
   const auto mean = [&sums](int p, int q) {
     return sums.of_area[moment(p, q)] / sums.of_area[0];
   };
@@ -185,7 +186,7 @@ ContactShape fit_contact_shape(const RegionFrame& frame, std::uint32_t side,
   if (largest <= 0.0) {
     return shape;
   }
-  const Moments sums = add_cells(side, cells, largest);
+  const PlaceMoments sums = add_cells(side, cells, largest);
   const Vector6 c = solve(sums);
   const glm::dvec2 scale = frame.half_size;
   // depth = c0 + g . x - x' K x / 2

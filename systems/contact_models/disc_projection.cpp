@@ -15,12 +15,12 @@
 namespace torsion {
 namespace {
 
-constexpr int kMostPasses = 16;      // of Newton's method: two or three as a rule, ten seen
-constexpr int kMostLengths = 12;     // of one of its steps
-constexpr double kBalanced = 1e-6;   // of what friction moves a cell by on its own
-constexpr double kRounding = 1e-14;  // of the motions
-constexpr double kUphill = 0.5;      // of the slope downhill: then a step was too long
-constexpr double kTiny = 1e-300;     // keeps 0 / 0 away
+constexpr int kMostNewtonPasses = 16;  // of Newton's method: two or three as a rule, ten seen
+constexpr int kMostLengths = 12;       // of one of its steps
+constexpr double kBalanced = 1e-6;     // of what friction moves a cell by on its own
+constexpr double kRounding = 1e-14;    // of the motions
+constexpr double kUphill = 0.5;        // of the slope downhill: then a step was too long
+constexpr double kTiny = 1e-300;       // keeps 0 / 0 away
 
 TORSION_WIDEST
 void find_load(std::size_t count, const double* place_x, const double* place_y, const double* x,
@@ -123,7 +123,7 @@ double farthest(const DiscColumns& columns, const SurfaceMotion& motion) {
 }
 
 /// Where the search is.
-struct Search {
+struct NewtonSearch {
   BodyAnswer answer;
   // Of all of the body's motion, and of the load that makes it, less those by the results.
   SurfaceMotion lacking{0.0};
@@ -131,7 +131,7 @@ struct Search {
 };
 
 void go_to(const BodyAnswer& answer, const BodyInBalance& body, const double* limit,
-           DiscColumns& columns, Search& search) {
+           DiscColumns& columns, NewtonSearch& search) {
   project(columns.place_x.size(), answer.motion, columns.place_x.data(), columns.place_y.data(),
           columns.stiffness.data(), limit, columns.trial_x.data(), columns.trial_y.data(),
           columns.result_x.data(), columns.result_y.data(), columns.answer_xx.data(),
@@ -143,8 +143,8 @@ void go_to(const BodyAnswer& answer, const BodyInBalance& body, const double* li
 
 /// A step of Newton's method, shortened where the function goes up at its end.
 void take_newton_step(const BodyInBalance& body, const double* limit, DiscColumns& columns,
-                      Search& search) {
-  const Search from = search;
+                      NewtonSearch& search) {
+  const NewtonSearch from = search;
   const glm::dmat3 answers = answers_of(columns);
   const SurfaceMotion way = -solved(glm::dmat3(1.0) + body.yields * answers, from.lacking);
   const SurfaceLoad by_load = -(from.lacking_load + answers * way);  // which makes that way
@@ -190,9 +190,10 @@ BodyAnswer project_in_balance(const BodyInBalance& body, const double* limit,
   const double close =
       kBalanced * by_friction + kRounding * (farthest(columns, body.yields * body.known) +
                                              farthest(columns, body.yields * body.before));
-  Search search;
+  NewtonSearch search;
   go_to({SurfaceMotion(0.0), body.known}, body, limit, columns, search);
-  for (int pass = 0; pass < kMostPasses && farthest(columns, search.lacking) > close; ++pass) {
+  for (int pass = 0; pass < kMostNewtonPasses && farthest(columns, search.lacking) > close;
+       ++pass) {
     take_newton_step(body, limit, columns, search);
   }
   return {search.answer.motion, search.answer.load - search.lacking_load};

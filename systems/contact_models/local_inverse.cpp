@@ -6,23 +6,24 @@
 namespace torsion {
 namespace {
 
-constexpr std::size_t kUnknowns = 4;  // here, along x, along y, corner: the rest is symmetry
+constexpr std::size_t kBlockValues = 4;  // here, along x, along y, corner: the rest is symmetry
 
 /// Gauss' elimination; the matrix is that of a positive definite one under symmetry, so it needs no
 /// pivots.
-std::array<double, kUnknowns> solve(std::array<std::array<double, kUnknowns>, kUnknowns> matrix,
-                                    std::array<double, kUnknowns> values) {
-  for (std::size_t k = 0; k < kUnknowns; ++k) {
-    for (std::size_t row = k + 1; row < kUnknowns; ++row) {
+std::array<double, kBlockValues> solve(
+    std::array<std::array<double, kBlockValues>, kBlockValues> matrix,
+    std::array<double, kBlockValues> values) {
+  for (std::size_t k = 0; k < kBlockValues; ++k) {
+    for (std::size_t row = k + 1; row < kBlockValues; ++row) {
       const double factor = matrix[row][k] / matrix[k][k];
-      for (std::size_t column = k; column < kUnknowns; ++column) {
+      for (std::size_t column = k; column < kBlockValues; ++column) {
         matrix[row][column] -= factor * matrix[k][column];
       }
       values[row] -= factor * values[k];
     }
   }
-  for (std::size_t k = kUnknowns; k-- > 0;) {
-    for (std::size_t column = k + 1; column < kUnknowns; ++column) {
+  for (std::size_t k = kBlockValues; k-- > 0;) {
+    for (std::size_t column = k + 1; column < kBlockValues; ++column) {
       values[k] -= matrix[k][column] * values[column];
     }
     values[k] /= matrix[k][k];

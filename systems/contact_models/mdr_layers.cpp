@@ -95,7 +95,8 @@ void project(const MdrFoundation& before, const MdrFoundation& now, double scale
   deflections = found;
 }
 
-constexpr double kRounding = 1e-9;  // of a layer's largest load: by so much none slips that is held
+constexpr double kLoadRounding =
+    1e-9;  // of a layer's largest load: by so much none slips that is held
 
 /// Where slip ends, over the contact's radius: on the edge between the pieces that slip and those
 /// that do not (two layers a piece). Sliding and turning have edges of their own; where both go on
@@ -173,7 +174,7 @@ MdrForces move_layers(const MdrPlaces& places, const LimitCurve& curve, const Md
         layer.turn *= load.y > 0.0 ? kept.y / load.y : 0.0;
         forces.slipped +=
             share * (glm::distance(from.shift, layer.shift) + a * std::abs(from.turn - layer.turn));
-        slipping = glm::distance(kept, load) > kRounding ? k + 1 : slipping;
+        slipping = glm::distance(kept, load) > kLoadRounding ? k + 1 : slipping;
       }
     }
     forces.force -= slide_stiffness * places.shift.stiffness[k] * layer.shift;

@@ -20,12 +20,12 @@ struct SpringLoads {
 };
 
 /// Complete elliptic integrals of m = 1 - x^2 / a^2.
-struct Integrals {
+struct RingIntegrals {
   double first = 0.0;
   double second = 0.0;
 };
 
-Integrals integrals_at(double place) {
+RingIntegrals ring_integrals_at(double place) {
   const double modulus = std::sqrt(std::max(0.0, 1.0 - place * place));
   return {std::comp_ellint_1(modulus), std::comp_ellint_2(modulus)};
 }
@@ -40,13 +40,13 @@ struct Loads {
   double power = 1.0;
   double scale = 1.0;  // takes back what the power changes in the load of all
 
-  [[nodiscard]] SpringLoads at(double place, const Integrals& integrals) const {
+  [[nodiscard]] SpringLoads at(double place, const RingIntegrals& integrals) const {
     const double bend = integrals.first - integrals.second;
     const double round = 3.0 * scale * (power == 1.0 ? bend : std::pow(bend, power));
     return {std::lerp(1.5 * (1.0 - place * place), 1.0, flat_share),
             place * place * std::lerp(round, integrals.first, flat_share)};
   }
-  [[nodiscard]] SpringLoads at(double place) const { return at(place, integrals_at(place)); }
+  [[nodiscard]] SpringLoads at(double place) const { return at(place, ring_integrals_at(place)); }
 };
 
 constexpr std::size_t kFine = 20000;
@@ -56,7 +56,7 @@ double fine_place(std::size_t i) {
 }
 
 /// @param fine  (kFine) at fine_place
-Loads make_loads(double flat_share, double power, const std::vector<Integrals>& fine) {
+Loads make_loads(double flat_share, double power, const std::vector<RingIntegrals>& fine) {
   const Loads round{0.0, power, 1.0};
   double sum = 0.0;
   for (std::size_t i = 0; i < kFine; ++i) {
@@ -172,7 +172,7 @@ void divide_piece(const Loads& loads, std::size_t k, MdrPlaces& places) {
   places.share[2 * k + 1] = (1.0 - wanted) * share;
 }
 
-MdrPlaces make_places(const Loads& loads, const std::vector<Integrals>& fine) {
+MdrPlaces make_places(const Loads& loads, const std::vector<RingIntegrals>& fine) {
   // Loads beyond place i / kFine, from the rim inwards.
   std::vector<double> shift_beyond(kFine + 1, 0.0);
   std::vector<double> turn_beyond(kFine + 1, 0.0);
@@ -205,9 +205,9 @@ void add(const std::array<double, N>& values, double share, std::array<double, N
 }  // namespace
 
 MdrTables make_mdr_tables() {
-  std::vector<Integrals> fine(kFine);
+  std::vector<RingIntegrals> fine(kFine);
   for (std::size_t i = 0; i < kFine; ++i) {
-    fine[i] = integrals_at(fine_place(i));
+    fine[i] = ring_integrals_at(fine_place(i));
   }
   MdrTables tables;
   for (std::size_t shape = 0; shape < MdrTables::kShapes; ++shape) {

@@ -10,12 +10,12 @@ namespace {
 
 // Of the body's smallest side and of the beam's length: beyond it no small-strain law means
 // anything, and the cubic term would grow without bound.
-constexpr double kDeepest = 0.5;
+constexpr double kDeepestOfSide = 0.5;
 
 double deepest_allowed(const Bounds& bounds, const BeamSummary& beam) {
   const glm::dvec3 size = bounds.highest - bounds.lowest;
   const double side = std::min({size.x, size.y, size.z});
-  return kDeepest * (beam.length > 0.0 ? std::min(side, beam.length) : side);
+  return kDeepestOfSide * (beam.length > 0.0 ? std::min(side, beam.length) : side);
 }
 
 }  // namespace

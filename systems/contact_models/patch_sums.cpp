@@ -13,8 +13,9 @@ void add(std::span<double> to, double scale, const std::vector<double>& values) 
 }
 
 /// displacement = what the sources do by one table.
-void sum_of(const PatchProblem& problem, const InfluenceSources& sources, InfluenceKind kind,
-            const std::vector<double>& scales, std::vector<double>& displacement) {
+void sum_influences(const PatchProblem& problem, const InfluenceSources& sources,
+                    InfluenceKind kind, const std::vector<double>& scales,
+                    std::vector<double>& displacement) {
   sum_influence(block_of(problem.influences), sources, problem.influences.of(kind), scales.data(),
                 nullptr, displacement.data());
 }
@@ -27,7 +28,7 @@ void sum_tractions(const PatchProblem& problem, const InfluenceSources& sources,
     work.scales[k] = work.scales_x[k] + work.scales_y[k];
   }
   const double* const both = work.moves_both.data();
-  sum_of(problem, sources, InfluenceKind::kXY, work.scales, work.moves_both);
+  sum_influences(problem, sources, InfluenceKind::kXY, work.scales, work.moves_both);
   sum_influence(block, sources, tables.of(InfluenceKind::kXXLessXY), work.scales_x.data(), both,
                 work.moves_x.data());
   sum_influence(block, sources, tables.of(InfluenceKind::kYYLessXY), work.scales_y.data(), both,
@@ -129,8 +130,8 @@ void add_sideways(const PatchProblem& problem, const PatchColumns& columns,
                   std::span<const double> change, PatchWork& work) {
   const InfluenceSources sources = gather_sources(problem, change, {}, work);
   // Minus: by reciprocity (influence.hpp).
-  sum_of(problem, sources, InfluenceKind::kZX, work.scales_x, work.moves_x);
-  sum_of(problem, sources, InfluenceKind::kZY, work.scales_x, work.moves_y);
+  sum_influences(problem, sources, InfluenceKind::kZX, work.scales_x, work.moves_x);
+  sum_influences(problem, sources, InfluenceKind::kZY, work.scales_x, work.moves_y);
   add(columns.moved_x, -1.0, work.moves_x);
   add(columns.moved_y, -1.0, work.moves_y);
 }
@@ -139,8 +140,8 @@ void add_depression(const PatchProblem& problem, const PatchColumns& columns,
                     std::span<const double> change_x, std::span<const double> change_y,
                     PatchWork& work) {
   const InfluenceSources sources = gather_sources(problem, change_x, change_y, work);
-  sum_of(problem, sources, InfluenceKind::kZX, work.scales_x, work.moves_x);
-  sum_of(problem, sources, InfluenceKind::kZY, work.scales_y, work.moves_y);
+  sum_influences(problem, sources, InfluenceKind::kZX, work.scales_x, work.moves_x);
+  sum_influences(problem, sources, InfluenceKind::kZY, work.scales_y, work.moves_y);
   add(columns.depression, 1.0, work.moves_x);
   add(columns.depression, 1.0, work.moves_y);
 }
@@ -148,7 +149,7 @@ void add_depression(const PatchProblem& problem, const PatchColumns& columns,
 void add_pressure(const PatchProblem& problem, const PatchColumns& columns,
                   std::span<const double> change, PatchWork& work) {
   const InfluenceSources sources = gather_sources(problem, change, {}, work);
-  sum_of(problem, sources, InfluenceKind::kZZ, work.scales_x, work.moves_x);
+  sum_influences(problem, sources, InfluenceKind::kZZ, work.scales_x, work.moves_x);
   add(columns.depression, 1.0, work.moves_x);
   add_rims(problem, InfluenceKind::kZZ, 1.0, change, columns.depression);
   if (problem.coupled) {
@@ -170,8 +171,8 @@ void add_tractions(const PatchProblem& problem, const PatchColumns& columns,
 }
 
 void move_by_pressure(const PatchProblem& problem, PatchWork& work) {
-  sum_of(problem, gather_sources(problem, work.step_x, {}, work), InfluenceKind::kZZ, work.scales_x,
-         work.moves_x);
+  sum_influences(problem, gather_sources(problem, work.step_x, {}, work), InfluenceKind::kZZ,
+                 work.scales_x, work.moves_x);
   add_rims(problem, InfluenceKind::kZZ, 1.0, work.step_x, work.moves_x);
   add_support(problem.support, {{}, {}, work.step_x}, {{}, {}, work.moves_x});
 }

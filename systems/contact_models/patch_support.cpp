@@ -18,14 +18,13 @@
 namespace torsion {
 namespace {
 
-constexpr std::size_t kColumn = kSupportColumn;
 // Of a body's compliances over those of its contact (yielding_ratio): where the solver has to know.
 constexpr double kSoft = 0.5;
 using Half = double __attribute__((vector_size(sizeof(double) * kPatchLanes / 2)));
 
 /// Moments of tractions with the terms, sums over the cells.
 /// @param cells    a multiple of kPatchLanes, of terms and tractions
-/// @param moments  (kColumn) out
+/// @param moments  (kSupportColumn) out
 TORSION_WIDEST
 void find_moments(const double* __restrict terms, const double* __restrict traction,
                   std::size_t cells, double* __restrict moments) {
@@ -50,12 +49,12 @@ void find_moments(const double* __restrict terms, const double* __restrict tract
 TORSION_WIDEST
 void respond(const double* __restrict response, const double* __restrict moments,
              double* __restrict polynomials) {
-  constexpr std::size_t kVectors = 3 * kColumn / kPatchLanes;
+  constexpr std::size_t kVectors = 3 * kSupportColumn / kPatchLanes;
   Wide sums[kVectors] = {};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
-      const double moment = moments[axis * kColumn + k];
-      const double* const column = response + (axis * kColumn + k) * 3 * kColumn;
+      const double moment = moments[axis * kSupportColumn + k];
+      const double* const column = response + (axis * kSupportColumn + k) * 3 * kSupportColumn;
       for (std::size_t row = 0; row < kVectors; ++row) {
         Wide value;
         std::memcpy(&value, column + row * kPatchLanes, sizeof value);
@@ -173,7 +172,7 @@ void add_answer(const PatchSupport& support, const SupportPolynomials& moments, 
   const Footing& footing = *support.footing;
   const RegionReaction& reaction = *support.reaction;
   const auto moment = [&moments](std::size_t k) {
-    return glm::dvec3(moments[k], moments[kColumn + k], moments[2 * kColumn + k]);
+    return glm::dvec3(moments[k], moments[kSupportColumn + k], moments[2 * kSupportColumn + k]);
   };
   const glm::dvec3 arm_x = footing.reach * footing.tangent_x;
   const glm::dvec3 arm_y = footing.reach * footing.tangent_y;
@@ -192,7 +191,7 @@ void add_answer(const PatchSupport& support, const SupportPolynomials& moments, 
                                         glm::cross(rotation, arm_x), glm::cross(rotation, arm_y)};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < terms.size(); ++k) {
-      polynomials[axis * kColumn + k] += terms[k][static_cast<int>(axis)];
+      polynomials[axis * kSupportColumn + k] += terms[k][static_cast<int>(axis)];
     }
   }
 }
@@ -279,12 +278,12 @@ SupportMotion support_by(const PatchSupport& support, const PatchField& traction
       continue;
     }
     const glm::dvec3 way = support.area * support.to_body[axis];
-    std::array<double, kColumn> sums{};
+    std::array<double, kSupportColumn> sums{};
     find_moments(support.terms.data(), along.data(), support.cells, sums.data());
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
       moments[k] += way.x * sums[k];
-      moments[kColumn + k] += way.y * sums[k];
-      moments[2 * kColumn + k] += way.z * sums[k];
+      moments[kSupportColumn + k] += way.y * sums[k];
+      moments[2 * kSupportColumn + k] += way.z * sums[k];
     }
   }
   SupportMotion motion;
@@ -317,7 +316,7 @@ SupportPolynomials known_support(const World& world, std::uint32_t region) {
   SupportPolynomials polynomials{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < terms.size(); ++k) {
-      polynomials[axis * kColumn + k] = terms[k][static_cast<int>(axis)];
+      polynomials[axis * kSupportColumn + k] = terms[k][static_cast<int>(axis)];
     }
   }
   return polynomials;
@@ -332,10 +331,10 @@ void add_polynomials(const PatchSupport& support, const SupportPolynomials& poly
       continue;
     }
     const glm::dvec3& way = support.to_body[axis];
-    std::array<double, kColumn> values{};
+    std::array<double, kSupportColumn> values{};
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
-      values[k] = way.x * polynomials[k] + way.y * polynomials[kColumn + k] +
-                  way.z * polynomials[2 * kColumn + k];
+      values[k] = way.x * polynomials[k] + way.y * polynomials[kSupportColumn + k] +
+                  way.z * polynomials[2 * kSupportColumn + k];
     }
     add_terms(support.terms.data(), values.data(), support.cells, along.data());
   }

@@ -21,13 +21,13 @@ double surface_turn(double r, double s) {
 }
 
 /// Least squares' matrix and right sides: what the rings have, and what the couple is.
-struct Fit {
+struct TurnFit {
   std::array<double, std::size_t{kFieldDiscs} * kFieldDiscs> matrix{};
   std::array<double, std::size_t{kFieldDiscs} * 2> right{};
 };
 
 TORSION_WIDEST
-void add_rings(const RingProfiles& profiles, const RingTurns& rings, Fit& fit) {
+void add_rings(const RingProfiles& profiles, const RingTurns& rings, TurnFit& fit) {
   for (std::size_t ring = 0; ring < kRings; ++ring) {
     const double* const turn = profiles.turn[ring].data();
     for (std::size_t j = 0; j < kFieldDiscs; ++j) {
@@ -41,7 +41,7 @@ void add_rings(const RingProfiles& profiles, const RingTurns& rings, Fit& fit) {
 }
 
 /// Neighbours' differences, and a little of the discs themselves, lest nothing tell two apart.
-void add_calm(double weight, Fit& fit) {
+void add_calm(double weight, TurnFit& fit) {
   constexpr double kOfItself = 1e-6;
   for (std::size_t j = 0; j < kFieldDiscs; ++j) {
     double* const row = &fit.matrix[j * kFieldDiscs];
@@ -102,7 +102,7 @@ void RingTurns::add(double r, double moved) {
 
 void discs_of_ring_turns(const RingProfiles& profiles, const RingTurns& rings, double couple,
                          double calm, std::span<double> turn) {
-  Fit fit;
+  TurnFit fit;
   add_rings(profiles, rings, fit);
   double weights = 0.0;
   for (const double weight : rings.weight) {

@@ -19,9 +19,9 @@
 namespace torsion {
 namespace {
 
-constexpr int kMostSteps = 12;     // of Newton's method
-constexpr double kCommon = 1e-14;  // between the two normals: rounding
-constexpr double kFlat = 1e-9;     // of the larger curvature: rounding
+constexpr int kMostNewtonSteps = 12;     // of Newton's method
+constexpr double kCommon = 1e-14;        // between the two normals: rounding
+constexpr double kFlatCurvature = 1e-9;  // of the larger curvature: rounding
 constexpr double kOther = 0.5;     // of the cells' largest depth: it is not the deepest place,
 constexpr double kDeepest = 0.9;   // it is: cells lie beside it
 constexpr double kJust = 1e-4;     // of the grid: so deep, cells seem to touch where shapes do not
@@ -118,7 +118,7 @@ std::optional<CommonNormal> common_normal(const PlacedPart& tool, const PlacedPa
                                           const glm::dvec3& start, double reach) {
   CommonNormal at;
   at.on_tool = start;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMostNewtonSteps; ++step) {
     const Distance to_tool = tool.distance(at.on_tool);
     at.on_tool -= to_tool.value * to_tool.gradient;
     const Distance to_body = body.distance(at.on_tool);
@@ -243,7 +243,7 @@ SmoothContact find_contact(const Grid& grid, const RegionGeometry& geometry,
   const Principal bend = principal(at->curvature);
   // A cylinder on a plane does not end along its axis, where rounding bends it to either side: its
   // extent would be anything, and that it ends nowhere.
-  if (!(bend.small > kFlat * bend.large)) {
+  if (!(bend.small > kFlatCurvature * bend.large)) {
     return contact;
   }
   // Along a cylinder the way to the deepest place is anything, too: what it leads to is another

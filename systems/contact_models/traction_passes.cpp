@@ -8,7 +8,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kLeast = 1e-300;       // keeps 0 / 0 away
+constexpr double kLeastSum = 1e-300;    // keeps 0 / 0 away
 constexpr double kInside = 1.0 + 1e-9;  // of a limit's square
 
 TORSION_WIDEST
@@ -29,12 +29,12 @@ void ways(std::size_t count, double stiffness, const double* __restrict traction
         traction_x[k] * traction_x[k] + traction_y[k] * traction_y[k] - 0.25 * limit * limit;
     const double x = held > 0.0 ? traction_x[k] : trial_x;
     const double y = held > 0.0 ? traction_y[k] : trial_y;
-    const double inverse = 1.0 / std::sqrt(larger(x * x + y * y, kLeast));
+    const double inverse = 1.0 / std::sqrt(larger(x * x + y * y, kLeastSum));
     const double unit_x = x * inverse;
     const double unit_y = y * inverse;
     const double slip = larger(left_x * unit_x + left_y * unit_y, 0.0);
     // sqrt(limit / (limit + slip stiffness)): 0 where the limit is
-    const double soft = std::sqrt(limit / (larger(limit, kLeast) + slip * stiffness));
+    const double soft = std::sqrt(limit / (larger(limit, kLeastSum) + slip * stiffness));
     const double across = (unit_x * left_y - unit_y * left_x) * soft;
     slips[k] = at_limit ? 1.0 : 0.0;
     residual_x[k] = at_limit ? -across * unit_y : left_x;
@@ -82,7 +82,7 @@ void mix_ways(std::size_t count, const Mix& mix, const double* __restrict tracti
                                : traction_y[k] + (new_y + kept * step_y[k]);
     const double square = from_x * from_x + from_y * from_y;
     const bool outside = square > limit * limit;
-    const double scale = limit / std::sqrt(larger(square, kLeast));
+    const double scale = limit / std::sqrt(larger(square, kLeastSum));
     const double to_x = (slip | outside) ? from_x * scale : from_x;
     const double to_y = (slip | outside) ? from_y * scale : from_y;
     step_x[k] = to_x - traction_x[k];
@@ -183,7 +183,7 @@ void find_lacking(std::size_t count, double stiffness, const double* __restrict 
     const double trial_y = traction_y[k] + stiffness * (target_y[k] - moved_y[k]);
     const double square = trial_x * trial_x + trial_y * trial_y;
     const double limit = limits[k];
-    const double rim = limit / std::sqrt(larger(square, kLeast));
+    const double rim = limit / std::sqrt(larger(square, kLeastSum));
     const double share = square > limit * limit ? rim : 1.0;
     lacking_x[k] = compliance * (traction_x[k] - share * trial_x);
     lacking_y[k] = compliance * (traction_y[k] - share * trial_y);

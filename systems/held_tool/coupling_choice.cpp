@@ -6,7 +6,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kMargin = 0.9;
+constexpr double kStabilityMargin = 0.9;
 constexpr double kCautious = 500.0;      // N/m: soft enough for any device that is sold
 constexpr double kCautiousTurn = 0.5;    // N m/rad
 constexpr double kCautiousForce = 3.0;   // N
@@ -14,7 +14,7 @@ constexpr double kCautiousTorque = 0.1;  // N m
 
 std::pair<double, StiffnessLimit> stiffness_for(double damping, double hold, double largest,
                                                 double cautious) {
-  const double passive = kMargin * damping / hold;
+  const double passive = kStabilityMargin * damping / hold;
   if (damping > 0.0 && (largest <= 0.0 || passive < largest)) {
     return {passive, StiffnessLimit::kPassivity};
   }

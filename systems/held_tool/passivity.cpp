@@ -8,7 +8,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kStill = 1e-9;  // m or rad a sample: slower, damping would divide by nothing
+constexpr double kSlowest = 1e-9;  // m or rad a sample: slower, damping would divide by nothing
 // Where a device's are not known: a small handle alone, 50 g on 20 mm. Mechanism and fingers only
 // add to it, and the more there is, the more a late damper may do.
 constexpr double kLightMass = 0.05;     // kg
@@ -23,7 +23,7 @@ glm::dvec3 keep_channel_passive(EnergyBooks& books, const glm::dvec3& held, cons
   // The force on the hand does the work held . way on it.
   books.stored = std::min(books.stored - glm::dot(held, way), largest_stored);
   const double square = glm::dot(way, way);
-  if (books.stored >= 0.0 || square < kStill * kStill) {
+  if (books.stored >= 0.0 || square < kSlowest * kSlowest) {
     return wanted;
   }
   // A damper of b takes b v^2 T = b way^2 / T over the next interval, should the hand go on.

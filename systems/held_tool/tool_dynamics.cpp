@@ -2,11 +2,10 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
-#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
 #include "systems/held_tool/tool_balance.hpp"
+#include "systems/matrix6.hpp"
 
 namespace torsion {
 namespace {
@@ -48,7 +47,7 @@ Pose next_heavy_tool_pose(const World& world, std::uint32_t tool, const VirtualC
   // M (v' - v) / h = W - D v' - h K v'
   Matrix6 system = mass / h + h * balance.stiffness;
   system.diagonal() += damping;
-  const Vector6 motion = h * system.ldlt().solve(mass / h * velocity + wrench);
+  const Vector6 motion = h * solve_ldlt(system, mass / h * velocity + wrench);
   if (!motion.allFinite()) {
     return world.tools.at<ToolPose>(tool).now;
   }

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
-
 #include "systems/held_tool/tool_balance.hpp"
+#include "systems/matrix6.hpp"
 
 namespace torsion {
 namespace {
@@ -28,7 +27,7 @@ Pose next_tool_pose(const World& world, std::uint32_t tool, const VirtualCouplin
                     const Pose& handle) {
   const Pose& now = world.tools.at<ToolPose>(tool).now;
   const ToolBalance balance = balance_of(world, tool, coupling, handle);
-  Vector6 step = balance.stiffness.ldlt().solve(balance.wrench);
+  Vector6 step = solve_ldlt(balance.stiffness, balance.wrench);
   step *= share_of_step(balance.stiffness, last_motion(world, tool), step);
   if (!step.allFinite()) {
     return now;

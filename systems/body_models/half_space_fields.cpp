@@ -88,27 +88,68 @@ glm::dvec3 scaled_rotation(const Seen& seen, double k) {
          (offset * (3.0 * z * r5) - seen.inward * r3) * (0.5 * seen.twist);
 }
 
-/// Trace of the stress over -(1 + nu)/pi; the dipole again by minus the derivative along `arm`.
-double scaled_trace(const Seen& seen) {
+/// The dipole again by minus the derivative along `arm`.
+double mean_stress(const Seen& seen, const Elasticity& elasticity) {
   const double r1 = 1.0 / seen.distance;
   const double r3 = r1 * r1 * r1;
-  return (seen.normal_force * seen.z + glm::dot(seen.tangent_force, seen.along)) * r3 +
-         3.0 * glm::dot(seen.arm, seen.along) * seen.z * r3 * r1 * r1;
+  return -(1.0 + elasticity.poisson_ratio) / (3.0 * pi) *
+         ((seen.normal_force * seen.z + glm::dot(seen.tangent_force, seen.along)) * r3 +
+          3.0 * glm::dot(seen.arm, seen.along) * seen.z * r3 * r1 * r1);
 }
 
-/// Gradient of scaled_displacement by central differences, column c the derivative along axis c.
-/// Truncation grows with the step's square, rounding falls with the step: 2e-4 R leaves 1e-6 and
-/// 1e-12 of the gradient.
-glm::dmat3 scaled_gradient(const Port& load, const Wrench& wrench, const glm::dvec3& point,
-                           double k) {
-  const double step = 2e-4 * glm::distance(point, load.position);
-  glm::dmat3 gradient(0.0);
+/// Gradient of scaled_displacement, column c the derivative along axis c: the product rule over its
+/// terms, each factor with its own gradient.
+glm::dmat3 scaled_gradient(const Seen& seen, double k) {
+  const double z = seen.z;
+  const double r1 = 1.0 / seen.distance;
+  const double r2 = r1 * r1;
+  const double r3 = r2 * r1;
+  const double r4 = r2 * r2;
+  const double r5 = r4 * r1;
+  const double r6 = r3 * r3;
+  const double s1 = 1.0 / seen.sum;
+  const double s2 = s1 * s1;
+  const glm::dvec3& e = seen.inward;
+  const glm::dvec3& p = seen.along;
+  const glm::dvec3& q = seen.tangent_force;
+  // Of R, and of s, which depends on R and z.
+  const glm::dvec3 by_r = (p + z * e) * r1;
+  const double share = 1.0 + z * r1;
+  const glm::dvec3 by_s =
+      seen.held ? by_r * (0.2 + (2.0 - share) * share / 0.8) + e * (share / 0.4) : by_r + e;
+
+  const double spread = z * r3 - k * r1 * s1;
+  const glm::dvec3 spread_by = e * r3 + by_r * (k * r2 * s1 - 3.0 * z * r4) + by_s * (k * r1 * s2);
+  const glm::dvec3 sink_by = e * (2.0 * z * r3) - by_r * (3.0 * z * z * r4 + (1.0 + k) * r2);
+  const glm::dvec3 shift_by = by_r * -r2 - by_s * (k * s2);  // of what multiplies Q
+  const double tilt = r3 - k * r1 * s2;                      // multiplies (Q.p) p
+  const glm::dvec3 tilt_by = by_r * (k * r2 * s2 - 3.0 * r4) + by_s * (2.0 * k * r1 * s2 * s1);
+  const double dip = z * r3 + k * r1 * s1;  // multiplies (Q.p) e
+  const glm::dvec3 dip_by = e * r3 - by_r * (3.0 * z * r4 + k * r2 * s1) - by_s * (k * r1 * s2);
+  const double spread_slope = k * (s1 * r3 + s2 * r2) - 3.0 * z * r5;
+  const glm::dvec3 spread_slope_by = e * (-3.0 * r5) +
+                                     by_r * (15.0 * z * r6 - k * (3.0 * s1 * r4 + 2.0 * s2 * r3)) -
+                                     by_s * (k * (s2 * r3 + 2.0 * s2 * s1 * r2));
+  const double sink_slope = -3.0 * z * z * r5 - (1.0 + k) * r3;
+  const glm::dvec3 sink_slope_by =
+      e * (-6.0 * z * r5) + by_r * (15.0 * z * z * r6 + 3.0 * (1.0 + k) * r4);
+
+  const double pull = glm::dot(q, p);
+  const double lean = glm::dot(seen.arm, p);
+  const double outward = seen.normal_force * spread + pull * tilt - lean * spread_slope;
+  const glm::dvec3 outward_by = seen.normal_force * spread_by + tilt * q + pull * tilt_by -
+                                spread_slope * seen.arm - lean * spread_slope_by;
+  const glm::dvec3 inward_by = seen.normal_force * sink_by + dip * q + pull * dip_by -
+                               sink_slope * seen.arm - lean * sink_slope_by;
+  const glm::dvec3 turned = seen.twist * r3 * e;
+  glm::dmat3 gradient = glm::outerProduct(q, shift_by) - glm::outerProduct(seen.arm, spread_by) +
+                        glm::outerProduct(p, outward_by) +
+                        glm::outerProduct(e, inward_by - outward * e) +
+                        glm::outerProduct(glm::cross(turned, p), by_r * (-3.0 * r1));
   for (int c = 0; c < 3; ++c) {
-    glm::dvec3 shift(0.0);
-    shift[c] = step;
-    gradient[c] = (scaled_displacement(seen_from(load, wrench, point + shift), k) -
-                   scaled_displacement(seen_from(load, wrench, point - shift), k)) /
-                  (2.0 * step);
+    glm::dvec3 axis(0.0);
+    axis[c] = 1.0;
+    gradient[c] += outward * axis + glm::cross(turned, axis);
   }
   return gradient;
 }
@@ -122,7 +163,7 @@ MaterialMotion half_space_motion(const Port& load, const Elasticity& elasticity,
   const double k = 1.0 - 2.0 * elasticity.poisson_ratio;
   glm::dvec3 rotation(0.0);
   if (seen.held && k != 0.0) {  // the closed form is not the curl there
-    const glm::dmat3 g = scaled_gradient(load, wrench, point, k);
+    const glm::dmat3 g = scaled_gradient(seen, k);
     rotation = 0.5 * glm::dvec3(g[1][2] - g[2][1], g[2][0] - g[0][2], g[0][1] - g[1][0]);
   } else {
     rotation = scaled_rotation(seen, k);
@@ -130,10 +171,15 @@ MaterialMotion half_space_motion(const Port& load, const Elasticity& elasticity,
   return {scale * scaled_displacement(seen, k), scale * rotation};
 }
 
+glm::dmat3 half_space_gradient(const Port& load, const Elasticity& elasticity, const Wrench& wrench,
+                               const glm::dvec3& point) {
+  return scaled_gradient(seen_from(load, wrench, point), 1.0 - 2.0 * elasticity.poisson_ratio) /
+         (4.0 * pi * elasticity.shear_modulus());
+}
+
 double half_space_mean_stress(const Port& load, const Elasticity& elasticity, const Wrench& wrench,
                               const glm::dvec3& point) {
-  return -(1.0 + elasticity.poisson_ratio) / (3.0 * pi) *
-         scaled_trace(seen_from(load, wrench, point));
+  return mean_stress(seen_from(load, wrench, point), elasticity);
 }
 
 glm::dmat3 half_space_stress(const Port& load, const Elasticity& elasticity, const Wrench& wrench,
@@ -146,10 +192,11 @@ glm::dmat3 half_space_stress(const Port& load, const Elasticity& elasticity, con
     return glm::outerProduct(ray, ray) *
            (-1.5 / pi * glm::dot(wrench.force, ray) / (square * square * std::sqrt(square)));
   }
-  const glm::dmat3 gradient = scaled_gradient(load, wrench, point, k);
+  const Seen seen = seen_from(load, wrench, point);
+  const glm::dmat3 gradient = scaled_gradient(seen, k);
   glm::dmat3 stress = (gradient + glm::transpose(gradient)) * (1.0 / (4.0 * pi));
-  const double excess = half_space_mean_stress(load, elasticity, wrench, point) -
-                        (stress[0][0] + stress[1][1] + stress[2][2]) / 3.0;
+  const double excess =
+      mean_stress(seen, elasticity) - (stress[0][0] + stress[1][1] + stress[2][2]) / 3.0;
   for (int c = 0; c < 3; ++c) {
     stress[c][c] += excess;
   }

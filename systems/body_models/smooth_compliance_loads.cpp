@@ -128,15 +128,7 @@ void add_face(const SolidGrid& grid, const std::array<std::uint32_t, 4>& face,
 /// Stress that goes with the displacement of a field that need not be in equilibrium, nu < 0.5.
 glm::dmat3 stress_of_motion(const Port& port, const Elasticity& elasticity, const Wrench& wrench,
                             const glm::dvec3& point) {
-  const double step = 2e-4 * glm::distance(point, port.position);
-  glm::dmat3 gradient(0.0);
-  for (int c = 0; c < 3; ++c) {
-    glm::dvec3 shift(0.0);
-    shift[c] = step;
-    gradient[c] = (half_space_motion(port, elasticity, wrench, point + shift).displacement -
-                   half_space_motion(port, elasticity, wrench, point - shift).displacement) /
-                  (2.0 * step);
-  }
+  const glm::dmat3 gradient = half_space_gradient(port, elasticity, wrench, point);
   const double shear = elasticity.shear_modulus();
   const double spread = 2.0 * shear * elasticity.poisson_ratio /
                         (1.0 - 2.0 * elasticity.poisson_ratio) *

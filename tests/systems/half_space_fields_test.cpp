@@ -3,6 +3,7 @@
 
 #include "systems/body_models/half_space_fields.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -73,9 +74,31 @@ TEST(HalfSpaceFieldsTest, RotationIsHalfTheCurlAndMeanStressFollowsFromTheDiverg
   }
 }
 
+TEST(HalfSpaceFieldsTest, GradientIsTheDisplacementsDerivative) {
+  // Also above the plane, where R + z is bent (share < -0.6): differences as above are right to
+  // 1e-6 of the largest there, where s is as small as R / 5.
+  for (const double poisson_ratio : {0.0, 0.3, 0.5}) {
+    const Elasticity elasticity = with_ratio(poisson_ratio);
+    for (int row = 0; row < 6; ++row) {
+      for (const double share : {0.9, 0.4, 0.0, -0.5, -0.7, -0.95}) {
+        const glm::dvec3 point = point_below(0.7, share, 1.0 + row);
+        const glm::dmat3 wanted =
+            gradient_of_displacement(elasticity, unit_wrench(row), point, 7e-5);
+        const glm::dmat3 found = half_space_gradient(kLoad, elasticity, unit_wrench(row), point);
+        double largest = 0.0;
+        double error = 0.0;
+        for (int c = 0; c < 3; ++c) {
+          largest = std::max(largest, glm::length(wanted[c]));
+          error = std::max(error, glm::length(found[c] - wanted[c]));
+        }
+        EXPECT_LT(error, 1e-6 * largest) << row << ' ' << share << ' ' << poisson_ratio;
+      }
+    }
+  }
+}
+
 TEST(HalfSpaceFieldsTest, StressIsInEquilibriumAndLeavesTheSurfaceFree) {
-  // Stress has a relative error of 1e-6, and its differences over 1e-2 of the distance add 1e-4 of
-  // their own truncation.
+  // Differences over 1e-2 of the distance are off by 1e-4.
   for (const double poisson_ratio : {0.0, 0.3, 0.5}) {
     const Elasticity elasticity = with_ratio(poisson_ratio);
     for (int row = 0; row < 6; ++row) {
@@ -93,7 +116,7 @@ TEST(HalfSpaceFieldsTest, StressIsInEquilibriumAndLeavesTheSurfaceFree) {
       const glm::dvec3 surface = point_below(1.0, 0.0, 0.4 + row);
       const glm::dvec3 traction =
           half_space_stress(kLoad, elasticity, wrench, surface) * kLoad.normal;
-      EXPECT_LT(glm::length(traction), 2e-6) << row;
+      EXPECT_LT(glm::length(traction), 1e-14) << row;
     }
   }
 }

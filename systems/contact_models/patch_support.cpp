@@ -21,10 +21,11 @@ namespace {
 // Of a body's compliances over those of its contact (yielding_ratio): where the solver has to know.
 constexpr double kSoft = 0.5;
 using Half = double __attribute__((vector_size(sizeof(double) * kPatchLanes / 2)));
+constexpr std::size_t kAxisColumn = kSupportColumn;
 
 /// Moments of tractions with the terms, sums over the cells.
 /// @param cells    a multiple of kPatchLanes, of terms and tractions
-/// @param moments  (kSupportColumn) out
+/// @param moments  (kAxisColumn) out
 TORSION_WIDEST
 void find_moments(const double* __restrict terms, const double* __restrict traction,
                   std::size_t cells, double* __restrict moments) {
@@ -49,12 +50,12 @@ void find_moments(const double* __restrict terms, const double* __restrict tract
 TORSION_WIDEST
 void respond(const double* __restrict response, const double* __restrict moments,
              double* __restrict polynomials) {
-  constexpr std::size_t kVectors = 3 * kSupportColumn / kPatchLanes;
+  constexpr std::size_t kVectors = 3 * kAxisColumn / kPatchLanes;
   Wide sums[kVectors] = {};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
-      const double moment = moments[axis * kSupportColumn + k];
-      const double* const column = response + (axis * kSupportColumn + k) * 3 * kSupportColumn;
+      const double moment = moments[axis * kAxisColumn + k];
+      const double* const column = response + (axis * kAxisColumn + k) * 3 * kAxisColumn;
       for (std::size_t row = 0; row < kVectors; ++row) {
         Wide value;
         std::memcpy(&value, column + row * kPatchLanes, sizeof value);
@@ -172,7 +173,7 @@ void add_answer(const PatchSupport& support, const SupportPolynomials& moments, 
   const Footing& footing = *support.footing;
   const RegionReaction& reaction = *support.reaction;
   const auto moment = [&moments](std::size_t k) {
-    return glm::dvec3(moments[k], moments[kSupportColumn + k], moments[2 * kSupportColumn + k]);
+    return glm::dvec3(moments[k], moments[kAxisColumn + k], moments[2 * kAxisColumn + k]);
   };
   const glm::dvec3 arm_x = footing.reach * footing.tangent_x;
   const glm::dvec3 arm_y = footing.reach * footing.tangent_y;
@@ -191,7 +192,7 @@ void add_answer(const PatchSupport& support, const SupportPolynomials& moments, 
                                         glm::cross(rotation, arm_x), glm::cross(rotation, arm_y)};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < terms.size(); ++k) {
-      polynomials[axis * kSupportColumn + k] += terms[k][static_cast<int>(axis)];
+      polynomials[axis * kAxisColumn + k] += terms[k][static_cast<int>(axis)];
     }
   }
 }
@@ -278,12 +279,12 @@ SupportMotion support_by(const PatchSupport& support, const PatchField& traction
       continue;
     }
     const glm::dvec3 way = support.area * support.to_body[axis];
-    std::array<double, kSupportColumn> sums{};
+    std::array<double, kAxisColumn> sums{};
     find_moments(support.terms.data(), along.data(), support.cells, sums.data());
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
       moments[k] += way.x * sums[k];
-      moments[kSupportColumn + k] += way.y * sums[k];
-      moments[2 * kSupportColumn + k] += way.z * sums[k];
+      moments[kAxisColumn + k] += way.y * sums[k];
+      moments[2 * kAxisColumn + k] += way.z * sums[k];
     }
   }
   SupportMotion motion;
@@ -316,7 +317,7 @@ SupportPolynomials known_support(const World& world, std::uint32_t region) {
   SupportPolynomials polynomials{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < terms.size(); ++k) {
-      polynomials[axis * kSupportColumn + k] = terms[k][static_cast<int>(axis)];
+      polynomials[axis * kAxisColumn + k] = terms[k][static_cast<int>(axis)];
     }
   }
   return polynomials;
@@ -331,10 +332,10 @@ void add_polynomials(const PatchSupport& support, const SupportPolynomials& poly
       continue;
     }
     const glm::dvec3& way = support.to_body[axis];
-    std::array<double, kSupportColumn> values{};
+    std::array<double, kAxisColumn> values{};
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
-      values[k] = way.x * polynomials[k] + way.y * polynomials[kSupportColumn + k] +
-                  way.z * polynomials[2 * kSupportColumn + k];
+      values[k] = way.x * polynomials[k] + way.y * polynomials[kAxisColumn + k] +
+                  way.z * polynomials[2 * kAxisColumn + k];
     }
     add_terms(support.terms.data(), values.data(), support.cells, along.data());
   }

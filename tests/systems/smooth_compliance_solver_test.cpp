@@ -6,12 +6,12 @@
 #include <numbers>
 #include <vector>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <glm/matrix.hpp>
 #include <gtest/gtest.h>
 
 #include "systems/body_models/smooth_compliance_loads.hpp"
+#include "tests/support/dense_algebra.hpp"
 #include "tests/systems/elastic_solids.hpp"
 
 namespace torsion {
@@ -33,7 +33,7 @@ TEST(ElementStiffnessTest, ResistsAllButRigidMotions) {
   for (const double bulk : {2.0 / 3.0, 1e4}) {
     const ElementStiffness stiffness = element_stiffness(crooked_cell(), bulk);
     EXPECT_LT((stiffness - stiffness.transpose()).norm(), 1e-12 * stiffness.norm());
-    const auto values = Eigen::SelfAdjointEigenSolver<ElementStiffness>(stiffness).eigenvalues();
+    const Eigen::VectorXd values = test::eigenvalues(stiffness);
     EXPECT_LT(std::abs(values[5]), 1e-11 * values[23]);
     EXPECT_GT(values[6], 1e-2);  // of the shear modulus times a side of 1 m
   }
@@ -155,7 +155,7 @@ TEST(StiffnessFactorTest, SolvesWhatADenseFactorSolves) {
     columns.row(row) << std::sin(3.0 * static_cast<double>(row)),
         std::cos(static_cast<double>(row * row));
   }
-  const Eigen::MatrixXd expected = dense.llt().solve(Eigen::MatrixXd(columns));
+  const Eigen::MatrixXd expected = test::solve_definite(dense, columns);
   solve_stiffness(factor.value(), columns);
   EXPECT_LT((columns - expected).norm(), 1e-10 * expected.norm());
 }

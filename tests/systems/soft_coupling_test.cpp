@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
@@ -17,6 +17,7 @@
 #include "systems/region_wrenches.hpp"
 #include "systems/scratch.hpp"
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/dense_algebra.hpp"
 #include "tests/support/studies.hpp"
 
 namespace torsion::test {
@@ -164,9 +165,7 @@ double least_share(const FootingResponse& response, const Footing& footing,
     }
   }
   const Eigen::MatrixXd whole = half_space + terms * normal * terms.transpose();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
-      whole, 0.5 * (half_space + half_space.transpose()));
-  return solver.eigenvalues()[0];
+  return test::generalized_eigenvalues(whole, 0.5 * (half_space + half_space.transpose()))[0];
 }
 
 TEST(DefiniteResponseTest, LeavesAQuarterOfTheHalfSpaceAndTouchesNothingElse) {

@@ -16,6 +16,11 @@ inline bool is_left_out(bool chosen) {
   return !chosen && !all_cases();
 }
 
+/// How many of `all` random trials to make: a fifth, or all of them.
+inline int trials_of(int all) {
+  return all_cases() ? all : all / 5;
+}
+
 inline constexpr const char* kLeftOut = "one of many of its kind: ./dev test --all looks at it";
 
 }  // namespace torsion::test

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "tests/support/studies.hpp"
 #include "tests/systems/worked_ball.hpp"
 
 namespace torsion {
@@ -20,7 +21,7 @@ using test::WorkedBall;
 
 class MdrEnergyTest : public testing::TestWithParam<double> {};
 
-TEST_P(MdrEnergyTest, FiftyThousandClosedPathsOfSmallStepsCostWork) {
+TEST_P(MdrEnergyTest, ClosedPathsOfSmallStepsCostWork) {
   // The goal: never below -1e-9 of the path's throughput, the sum of what went to and fro.
   // The force of a depth is the gradient of a potential, for depth and normal come from the shapes;
   // every layer of springs takes what it stores or more (mdr_properties_test.cpp). From springs at
@@ -28,7 +29,7 @@ TEST_P(MdrEnergyTest, FiftyThousandClosedPathsOfSmallStepsCostWork) {
   WorkedBall ball({.model = ContactModel::kMdr, .poisson = GetParam()});
   std::mt19937 random(29);
   double least = 1.0;
-  for (int path = 0; path < 50000; ++path) {
+  for (int path = 0; path < test::trials_of(50000); ++path) {
     ball.lift_off();
     ball.go(Place{});
     ball.stay(1);

@@ -44,7 +44,7 @@ void PrintTo(const PatchEnergyCase& energy, std::ostream* out) {
 class PatchEnergyTest : public testing::TestWithParam<PatchEnergyCase> {};
 
 TEST_P(PatchEnergyTest, EveryPathCostsWhatTheRegionHoldsMoreAfterIt) {
-  // A hundred thousand steps and more, one path after the other with all that the last one left.
+  // Many thousand steps, one path after the other with all that the last one left.
   // Where nu < 0.5 pressing alone loads the springs along the surface, and a closed path may well
   // give that back; never more. What a path still owes, later ones pay: with no charge nearly all
   // of them would owe.
@@ -52,10 +52,10 @@ TEST_P(PatchEnergyTest, EveryPathCostsWhatTheRegionHoldsMoreAfterIt) {
   ball.go(Place{});
   ball.stay(20);
   std::mt19937 random(41);
-  constexpr int kPaths = 20000;
+  const int paths = test::trials_of(20000);
   double least = 1.0;
   int owing = 0;
-  for (int path = 0; path < kPaths; ++path) {
+  for (int path = 0; path < paths; ++path) {
     const double before = ball.held();
     ball.forget();
     ball.go(random_path(random, kLeast, kMost));
@@ -63,7 +63,7 @@ TEST_P(PatchEnergyTest, EveryPathCostsWhatTheRegionHoldsMoreAfterIt) {
     owing += ball.owed() > 0.0 ? 1 : 0;
   }
   EXPECT_GE(least, -1e-9);
-  EXPECT_LT(owing, kPaths / 2);
+  EXPECT_LT(owing, paths / 2);
 }
 
 TEST_P(PatchEnergyTest, WhatIsHeldIsTheWorkOfPressing) {
@@ -165,7 +165,7 @@ TEST(PatchEnergyOfClosedPathsTest, ManyOfSmallStepsFromRestCostWork) {
   WorkedBall ball({.side = 12});
   std::mt19937 random(29);
   double least = 1.0;
-  for (int path = 0; path < (test::all_cases() ? 100000 : 20000); ++path) {
+  for (int path = 0; path < test::trials_of(50000); ++path) {
     ball.lift_off();
     ball.go(Place{});
     ball.stay(12);

@@ -5,7 +5,6 @@
 #include <limits>
 #include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -176,30 +175,6 @@ TEST(MeshDistanceTest, AHintChangesNothing) {
     const MeshDistance::Closest with = distance.closest(p, hint);
     EXPECT_EQ(without.distance.value, with.distance.value);
     EXPECT_NEAR(glm::distance(without.point, with.point), 0.0, 1e-15);
-  }
-}
-
-TEST(MeshDistanceTest, ThreadsMayAskAtOnce) {
-  const MeshDistance distance = built(torus_mesh(0.04, 0.015, 48, 24));
-  const std::vector<glm::dvec3> points = points_in_box(0.08, 400, 5);
-  std::vector<double> alone;
-  alone.reserve(points.size());
-  for (const glm::dvec3& p : points) {
-    alone.push_back(distance.closest(p).distance.value);
-  }
-  std::vector<std::vector<double>> together(4);
-  std::vector<std::jthread> threads;
-  threads.reserve(together.size());
-  for (std::vector<double>& found : together) {
-    threads.emplace_back([&] {
-      for (const glm::dvec3& p : points) {
-        found.push_back(distance.closest(p).distance.value);
-      }
-    });
-  }
-  threads.clear();
-  for (const std::vector<double>& found : together) {
-    EXPECT_EQ(found, alone);
   }
 }
 

@@ -105,17 +105,20 @@ LeftCells first_of(const LeftCells& left, std::size_t count) {
           left.gradient_square.first(count)};
 }
 
-/// Lists the cells that still move, unless none below the rest surface moves far.
+/// Lists the cells that still move, unless none moves far that may be in contact: whose underside,
+/// with its slopes, comes below the rest surface.
 /// @param cell_length  m
-/// @param moved, z     m, (n) of the cells `of`, all when that is empty
+/// @param moved, z, tool_x, tool_y  (n) of the cells `of`, all when that is empty
 LeftCells cells_left(const LeftCells& memory, double cell_length, std::span<const double> moved,
-                     std::span<const double> z, std::span<const std::uint32_t> of) {
+                     std::span<const double> z, std::span<const double> tool_x,
+                     std::span<const double> tool_y, std::span<const std::uint32_t> of) {
   std::size_t count = 0;
   bool far = false;
   for (std::size_t k = 0; k < moved.size(); ++k) {
     if (moved[k] >= kAtRest * cell_length) {
       memory.cells[count++] = of.empty() ? static_cast<std::uint32_t>(k) : of[k];
-      far = far || (moved[k] >= kCloseEnough * cell_length && z[k] < 0.0);
+      far = far || (moved[k] >= kCloseEnough * cell_length &&
+                    z[k] < cell_length * (std::abs(tool_x[k]) + std::abs(tool_y[k])));
     }
   }
   return first_of(memory, far ? count : 0);
@@ -167,10 +170,12 @@ void find_tool_surface(const Grid& grid) {
     return;
   }
   const LeftCells& memory = grid.scratch.left_cells;
-  LeftCells left = cells_left(memory, cell_length, columns.points.value, columns.points.z, {});
+  LeftCells left = cells_left(memory, cell_length, columns.points.value, columns.points.z,
+                              columns.tool_x, columns.tool_y, {});
   for (int step = 1; step < kMostSurfaceSteps && !left.cells.empty(); ++step) {
     step_left_cells(grid, parts, frame, size, left);
-    left = cells_left(memory, cell_length, left.points.value, left.points.z, left.cells);
+    left = cells_left(memory, cell_length, left.points.value, left.points.z, left.tool_x,
+                      left.tool_y, left.cells);
   }
 }
 

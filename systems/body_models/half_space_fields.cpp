@@ -88,7 +88,8 @@ glm::dvec3 scaled_rotation(const Seen& seen, double k) {
          (offset * (3.0 * z * r5) - seen.inward * r3) * (0.5 * seen.twist);
 }
 
-/// The dipole again by minus the derivative along `arm`.
+/// A third of the stress's trace, Pa: exact at nu = 0.5, where it does not follow from the
+/// displacement. The dipole again by minus the derivative along `arm`.
 double mean_stress(const Seen& seen, const Elasticity& elasticity) {
   const double r1 = 1.0 / seen.distance;
   const double r3 = r1 * r1 * r1;
@@ -175,11 +176,6 @@ glm::dmat3 half_space_gradient(const Port& load, const Elasticity& elasticity, c
                                const glm::dvec3& point) {
   return scaled_gradient(seen_from(load, wrench, point), 1.0 - 2.0 * elasticity.poisson_ratio) /
          (4.0 * pi * elasticity.shear_modulus());
-}
-
-double half_space_mean_stress(const Port& load, const Elasticity& elasticity, const Wrench& wrench,
-                              const glm::dvec3& point) {
-  return mean_stress(seen_from(load, wrench, point), elasticity);
 }
 
 glm::dmat3 half_space_stress(const Port& load, const Elasticity& elasticity, const Wrench& wrench,

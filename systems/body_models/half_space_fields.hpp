@@ -38,13 +38,9 @@ MaterialMotion half_space_motion(const Port& load, const Elasticity& elasticity,
 glm::dmat3 half_space_gradient(const Port& load, const Elasticity& elasticity, const Wrench& wrench,
                                const glm::dvec3& point);
 
-/// Mean stress (a third of the trace, Pa, tension positive) of the same field: finite and exact at
-/// nu = 0.5, where it does not follow from the displacement.
-double half_space_mean_stress(const Port& load, const Elasticity& elasticity, const Wrench& wrench,
-                              const glm::dvec3& point);
-
 /// Stress (symmetric, Pa, body axes) of the same field: its deviator from the gradient, its mean
-/// from the closed form. The traction on a surface with outward normal n is stress * n.
+/// (tension positive) in closed form, exact at nu = 0.5, where it does not follow from the
+/// displacement. The traction on a surface with outward normal n is stress * n.
 glm::dmat3 half_space_stress(const Port& load, const Elasticity& elasticity, const Wrench& wrench,
                              const glm::dvec3& point);
 

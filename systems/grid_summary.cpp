@@ -1,7 +1,6 @@
 #include "systems/grid_summary.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 

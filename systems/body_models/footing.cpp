@@ -13,13 +13,12 @@
 namespace torsion {
 namespace {
 
-constexpr std::size_t kNearestPorts =
-    14;                               // ports that a footing has at least, if the body has them
-constexpr double kBeyond = 1.3;       // reach over the contact's longer half axis
-constexpr double kLeastFacing = 0.4;  // cosine between a port's normal and the contact's
-constexpr double kMoved = 0.04;       // of its reach: a footing moved farther is laid anew
-constexpr double kGrown = 1.12;       // likewise the contact's radius
-constexpr double kTurned = 0.9997;    // likewise the cosine of the normal
+constexpr std::size_t kLeastPorts = 14;  // that a footing has, if the body has them
+constexpr double kBeyond = 1.3;          // reach over the contact's longer half axis
+constexpr double kLeastFacing = 0.4;     // cosine between a port's normal and the contact's
+constexpr double kMoved = 0.04;          // of its reach: a footing moved farther is laid anew
+constexpr double kGrown = 1.12;          // likewise the contact's radius
+constexpr double kTurned = 0.9997;       // likewise the cosine of the normal
 /// Against wiggles where ports are few, over the sum of the weights: by degree. Constants and
 /// slopes are left alone.
 constexpr std::array<double, 5> kStiffer{0.0, 0.0, 1e-6, 1e-5, 1e-4};
@@ -29,16 +28,16 @@ double stiffer(int degree, double size) {
   return base * std::pow(size, -2.0 * degree);
 }
 
-/// Distance that takes in kNearestPorts ports; a little more than the farthest where there are
+/// Distance that takes in kLeastPorts ports; a little more than the farthest where there are
 /// fewer.
 double distance_to_enough(const PortCompliance& body, const ContactEllipse& contact) {
-  std::array<double, kNearestPorts> nearest;
+  std::array<double, kLeastPorts> nearest;
   nearest.fill(kNeverSeen);
   for (const CompliancePort& port : body.ports) {
     const double distance = seen_distance(port, contact.center, contact.normal);
     if (distance < nearest.back()) {
       nearest.back() = distance;
-      for (std::size_t i = kNearestPorts - 1; i > 0 && nearest[i] < nearest[i - 1]; --i) {
+      for (std::size_t i = kLeastPorts - 1; i > 0 && nearest[i] < nearest[i - 1]; --i) {
         std::swap(nearest[i], nearest[i - 1]);
       }
     }

@@ -10,9 +10,9 @@
 namespace torsion {
 namespace {
 
-constexpr double kFarthest = 2.0;     // counts: what is farther is followed at once
-constexpr double kNearestPlay = 1.0;  // counts: what is nearer is not
-constexpr double kSlowTime = 0.25;    // s: of the way between, twice that of a loose hand
+constexpr double kFarthest = 2.0;   // counts: what is farther is followed at once
+constexpr double kPlay = 1.0;       // counts: what is nearer is not
+constexpr double kSlowTime = 0.25;  // s: of the way between, twice that of a loose hand
 
 /// What of a change goes beyond `free`, for each axis.
 glm::dvec3 beyond(const glm::dvec3& change, double free) {
@@ -23,7 +23,7 @@ glm::dvec3 beyond(const glm::dvec3& change, double free) {
 glm::dvec3 followed(const glm::dvec3& change, double count, double period) {
   const glm::dvec3 at_once = beyond(change, kFarthest * count);
   const double share = std::min(1.0, period / kSlowTime);
-  return at_once + share * beyond(change - at_once, kNearestPlay * count);
+  return at_once + share * beyond(change - at_once, kPlay * count);
 }
 
 }  // namespace

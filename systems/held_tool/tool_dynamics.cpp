@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
 #include "systems/held_tool/tool_balance.hpp"

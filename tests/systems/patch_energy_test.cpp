@@ -165,7 +165,7 @@ TEST(PatchEnergyOfClosedPathsTest, ManyOfSmallStepsFromRestCostWork) {
   WorkedBall ball({.side = 12});
   std::mt19937 random(29);
   double least = 1.0;
-  for (int path = 0; path < test::trials_of(50000); ++path) {
+  for (int path = 0; path < test::trials_of(100000); ++path) {
     ball.lift_off();
     ball.go(Place{});
     ball.stay(12);

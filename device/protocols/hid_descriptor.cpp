@@ -97,8 +97,9 @@ struct Parser {
     if (last < usage_min || last - usage_min >= kMostFields) {
       return false;
     }
-    for (HidUsage usage = usage_min; usage <= last; ++usage) {
-      usages.push_back(usage);
+    // By number: the last usage may be the largest that there is.
+    for (std::uint32_t i = 0; i <= last - usage_min; ++i) {
+      usages.push_back(usage_min + i);
     }
     return usages.size() <= kMostFields;
   }

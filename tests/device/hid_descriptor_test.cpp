@@ -72,6 +72,17 @@ TEST(HidDescriptorTest, RefusesWhatIsCutOffOrDoesNotNest) {
       std::array<std::uint8_t, 9>{0x75, 0x20, 0x97, 0x00, 0x00, 0x00, 0x80, 0x81, 0x02}));
 }
 
+TEST(HidDescriptorTest, UsagesMayEndWithTheLargest) {
+  // usages 0xFFFFFFFE to 0xFFFFFFFF, two values of 8 bits; once this never ended
+  const std::array<std::uint8_t, 16> descriptor = {0x1B, 0xFE, 0xFF, 0xFF, 0xFF, 0x2B, 0xFF, 0xFF,
+                                                   0xFF, 0xFF, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02};
+  const auto inputs = parse_hid_descriptor(descriptor);
+  ASSERT_TRUE(inputs);
+  ASSERT_EQ(inputs->fields.size(), 2U);
+  EXPECT_EQ(inputs->fields[0].usage, 0xFFFFFFFEU);
+  EXPECT_EQ(inputs->fields[1].usage, 0xFFFFFFFFU);
+}
+
 TEST(HidDescriptorTest, SurvivesAnyBytes) {
   std::mt19937 random(1);
   for (int i = 0; i < 20000; ++i) {

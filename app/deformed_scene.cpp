@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "systems/surface_field.hpp"
+#include "systems/surface/surface_field.hpp"
 
 namespace torsion {
 namespace {

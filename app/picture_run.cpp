@@ -11,7 +11,7 @@
 #include "app/round_up.hpp"
 #include "ecs/state_io.hpp"
 #include "render/auto_camera.hpp"
-#include "systems/surface_field.hpp"
+#include "systems/surface/surface_field.hpp"
 
 namespace torsion {
 namespace {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "systems/patch_grid.hpp"
+#include "systems/patch/grid.hpp"
 
 namespace torsion {
 namespace {

@@ -11,9 +11,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "systems/choose_models.hpp"
-#include "systems/distance.hpp"
-#include "systems/frames.hpp"
+#include "systems/geometry/distance.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/model/choose_models.hpp"
 
 namespace torsion {
 namespace {

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 // Where every vertex of one body is: turned about the axis of each region in the order of their formation, then
-// displaced. The CPU twin is deform_vertices() (systems/surface_field.hpp).
+// displaced. The CPU twin is deform_vertices() (systems/surface/surface_field.hpp).
 //
 // Sources: Rodrigues' rotation in the form x + sin(t) k x r + (1 - cos(t)) k x (k x r), r from the axis point to x,
 // which leaves x alone, bit for bit, where t = 0, so nothing asks whether it is. Vulkan promises sin() and cos() only

@@ -11,14 +11,14 @@
 #include "ecs/commands.hpp"
 #include "ecs/components.hpp"
 #include "ecs/world.hpp"
-#include "systems/body_models/main_beam.hpp"
-#include "systems/contact_models/definite_response.hpp"
-#include "systems/contact_models/mdr_layers.hpp"
-#include "systems/contact_models/patch_cells.hpp"
-#include "systems/contact_models/patch_solver.hpp"
-#include "systems/contact_models/ring_turns.hpp"
-#include "systems/distance.hpp"
-#include "systems/group_points.hpp"
+#include "systems/body/skeleton/main_beam.hpp"
+#include "systems/contact/group_points.hpp"
+#include "systems/geometry/distance.hpp"
+#include "systems/mdr/layers.hpp"
+#include "systems/patch/cells.hpp"
+#include "systems/patch/definite_response.hpp"
+#include "systems/patch/solver.hpp"
+#include "systems/surface/ring_turns.hpp"
 
 namespace torsion {
 

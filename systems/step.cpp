@@ -3,22 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems/body_models/anchor_motions.hpp"
-#include "systems/body_models/compliance.hpp"
-#include "systems/body_models/skeleton.hpp"
-#include "systems/carry_tractions.hpp"
-#include "systems/contact_models/mdr.hpp"
-#include "systems/contact_models/paper.hpp"
-#include "systems/contact_models/patch.hpp"
-#include "systems/contact_models/region_fields.hpp"
-#include "systems/contact_models/smooth_contact.hpp"
-#include "systems/couple_tools.hpp"
-#include "systems/detect_contacts.hpp"
-#include "systems/group_regions.hpp"
-#include "systems/region_grid.hpp"
-#include "systems/region_motion.hpp"
-#include "systems/region_wrenches.hpp"
+#include "systems/body/compliance/compliance.hpp"
+#include "systems/body/skeleton/skeleton.hpp"
+#include "systems/contact/couple_tools.hpp"
+#include "systems/contact/detect_contacts.hpp"
+#include "systems/contact/group_regions.hpp"
+#include "systems/contact/region_grid.hpp"
+#include "systems/contact/region_motion.hpp"
+#include "systems/contact/region_wrenches.hpp"
+#include "systems/mdr/mdr.hpp"
+#include "systems/mdr/smooth_contact.hpp"
+#include "systems/paper/carry_tractions.hpp"
+#include "systems/paper/paper.hpp"
+#include "systems/patch/patch.hpp"
 #include "systems/scratch.hpp"
+#include "systems/surface/anchor_motions.hpp"
+#include "systems/surface/region_fields.hpp"
 
 namespace torsion {
 namespace {

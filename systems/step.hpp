@@ -10,7 +10,7 @@
 #include "ecs/scene_description.hpp"
 #include "ecs/schedule.hpp"
 #include "ecs/world.hpp"
-#include "systems/expected_place.hpp"
+#include "systems/model/expected_place.hpp"
 
 namespace torsion {
 

@@ -10,7 +10,7 @@
 #include "device/usb/usb_bus.hpp"
 #include "ecs/result.hpp"
 #include "ecs/triple_buffer.hpp"
-#include "systems/held_tool/handle_side.hpp"
+#include "systems/hold/handle_side.hpp"
 
 namespace torsion {
 

@@ -7,9 +7,9 @@
 
 #include "app/live/rebuild.hpp"
 #include "device/scripted_motion.hpp"
-#include "systems/frames.hpp"
-#include "systems/held_tool/coupling_choice.hpp"
-#include "systems/rotation_vector.hpp"
+#include "systems/hold/coupling_choice.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/math/rotation_vector.hpp"
 
 namespace torsion {
 namespace {

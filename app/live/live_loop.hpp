@@ -16,8 +16,8 @@
 #include "ecs/ring.hpp"
 #include "ecs/snapshot.hpp"
 #include "ecs/triple_buffer.hpp"
-#include "systems/held_tool/passivity.hpp"
-#include "systems/held_tool/tool_hold.hpp"
+#include "systems/hold/passivity.hpp"
+#include "systems/hold/tool_hold.hpp"
 
 namespace torsion {
 

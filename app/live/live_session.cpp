@@ -7,7 +7,7 @@
 
 #include "ecs/assert.hpp"
 #include "ecs/hash.hpp"
-#include "systems/surface_field.hpp"
+#include "systems/surface/surface_field.hpp"
 
 namespace torsion {
 namespace {

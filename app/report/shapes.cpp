@@ -6,7 +6,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "systems/frames.hpp"
+#include "systems/math/frames.hpp"
 
 namespace torsion {
 namespace {

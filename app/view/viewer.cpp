@@ -12,7 +12,7 @@
 #include "app/view/panels.hpp"
 #include "render/auto_camera.hpp"
 #include "render/image_io.hpp"
-#include "systems/surface_field.hpp"
+#include "systems/surface/surface_field.hpp"
 
 namespace torsion {
 namespace {

@@ -73,7 +73,7 @@ struct RegionCoupling {
   std::array<double, 36> motion{};
 };
 
-/// Sum over the body's regions. Written by: the body model (systems/body_models/).
+/// Sum over the body's regions. Written by: the body model (systems/body/).
 struct AnchorMotion {
   glm::dvec3 displacement{0.0};  // m, body
 };

@@ -32,7 +32,7 @@ struct CellTraction {
 };
 
 /// One value of the influence tables that fill_influences
-/// (systems/contact_models/influence.hpp) makes. Written by: load.
+/// (systems/half_space/influence.hpp) makes. Written by: load.
 struct Influence {
   double value = 0.0;
 };

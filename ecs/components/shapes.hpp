@@ -25,7 +25,8 @@ struct ShapePart {
 };
 
 /// A two-level grid of signed distances to a closed mesh: coarse nodes everywhere, bricks of fine
-/// nodes near the surface (systems/distance_field.hpp says how it is read). Written by: load.
+/// nodes near the surface (systems/geometry/distance_field.hpp says how it is read). Written by:
+/// load.
 struct DistanceField {
   glm::dvec3 origin{0.0};         // m, part frame, the lowest node
   double spacing = 0.0;           // m, between coarse nodes

@@ -15,7 +15,7 @@
 #include "systems/geometry/bounds.hpp"
 #include "systems/geometry/close_pieces.hpp"
 #include "systems/geometry/cut_facets.hpp"
-#include "systems/geometry/disjoint_sets.hpp"
+#include "systems/math/disjoint_sets.hpp"
 
 namespace torsion {
 namespace {

@@ -15,7 +15,7 @@
 
 #include "app/session.hpp"
 #include "ecs/model_names.hpp"
-#include "systems/surface_field.hpp"
+#include "systems/surface/surface_field.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/studies.hpp"
 

@@ -10,8 +10,8 @@
 
 #include "app/session.hpp"
 #include "device/scripted_motion.hpp"
-#include "systems/held_tool/handle_side.hpp"
-#include "systems/held_tool/tool_equilibrium.hpp"
+#include "systems/hold/handle_side.hpp"
+#include "systems/hold/tool_equilibrium.hpp"
 #include "tests/support/paths.hpp"
 
 namespace torsion::test {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "ecs/world.hpp"
-#include "tests/systems/emulated_hand.hpp"
+#include "tests/systems/hold/emulated_hand.hpp"
 
 namespace torsion::test {
 

@@ -7,10 +7,10 @@
 
 #include <benchmark/benchmark.h>
 
-#include "systems/body_models/skeleton.hpp"
-#include "systems/prepare_anchors.hpp"
+#include "systems/body/skeleton/skeleton.hpp"
+#include "systems/model/prepare_anchors.hpp"
 #include "systems/scratch.hpp"
-#include "systems/surface_field.hpp"
+#include "systems/surface/surface_field.hpp"
 #include "tests/systems/body_scene.hpp"
 
 namespace {

@@ -10,12 +10,12 @@
 
 #include <benchmark/benchmark.h>
 
-#include "systems/distance.hpp"
-#include "systems/distance_field_build.hpp"
-#include "systems/distance_mesh.hpp"
+#include "systems/geometry/distance.hpp"
+#include "systems/geometry/distance_field_build.hpp"
+#include "systems/geometry/distance_mesh.hpp"
 #include "tests/support/distance_columns.hpp"
-#include "tests/systems/distance_meshes.hpp"
-#include "tests/systems/field_world.hpp"
+#include "tests/systems/geometry/distance_meshes.hpp"
+#include "tests/systems/geometry/field_world.hpp"
 
 namespace torsion {
 namespace {

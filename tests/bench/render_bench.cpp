@@ -16,7 +16,7 @@
 
 #include "render/normal_rings.hpp"
 #include "render/renderer.hpp"
-#include "systems/surface_field.hpp"
+#include "systems/surface/surface_field.hpp"
 #include "tests/render/render_scenes.hpp"
 
 namespace {

@@ -21,7 +21,7 @@
 #include "device/scripted_motion.hpp"
 #include "scenes/load_gltf.hpp"
 #include "scenes/write_gltf.hpp"
-#include "systems/surface_field.hpp"
+#include "systems/surface/surface_field.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/paths.hpp"
 

@@ -10,9 +10,9 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include "systems/distance.hpp"
-#include "systems/fault.hpp"
-#include "systems/frames.hpp"
+#include "systems/contact/fault.hpp"
+#include "systems/geometry/distance.hpp"
+#include "systems/math/frames.hpp"
 #include "systems/scratch.hpp"
 #include "tests/support/standout.hpp"
 
@@ -158,7 +158,7 @@ bool meets_a_side(const World& world) {
 /// Adds what a step's regions say of themselves.
 void look_at_regions(const World& world, int step, Run& run) {
   constexpr double kUnsolved = 0.1;
-  // Of the normal force: what a step may owe its energy (patch_energy.cpp), 2 % of it in a round
+  // Of the normal force: what a step may owe its energy (patch/energy.cpp), 2 % of it in a round
   // contact; a long one turns more easily for its radius.
   constexpr double kDrag = 0.05;
   double residual = 0.0;

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "render/normal_rings.hpp"
-#include "systems/surface_field.hpp"
+#include "systems/surface/surface_field.hpp"
 #include "tests/render/gpu_fixture.hpp"
 #include "tests/render/render_scenes.hpp"
 

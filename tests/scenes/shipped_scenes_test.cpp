@@ -11,7 +11,7 @@
 
 #include "device/scripted_motion.hpp"
 #include "scenes/load_gltf.hpp"
-#include "systems/frames.hpp"
+#include "systems/math/frames.hpp"
 #include "systems/step.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/test_cache.hpp"

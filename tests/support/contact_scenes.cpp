@@ -5,7 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "systems/frames.hpp"
+#include "systems/math/frames.hpp"
 #include "tests/support/test_cache.hpp"
 
 namespace torsion::test {

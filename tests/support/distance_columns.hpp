@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "systems/distance.hpp"
+#include "systems/geometry/distance.hpp"
 
 namespace torsion::test {
 

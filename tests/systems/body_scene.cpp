@@ -6,9 +6,9 @@
 
 #include <glm/geometric.hpp>
 
-#include "systems/beam_sections.hpp"
-#include "systems/body_models/skeleton.hpp"
-#include "systems/prepare_anchors.hpp"
+#include "systems/body/skeleton/beam_sections.hpp"
+#include "systems/body/skeleton/skeleton.hpp"
+#include "systems/model/prepare_anchors.hpp"
 #include "systems/scratch.hpp"
 #include "systems/step.hpp"
 

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/reference/exact/torque_limits.hpp"
-#include "tests/systems/pressed_ball.hpp"
+#include "tests/systems/patch/pressed_ball.hpp"
 
 namespace torsion {
 namespace {

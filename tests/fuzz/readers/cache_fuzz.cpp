@@ -11,7 +11,7 @@
 
 #include <unistd.h>
 
-#include "systems/distance_field_build.hpp"
+#include "systems/geometry/distance_field_build.hpp"
 #include "tests/support/contact_scenes.hpp"
 
 namespace {

@@ -1,0 +1,175 @@
+#include "systems/body/compliance/region_supports.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Core>
+#include <glm/geometric.hpp>
+
+#include "systems/body/compliance/region_couplings.hpp"
+#include "systems/patch/grid.hpp"
+#include "systems/scratch.hpp"
+
+namespace torsion {
+namespace {
+
+/// What a wrench on one of two regions that were one does to the other.
+struct ToEachOther {
+  Matrix6 motion;
+  Matrix6 known;  // of that, what it did as the one region's own load
+};
+
+ToEachOther to_each_other(const CompliantBody& body, const Footing& there, const Footing& here) {
+  ToEachOther both{motion_of(body, there, here), Matrix6::Zero()};
+  if (here.on_layer == 0) {
+    both.known = there.share * here.share * motion_between(body.ports, there, here);
+  }
+  return both;
+}
+
+Stand solved_stand(const World& world, std::uint32_t region) {
+  Stand stand;
+  stand.region = region;
+  stand.block = block_of(world.regions.at<RegionIdentity>(region));
+  stand.solved = true;
+  return stand;
+}
+
+/// A disc as large as the grid around a new region's contact points.
+ContactEllipse disc_of_grid(const RegionFrame& frame) {
+  const double radius = std::sqrt(frame.half_size.x * frame.half_size.y);
+  return {frame.origin, radius * frame.tangent_x, radius * frame.tangent_y, frame.normal, radius};
+}
+
+/// Of a region's load a part has become another region's.
+/// @param motion  what it moves here, 6 x 6
+/// @param known   of that, what it has moved before
+/// @param place   m, body: of the motion
+void move_by_part(const Matrix6& motion, const Matrix6& known, const Vector6& load,
+                  const glm::dvec3& place, RegionSupport& support) {
+  const Vector6 by_others = motion * load;
+  const Vector6 more = by_others - known * load;
+  const glm::dvec3 rotation(by_others[3], by_others[4], by_others[5]);
+  const glm::dvec3 more_rotation(more[3], more[4], more[5]);
+  const glm::dvec3 arm = support.about - place;
+  support.translation += glm::dvec3(more[0], more[1], more[2]) + glm::cross(more_rotation, arm);
+  support.rotation += more_rotation;
+  support.translation_by_others +=
+      glm::dvec3(by_others[0], by_others[1], by_others[2]) + glm::cross(rotation, arm);
+  support.rotation_by_others += rotation;
+}
+
+}  // namespace
+
+void begin_support(World& world, std::uint32_t region) {
+  const std::uint32_t row = world.regions.at<RegionIdentity>(region).body;
+  RegionSupport& support = world.regions.at<RegionSupport>(region);
+  support = RegionSupport{};
+  if (world.bodies.at<BodyModels>(row).body != BodyModel::kCompliance) {
+    return;
+  }
+  const CompliantBody body{world, row, ports_of(world, row)};
+  Footing there;
+  Vector6 motion = Vector6::Zero();
+  for (std::uint32_t other = 0; other < world.regions.size(); ++other) {
+    const RegionIdentity& identity = world.regions.at<RegionIdentity>(other);
+    const Footing& here = world.footings.at<Footing>(block_of(identity));
+    if (identity.body != row || other == region || here.reach == 0.0) {
+      continue;
+    }
+    if (there.reach == 0.0) {
+      lay_footing(body.ports, disc_of_grid(world.regions.at<RegionFrame>(region)), there);
+      there.share = 1.0;
+    }
+    motion += motion_of(body, there, here) * contact_load(world, other, here).wrench;
+  }
+  support.about = world.regions.at<RegionFrame>(region).origin;
+  support.translation = {motion[0], motion[1], motion[2]};
+  support.rotation = {motion[3], motion[4], motion[5]};
+  support.translation_by_others = support.translation;
+  support.rotation_by_others = support.rotation;
+}
+
+void begin_split_support(World& world, std::uint32_t from, std::uint32_t region) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(from);
+  RegionSupport& old = world.regions.at<RegionSupport>(from);
+  RegionSupport& fresh = world.regions.at<RegionSupport>(region);
+  fresh = old;
+  if (has_patch(world, identity) ||
+      world.bodies.at<BodyModels>(identity.body).body != BodyModel::kCompliance) {
+    return;
+  }
+  const Footing& here = world.footings.at<Footing>(block_of(identity));
+  if (here.reach == 0.0) {
+    return;
+  }
+  const CompliantBody body{world, identity.body, ports_of(world, identity.body)};
+  Footing there;
+  lay_footing(body.ports, disc_of_grid(world.regions.at<RegionFrame>(region)), there);
+  there.share = here.share;
+  const ToEachOther both = to_each_other(body, there, here);
+  const double relative = there.radius / here.radius;
+  const double share = std::min(relative * relative, 0.5);
+  Vector6 taken = Vector6::Zero();
+  const Vector6 load = contact_load(world, from, here).wrench;
+  taken.head<3>() = share * load.head<3>();
+  Vector6 left = load - taken;
+  const glm::dvec3 arm = there.center - here.center;
+  const glm::dvec3 couple = glm::cross(arm, glm::dvec3(taken[0], taken[1], taken[2]));
+  left.tail<3>() -= Eigen::Vector3d(couple.x, couple.y, couple.z);
+  move_by_part(both.motion, both.known, left, there.center, fresh);
+  move_by_part(both.motion.transpose(), both.known.transpose(), taken, here.center, old);
+  // What each has given way to by its own load (own_answer.hpp).
+  Eigen::Map<Vector6>(world.regions.at<RegionReaction>(from).wrench.data()) -= load - left;
+  Eigen::Map<Vector6>(world.regions.at<RegionReaction>(region).wrench.data()) = taken;
+}
+
+void split_support(World& world, std::uint32_t from, std::uint32_t region) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(from);
+  if (world.bodies.at<BodyModels>(identity.body).body != BodyModel::kCompliance) {
+    return;
+  }
+  const Footing& here = world.footings.at<Footing>(block_of(identity));
+  if (here.reach == 0.0) {
+    return;
+  }
+  const CompliantBody body{world, identity.body, ports_of(world, identity.body)};
+  const Stand stand = solved_stand(world, region);
+  forget_couplings(world, stand.block);
+  lay_stand(body, stand, contact_ellipse(world, region));
+  const Footing& there = footing_of(body, stand);
+  const ToEachOther both = to_each_other(body, there, here);
+  RegionSupport& old = world.regions.at<RegionSupport>(from);
+  RegionSupport& fresh = world.regions.at<RegionSupport>(region);
+  fresh = old;
+  move_by_part(both.motion, both.known, contact_load(world, from, here).wrench, there.center,
+               fresh);
+  move_by_part(both.motion.transpose(), both.known.transpose(),
+               contact_load(world, region, there).wrench, here.center, old);
+  RegionReaction& reaction = world.regions.at<RegionReaction>(from);
+  if (reaction.active != 0) {
+    // They have answered to the whole load, and it is still there.
+    Eigen::Map<Vector6>(reaction.wrench.data()) -= contact_load(world, region, here).wrench;
+  }
+}
+
+void join_support(World& world, std::uint32_t ended, std::uint32_t heir) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(heir);
+  if (world.bodies.at<BodyModels>(identity.body).body != BodyModel::kCompliance) {
+    return;
+  }
+  const Footing& here = world.footings.at<Footing>(block_of(identity));
+  const Footing& there =
+      world.footings.at<Footing>(block_of(world.regions.at<RegionIdentity>(ended)));
+  if (here.reach == 0.0 || there.reach == 0.0) {
+    return;
+  }
+  const CompliantBody body{world, identity.body, ports_of(world, identity.body)};
+  const ToEachOther both = to_each_other(body, here, there);
+  RegionSupport& support = world.regions.at<RegionSupport>(heir);
+  move_by_part(both.motion, both.known, -contact_load(world, ended, there).wrench, here.center,
+               support);
+  world.regions.at<RegionReaction>(heir) = RegionReaction{};
+}
+
+}  // namespace torsion

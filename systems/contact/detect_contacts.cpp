@@ -1,0 +1,280 @@
+#include "systems/contact/detect_contacts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "systems/contact/fault.hpp"
+#include "systems/contact/group_points.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/scratch.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr int kDescentSteps = 24;
+constexpr double kSmallestStep =
+    1e-3;  // of the sample spacing: finer does not change the depth by a micrometre
+
+/// One tool over one body while it is searched.
+struct ContactSearch {
+  const World& world;
+  Scratch& scratch;
+  Range body_parts;
+  OwnedRows tool;
+  Pose tool_in_body;
+};
+
+/// Balls of the tree whose distances are asked for together: as many as a few vectors hold.
+struct BallBlock {
+  static constexpr std::size_t kBalls = 64;
+  alignas(64) std::array<double, kBalls> x, y, z;   // m, tool
+  alignas(64) std::array<double, kBalls> distance;  // m, to the body
+};
+
+/// Marks the balls' samples whose ball reaches into the body, and lines up what is below the others
+/// that do.
+/// @param rows  of the tool's balls, at most BallBlock::kBalls of them
+void look_at(ContactSearch& search, std::span<const SurfaceBall> balls,
+             std::span<const std::uint32_t> rows, BallBlock& block) {
+  Scratch& scratch = search.scratch;
+  const std::size_t count = rows.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::dvec3& center = balls[rows[i]].center;
+    block.x[i] = center.x;
+    block.y[i] = center.y;
+    block.z[i] = center.z;
+  }
+  const auto front = [count](std::array<double, BallBlock::kBalls>& column) {
+    return std::span(column).first(count);
+  };
+  distance_values(search.world, search.body_parts, search.tool_in_body,
+                  {front(block.x), front(block.y), front(block.z)}, front(block.distance));
+  for (std::size_t i = 0; i < count; ++i) {
+    const SurfaceBall& ball = balls[rows[i]];
+    const double distance = block.distance[i];
+    if (ball.sample == kNoRow) {
+      // Written so that NaN goes on.
+      const std::uint32_t end = distance > ball.radius ? 0 : ball.skip;
+      for (std::uint32_t below = rows[i] + 1; below < end; below = balls[below].skip) {
+        scratch.walk.push_back(below);
+      }
+    } else if (distance <= ball.radius) {
+      scratch.found_samples[ball.sample / 64] |= std::uint64_t{1} << (ball.sample % 64);
+      scratch.sample_states[search.tool.samples.first + ball.sample].distance = distance;
+    }
+  }
+}
+
+/// Walks the tool's tree of balls, level by level: keeps the samples whose ball reaches into the
+/// body, in their order. The distance is at least |distance| in every part, so a ball farther away
+/// than its radius holds no contact.
+void find_candidates(ContactSearch& search) {
+  Scratch& scratch = search.scratch;
+  const auto balls = search.world.balls.rows<SurfaceBall>(search.tool.balls);
+  scratch.candidates.clear();
+  scratch.walk.clear();
+  scratch.stamp += 1;
+  const std::span<std::uint64_t> found =
+      std::span(scratch.found_samples).first((search.tool.samples.count + 63) / 64);
+  std::ranges::fill(found, 0);
+  if (!balls.empty()) {
+    scratch.walk.push_back(0);
+  }
+  BallBlock block;
+  for (std::size_t first = 0; first < scratch.walk.size();) {
+    const std::size_t count = std::min(BallBlock::kBalls, scratch.walk.size() - first);
+    look_at(search, balls, std::span(scratch.walk).subspan(first, count), block);
+    first += count;
+  }
+  for (std::size_t word = 0; word < found.size(); ++word) {
+    for (std::uint64_t bits = found[word]; bits != 0; bits &= bits - 1) {
+      const auto sample = search.tool.samples.first + static_cast<std::uint32_t>(word * 64) +
+                          static_cast<std::uint32_t>(std::countr_zero(bits));
+      SampleState& state = scratch.sample_states[sample];
+      state.stamp = scratch.stamp;
+      state.point = kNoRow;
+      scratch.candidates.push_back({sample, state.distance});
+    }
+  }
+}
+
+/// Lowest among its neighbours; between equals the first. A neighbour that was not reached is
+/// farther away.
+bool is_local_minimum(const ContactSearch& search, const Candidate& candidate) {
+  const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(candidate.sample);
+  for (const std::uint32_t neighbour : sample.neighbours) {
+    if (neighbour == kNoRow) {
+      continue;
+    }
+    const std::uint32_t row = search.tool.samples.first + neighbour;
+    const SampleState& state = search.scratch.sample_states[row];
+    if (state.stamp == search.scratch.stamp &&
+        (state.distance < candidate.distance ||
+         (state.distance == candidate.distance && row < candidate.sample))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Whether no neighbour of a sample is in contact.
+bool stands_alone(const ContactSearch& search, const Candidate& candidate) {
+  const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(candidate.sample);
+  return std::ranges::none_of(sample.neighbours, [&search](std::uint32_t neighbour) {
+    if (neighbour == kNoRow) {
+      return false;
+    }
+    const SampleState& state = search.scratch.sample_states[search.tool.samples.first + neighbour];
+    return state.stamp == search.scratch.stamp && state.distance < 0.0;
+  });
+}
+
+/// Slides a point on the tool's surface towards the body, with step halving.
+/// @return the point, m, body, and its distance to the body
+ContactPoint descend(const ContactSearch& search, const Candidate& start) {
+  const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(start.sample);
+  const Pose& pose = search.tool_in_body;
+  glm::dvec3 point = sample.position;  // tool frame
+  Distance to_body = signed_distance(search.world, search.body_parts, to_outer(pose, point));
+  double step = 0.5 * sample.spacing;
+  for (int iteration = 0; iteration < kDescentSteps && step > kSmallestStep * sample.spacing;
+       ++iteration) {
+    const glm::dvec3 normal = signed_distance(search.world, search.tool.parts, point).gradient;
+    const glm::dvec3 uphill = glm::conjugate(pose.rotation) * to_body.gradient;
+    const glm::dvec3 along = uphill - normal * glm::dot(uphill, normal);
+    const double slope = glm::length(along);
+    if (slope < 1e-9) {
+      break;
+    }
+    glm::dvec3 trial = point - along * (step / slope);
+    const Distance off_surface = signed_distance(search.world, search.tool.parts, trial);
+    trial -= off_surface.gradient * off_surface.value;
+    const Distance trial_distance =
+        signed_distance(search.world, search.body_parts, to_outer(pose, trial));
+    if (trial_distance.value < to_body.value) {
+      point = trial;
+      to_body = trial_distance;
+    } else {
+      step *= 0.5;
+    }
+  }
+  return {to_outer(pose, point), -to_body.value, 0};
+}
+
+void add_point(Scratch& scratch, std::uint32_t sample, const ContactPoint& point) {
+  if (scratch.points.size() < scratch.points.capacity()) {
+    scratch.sample_states[sample].point = static_cast<std::uint32_t>(scratch.points.size());
+    scratch.points.push_back(point);
+  }
+}
+
+/// Pairs of contact points whose samples are neighbours, with rows counted from `first`.
+void pair_neighbours(const ContactSearch& search, std::uint32_t first) {
+  Scratch& scratch = search.scratch;
+  for (const Candidate& candidate : scratch.candidates) {
+    const std::uint32_t point = scratch.sample_states[candidate.sample].point;
+    if (point == kNoRow) {
+      continue;
+    }
+    const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(candidate.sample);
+    for (const std::uint32_t neighbour : sample.neighbours) {
+      if (neighbour == kNoRow) {
+        continue;
+      }
+      const SampleState& state = scratch.sample_states[search.tool.samples.first + neighbour];
+      if (state.stamp == scratch.stamp && state.point != kNoRow) {
+        scratch.near_pairs.push_back({point - first, state.point - first});
+      }
+    }
+  }
+}
+
+/// Deeper than half of the body, or with half of the tool's surface inside it, no side is "out" any
+/// more.
+bool too_deep(const ContactSearch& search, const Bounds& bounds,
+              std::span<const ContactPoint> points) {
+  const glm::dvec3 size = bounds.highest - bounds.lowest;
+  const double deepest = 0.5 * std::min({size.x, size.y, size.z});
+  const auto beyond = [deepest](const ContactPoint& point) {
+    return point.depth >= deepest;
+  };
+  return 2 * points.size() > search.tool.samples.count || std::ranges::any_of(points, beyond);
+}
+
+void find_points(ContactSearch& search) {
+  find_candidates(search);
+  Scratch& scratch = search.scratch;
+  for (const Candidate& candidate : scratch.candidates) {
+    // A sample alone in contact is told by the lowest point near it, as one beside the contact is:
+    // where it comes into contact nothing jumps, and two samples at one contact's rim that are no
+    // neighbours meet at its bottom instead of standing for a contact each.
+    const bool inside = candidate.distance < 0.0;
+    if (inside && !stands_alone(search, candidate)) {
+      const glm::dvec3& position =
+          search.world.samples.at<SurfaceSample>(candidate.sample).position;
+      add_point(scratch, candidate.sample,
+                {to_outer(search.tool_in_body, position), -candidate.distance, 0});
+    } else if (inside || is_local_minimum(search, candidate)) {
+      const ContactPoint lowest = descend(search, candidate);
+      if (lowest.depth > 0.0) {
+        add_point(scratch, candidate.sample, lowest);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void detect_contacts(StepContext& context) {
+  World& world = context.world;
+  Scratch& scratch = context.scratch;
+  scratch.points.clear();
+  scratch.near_pairs.clear();
+  scratch.pairs.clear();
+  for (std::uint32_t tool = 0; tool < world.tools.size(); ++tool) {
+    for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
+      const auto first = static_cast<std::uint32_t>(scratch.points.size());
+      ContactSearch search{
+          world, scratch, world.bodies.at<OwnedRows>(body).parts, world.tools.at<OwnedRows>(tool),
+          relative(world.bodies.at<Pose>(body), world.tools.at<ToolPose>(tool).now)};
+      find_points(search);
+      const Range points{first, static_cast<std::uint32_t>(scratch.points.size()) - first};
+      const auto first_near = static_cast<std::uint32_t>(scratch.near_pairs.size());
+      pair_neighbours(search, first);
+      const Range near{first_near,
+                       static_cast<std::uint32_t>(scratch.near_pairs.size()) - first_near};
+      scratch.pairs.push_back({tool, body, points, near, 0});
+      if (too_deep(search, world.bodies.at<Bounds>(body),
+                   {scratch.points.data() + first, points.count})) {
+        raise(world.clock.at<Clock>(0), Fault::kTooDeep);
+      }
+    }
+  }
+}
+
+void group_contact_points(StepContext& context) {
+  Scratch& scratch = context.scratch;
+  for (ContactPair& pair : scratch.pairs) {
+    const std::span<ContactPoint> points(scratch.points.data() + pair.points.first,
+                                         pair.points.count);
+    scratch.cluster_points.clear();
+    for (const ContactPoint& point : points) {
+      scratch.cluster_points.push_back(point.position);
+    }
+    const std::span<std::uint32_t> order(scratch.order);
+    const std::span<std::uint32_t> groups = order.subspan(order.size() / 2);
+    const double threshold = context.world.bodies.at<BodyModels>(pair.body).region_threshold;
+    const std::span<const NearPair> near(scratch.near_pairs.data() + pair.near.first,
+                                         pair.near.count);
+    pair.clusters = group_points(scratch.cluster_points, near, threshold,
+                                 order.first(order.size() / 2), scratch.parent, groups);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i].cluster = groups[i];
+    }
+  }
+}
+
+}  // namespace torsion

@@ -1,0 +1,318 @@
+#include "systems/contact/grid_cells.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+
+#include "systems/contact/rim_cells.hpp"
+#include "systems/contact/tool_surface.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/math/lanes.hpp"
+#include "systems/math/widest.hpp"
+#include "systems/patch/grid.hpp"
+
+namespace torsion {
+namespace {
+
+/// Distance of the cells' places on the tool to the body's rest surface.
+void find_rest_surface(const Grid& grid) {
+  const auto parts = parts_under(grid, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts,
+                                 grid.frame.origin);
+  signed_distances(grid.world, parts, grid_in_body(grid.frame), grid.scratch.cell_columns.points);
+}
+
+/// Depth under the body's rest surface, how much it changes across a cell, and the share of the
+/// cell that is in contact, all from both surfaces' first-order shape there.
+/// @param half        m: half a cell
+/// @param beside_edge  out: 1 where a cell in contact may lie beside an edge of the body, in lanes
+TORSION_WIDEST
+void find_depths(const glm::dvec2& half, std::size_t count, const double* __restrict value,
+                 const double* __restrict body_x, const double* __restrict body_y,
+                 const double* __restrict body_z, const double* __restrict tool_x,
+                 const double* __restrict tool_y, double* __restrict depth,
+                 double* __restrict depth_change, double* __restrict coverage,
+                 double* __restrict bearing, Lanes& __restrict beside_edge) {
+  const double half_x = half.x;
+  const double half_y = half.y;
+  Lanes beside{};
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t cell = first + lane;
+      const double over_slope = 1.0 / larger(body_z[cell], kSteepest);
+      const double deep = -value[cell] * over_slope;
+      const double change_x = tool_x[cell] + body_x[cell] * over_slope;
+      const double change_y = tool_y[cell] + body_y[cell] * over_slope;
+      const double across =
+          2.0 * (std::abs(change_x) * half_x + std::abs(change_y) * half_y) + 1e-30;
+      const double inside = deep > 0.0 ? 1.0 : 0.0;
+      const double at_edge = 0.5 + deep / across;
+      const double share = 2.0 * std::abs(deep) >= across ? inside : at_edge;
+      depth[cell] = deep;
+      depth_change[cell] = across;
+      coverage[cell] = share;
+      bearing[cell] = share >= 0.5 ? 1.0 : 0.0;
+      beside[lane] = larger(body_z[cell] < kFullyFacing ? share : 0.0, beside[lane]);
+    }
+  }
+  beside_edge = beside;
+}
+
+/// The share of a cell with depth > 0, to first order.
+/// @param across  m: how much the depth changes across the cell
+double share_below(double depth, double across) {
+  return 2.0 * std::abs(depth) >= across ? (depth > 0.0 ? 1.0 : 0.0) : 0.5 + depth / across;
+}
+
+/// Beside an edge of the body its side is nearest: that says how much of the cell is over the body,
+/// but the depth is the one under the face that the tool presses on, here its tangent plane.
+void take_depth_from_plane(const Grid& grid, std::size_t cell, double facing) {
+  const CellColumns& columns = grid.scratch.cell_columns;
+  const glm::dvec2 half = cell_half_size(grid);
+  const double across =
+      2.0 * (std::abs(columns.tool_x[cell]) * half.x + std::abs(columns.tool_y[cell]) * half.y) +
+      1e-30;
+  const double height = columns.points.z[cell];
+  const double below = share_below(-height, across);
+  const double mean = below < 1.0 ? 0.5 * below * across : -height;
+  double& coverage = columns.coverage[cell];
+  columns.depth[cell] = facing * columns.depth[cell] - (1.0 - facing) * height;
+  coverage *= facing + (1.0 - facing) * below;
+  columns.bearing[cell] = coverage >= 0.5 ? 1.0 : 0.0;
+  if (coverage > 0.0) {
+    // What makes the mean over the covered part of a cell that is partly covered be `mean`.
+    columns.depth_change[cell] =
+        facing * columns.depth_change[cell] + (1.0 - facing) * 2.0 * mean / coverage;
+  }
+}
+
+/// Bits of the cells that are covered or can bear, a word a row.
+/// @param coverage, bearing  (side x side)
+/// @param bits               1, 2, 4, ...: shifts would hinder vectorisation
+TORSION_WIDEST
+void find_covered(const double* __restrict coverage, const double* __restrict bearing,
+                  std::size_t side, const std::uint64_t* __restrict bits,
+                  std::uint64_t* __restrict covered) {
+  for (std::size_t j = 0; j < side; ++j) {
+    const double* const along = coverage + j * side;
+    const double* const bears = bearing + j * side;
+    std::uint64_t row = 0;
+    for (std::size_t i = 0; i < side; ++i) {
+      row |= along[i] + bears[i] > 0.0 ? bits[i] : 0;
+    }
+    covered[j] = row;
+  }
+}
+
+constexpr CellBits single_bits() {
+  CellBits bits{};
+  for (std::size_t i = 0; i < bits.size(); ++i) {
+    bits[i] = std::uint64_t{1} << i;
+  }
+  return bits;
+}
+
+CellBits bits_of_covered(const Grid& grid) {
+  static constexpr CellBits kBits = single_bits();
+  CellBits covered{};
+  find_covered(grid.scratch.cell_columns.coverage.data(), grid.scratch.cell_columns.bearing.data(),
+               grid.side, kBits.data(), covered.data());
+  return covered;
+}
+
+/// Leaves depth, its change and coverage in the columns.
+/// @param rims  find_rims has found any
+CellBits find_coverage(const Grid& grid, bool rims) {
+  const CellColumns& columns = grid.scratch.cell_columns;
+  const std::size_t count = columns.coverage.size();
+  double* const coverage = columns.coverage.data();
+  Lanes beside_edge;
+  const DistanceColumns& body = columns.points;
+  find_depths(cell_half_size(grid), count, body.value.data(), body.gradient_x.data(),
+              body.gradient_y.data(), body.gradient_z.data(), columns.tool_x.data(),
+              columns.tool_y.data(), columns.depth.data(), columns.depth_change.data(), coverage,
+              columns.bearing.data(), beside_edge);
+  std::fill(coverage + count, coverage + (count + kLanes - 1) / kLanes * kLanes, 0.0);
+  if (largest_of(beside_edge) > 0.0) {
+    const std::span<const double> normal = columns.points.gradient_z;
+    for (std::size_t cell = 0; cell < count; ++cell) {
+      if (normal[cell] < kFullyFacing && coverage[cell] > 0.0) {
+        take_depth_from_plane(grid, cell, facing_share(normal[cell]));
+      }
+    }
+  }
+  if (rims) {
+    take_rims(columns);
+  }
+  if (has_patch(grid.world, grid.identity) && patch_spare(grid.side) > 0) {
+    for (std::size_t first = 0; first < count; first += grid.side) {
+      // Takes no part: there are as many columns on either side of a contact's middle.
+      coverage[first] = 0.0;
+      columns.bearing[first] = 0.0;
+    }
+  }
+  return bits_of_covered(grid);
+}
+
+/// From the columns to the table.
+void store_cells(const Grid& grid) {
+  const CellColumns& columns = grid.scratch.cell_columns;
+  const double* const z = columns.points.z.data();
+  const double* const depth = columns.depth.data();
+  const double* const coverage = columns.coverage.data();
+  const double* const bearing = columns.bearing.data();
+  CellGeometry* const cells = grid.cells.data();
+  for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
+    cells[cell] = {z[cell], depth[cell], coverage[cell], bearing[cell]};
+  }
+}
+
+/// Marks the cells under a region's contact points, those of other clusters in `foreign`.
+/// @return true when there are any of others in the grid
+bool mark_points(const Grid& grid, const RegionPoints& contact, CellBits& own, CellBits& foreign) {
+  const CellFinder finder = finder_of(grid);
+  bool any_foreign = false;
+  for (const ContactPoint& point : points_of(grid.scratch, contact)) {
+    if (const auto cell = finder.under(point.position)) {
+      const bool is_own = point.cluster == contact.cluster;
+      (is_own ? own : foreign)[cell->j] |= std::uint64_t{1} << cell->i;
+      any_foreign = any_foreign || !is_own;
+    }
+  }
+  return any_foreign;
+}
+
+/// Of the cells given. One beside a rim has a depth without being in contact.
+std::optional<CellPlace> deepest_of(const Grid& grid, const CellBits& cells) {
+  std::optional<CellPlace> deepest;
+  double most = 0.0;  // m
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    for (std::uint64_t left = cells[j]; left != 0; left &= left - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+      const double depth = grid.scratch.cell_columns.depth[std::size_t{j} * grid.side + i];
+      if (!deepest || depth > most) {
+        deepest = CellPlace{i, j};
+        most = depth;
+      }
+    }
+  }
+  return deepest;
+}
+
+/// Takes the coverage from cells that are not joined to the region's own contact points, or are
+/// nearer to those of another cluster, in steps from cell to cell. Returns those that keep it.
+CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact, const CellBits& covered) {
+  const CellColumns& columns = grid.scratch.cell_columns;
+  CellBits free{};
+  CellBits own{};
+  CellBits foreign{};
+  bool any_foreign = mark_points(grid, contact, own, foreign);
+  std::uint64_t any_own = 0;
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    own[j] &= covered[j];
+    foreign[j] &= covered[j] & ~own[j];
+    any_own |= own[j];
+  }
+  if (any_own == 0) {
+    // The points fall between the cells: the deepest of those in contact is the nearest to them.
+    if (const auto cell = deepest_of(grid, covered)) {
+      own[cell->j] = std::uint64_t{1} << cell->i;
+      foreign[cell->j] &= ~own[cell->j];
+    }
+  }
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    free[j] = covered[j] & ~(own[j] | foreign[j]);
+  }
+  for (bool more = true; more;) {
+    more = spread_one_step(grid.side, free, own);
+    more = (any_foreign && spread_one_step(grid.side, free, foreign)) || more;
+  }
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    for (std::uint64_t lost = covered[j] & ~own[j]; lost != 0; lost &= lost - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(lost));
+      columns.coverage[std::size_t{j} * grid.side + i] = 0.0;
+      columns.bearing[std::size_t{j} * grid.side + i] = 0.0;
+    }
+  }
+  return own;
+}
+
+}  // namespace
+
+Pose grid_in_body(const RegionFrame& frame) {
+  return {frame.origin, glm::quat_cast(glm::dmat3(frame.tangent_x, frame.tangent_y, frame.normal))};
+}
+
+Pose moved_grid_in_body(const RegionFrame& frame, const RegionCarrier& carrier,
+                        const RegionSupport& support) {
+  Pose moved = grid_in_body(frame);
+  const double angle = glm::length(carrier.rotation);
+  if (angle > 0.0) {
+    moved.rotation = glm::angleAxis(angle, carrier.rotation / angle) * moved.rotation;
+  }
+  moved.position += carrier.translation;
+  const double turn = glm::length(support.rotation);
+  if (turn > 0.0) {
+    const glm::dquat rotation = glm::angleAxis(turn, support.rotation / turn);
+    moved.rotation = rotation * moved.rotation;
+    moved.position = support.about + rotation * (moved.position - support.about);
+  }
+  moved.position += support.translation;
+  return moved;
+}
+
+Pose grid_in_tool(const Grid& grid) {
+  const Pose tool_in_body = relative(grid.world.bodies.at<Pose>(grid.identity.body),
+                                     grid.world.tools.at<ToolPose>(grid.identity.tool).now);
+  return relative(tool_in_body, moved_grid_in_body(grid.frame, grid.carrier, grid.support));
+}
+
+void cell_centers(const RegionFrame& frame, std::uint32_t side, std::span<double> x,
+                  std::span<double> y) {
+  for (std::uint32_t i = 0; i < side; ++i) {
+    x[i] = cell_center(frame, side, i, 0).x;
+  }
+  for (std::uint32_t j = 0; j < side; ++j) {
+    const std::size_t row = std::size_t{j} * side;
+    std::fill_n(&y[row], side, cell_center(frame, side, 0, j).y);
+    if (j > 0) {
+      std::copy_n(x.begin(), side, &x[row]);
+    }
+  }
+}
+
+bool spread_one_step(std::uint32_t side, CellBits& free, CellBits& bits) {
+  std::uint64_t any = 0;
+  std::uint64_t before = 0;  // the row before, as it was
+  for (std::uint32_t j = 0; j < side; ++j) {
+    const std::uint64_t after = j + 1 < side ? bits[j + 1] : 0;
+    const std::uint64_t rows = before | bits[j] | after;
+    const std::uint64_t fresh = (rows | rows << 1 | rows >> 1) & free[j];
+    before = bits[j];
+    bits[j] |= fresh;
+    free[j] &= ~fresh;
+    any |= fresh;
+  }
+  return any != 0;
+}
+
+CellBits covered_cells(const Grid& grid) {
+  double* const coverage = grid.scratch.cell_columns.coverage.data();
+  double* const bearing = grid.scratch.cell_columns.bearing.data();
+  for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
+    coverage[cell] = grid.cells[cell].coverage;
+    bearing[cell] = grid.cells[cell].bearing;
+  }
+  return bits_of_covered(grid);
+}
+
+CellBits find_cells(const Grid& grid, const RegionPoints& contact) {
+  find_tool_surface(grid);
+  const bool rims = find_rims(grid);
+  find_rest_surface(grid);
+  const CellBits own = keep_own_cells(grid, contact, find_coverage(grid, rims));
+  store_cells(grid);
+  return own;
+}
+
+}  // namespace torsion

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "systems/contact/cell_finder.hpp"
+#include "systems/math/smooth_step.hpp"
+#include "systems/scratch.hpp"
+#include "systems/step.hpp"
+
+namespace torsion {
+
+/// One region's cells and what finding them needs of the tables.
+struct Grid {
+  World& world;
+  Scratch& scratch;
+  RegionIdentity identity;
+  RegionFrame& frame;
+  RegionCarrier& carrier;
+  const RegionSupport& support;
+  std::uint32_t side;
+  std::span<CellGeometry> cells;
+};
+
+inline Grid grid_of(StepContext& context, std::uint32_t region) {
+  World& world = context.world;
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  return {world,
+          context.scratch,
+          identity,
+          world.regions.at<RegionFrame>(region),
+          world.regions.at<RegionCarrier>(region),
+          world.regions.at<RegionSupport>(region),
+          world.settings.at<Settings>(0).grid_side,
+          world.cells.rows<CellGeometry>(identity.cells)};
+}
+
+inline glm::dvec2 cell_half_size(const Grid& grid) {
+  return grid.frame.half_size / static_cast<double>(grid.side);
+}
+
+inline std::span<const ContactPoint> points_of(const Scratch& scratch,
+                                               const RegionPoints& contact) {
+  return {scratch.points.data() + contact.points.first, contact.points.count};
+}
+
+/// The grid's frame in that of its body.
+Pose grid_in_body(const RegionFrame& frame);
+
+/// Where the material under a grid has gone, in the frame of its body: with what sticks to the
+/// tool, and with the body as a whole.
+Pose moved_grid_in_body(const RegionFrame& frame, const RegionCarrier& carrier,
+                        const RegionSupport& support);
+
+/// Finds cells by places that the material under them has moved to.
+inline CellFinder finder_of(const Grid& grid) {
+  return {moved_grid_in_body(grid.frame, grid.carrier, grid.support), grid.frame.half_size,
+          grid.side};
+}
+
+/// The grid's frame, moved as the material under it, in that of its tool.
+Pose grid_in_tool(const Grid& grid);
+
+/// Where the centres of all cells are, m, grid.
+/// @param x, y  (side x side) out
+void cell_centers(const RegionFrame& frame, std::uint32_t side, std::span<double> x,
+                  std::span<double> y);
+
+/// Cells as bits: bit i of word j is cell (i, j).
+using CellBits = std::array<std::uint64_t, kMaxGridSide>;
+
+/// Adds to `bits` their neighbours of `free`, those across a corner too, and takes them from it.
+/// @return true when there were any
+bool spread_one_step(std::uint32_t side, CellBits& free, CellBits& bits);
+
+/// The cells with coverage. Leaves that in Scratch::cell_columns.
+CellBits covered_cells(const Grid& grid);
+
+/// Smallest cosine between a surface's normal and the grid's that is divided by.
+inline constexpr double kSteepest = 0.25;
+
+/// Cosine from which facing_share is 1.
+inline constexpr double kFullyFacing = 0.5;
+
+/// How much a cell's nearest face of the body counts as the one that the tool presses on: 1 while
+/// it faces the grid, 0 where it is the body's side, beside an edge or deep down.
+/// @param slope  cosine between that face's normal and the grid's
+inline double facing_share(double slope) {
+  return smooth_step(4.0 * slope - 1.0);
+}
+
+/// Finds, for every cell of the grid, the tool's surface along the normal, how deep it lies under
+/// the body's rest surface, and the share of the cell that is in contact. Cells that are not joined
+/// to the region's own contact points belong to a neighbour and get coverage 0. Leaves in
+/// Scratch::cell_columns the body's distances at the cells' points, depths and coverage.
+/// @return the cells with coverage
+CellBits find_cells(const Grid& grid, const RegionPoints& contact);
+
+}  // namespace torsion

@@ -1,0 +1,351 @@
+#include "systems/contact/group_regions.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/body/compliance/region_supports.hpp"
+#include "systems/contact/cell_finder.hpp"
+#include "systems/contact/fault.hpp"
+#include "systems/contact/grid_cells.hpp"
+#include "systems/contact/join_clusters.hpp"
+#include "systems/contact/region_grid.hpp"
+#include "systems/contact/region_wrenches.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/patch/energy.hpp"
+#include "systems/patch/join.hpp"
+#include "systems/patch/split.hpp"
+#include "systems/scratch.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr auto kTakesOver = static_cast<std::uint32_t>(RegionEvent::kTakesOver);
+constexpr auto kBodyFollows = static_cast<std::uint32_t>(RegionEvent::kBodyFollows);
+
+/// The contact points of one pair, by cluster.
+struct PairPoints {
+  std::span<const ContactPoint> points;
+  std::uint32_t clusters;
+};
+
+/// A region's cells under contact points.
+struct RegionCells {
+  RegionCells(const World& world, std::uint32_t region)
+      : finder(moved_grid_in_body(world.regions.at<RegionFrame>(region),
+                                  world.regions.at<RegionCarrier>(region),
+                                  world.regions.at<RegionSupport>(region)),
+               world.regions.at<RegionFrame>(region).half_size,
+               world.settings.at<Settings>(0).grid_side),
+        cells(world.cells.rows<CellGeometry>(world.regions.at<RegionIdentity>(region).cells)) {}
+
+  /// Share of a point that lies over the region: 1 on its covered cells, a little on the others of
+  /// its grid.
+  [[nodiscard]] double overlap_with(const glm::dvec3& point) const {
+    const auto cell = finder.under(point);
+    if (!cell) {
+      return 0.0;
+    }
+    return cells[cell->j * finder.side + cell->i].coverage > 0.0 ? 1.0 : 1e-2;
+  }
+
+  CellFinder finder;
+  std::span<const CellGeometry> cells;
+};
+
+bool of_pair(const RegionIdentity& region, const ContactPair& pair) {
+  return region.tool == pair.tool && region.body == pair.body;
+}
+
+/// Ends a region and lets `heir`, if any, take over what it exerted.
+void end_region(World& world, std::uint32_t region, std::uint32_t heir) {
+  if (heir != kNoRow) {
+    RegionWrench& wrench = world.regions.at<RegionWrench>(heir);
+    const RegionWrench& ended = world.regions.at<RegionWrench>(region);
+    wrench.on_tool.force += ended.on_tool.force;
+    wrench.on_tool.torque += ended.on_tool.torque;
+    wrench.event_now = kTakesOver;
+    join_energies(world.regions.at<PatchEnergy>(region), world.regions.at<PatchEnergy>(heir));
+  }
+}
+
+/// Whether a region on the body took over in the last step.
+bool any_took_over(const World& world, std::uint32_t body) {
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    if (world.regions.at<RegionIdentity>(region).body == body &&
+        world.regions.at<RegionWrench>(region).event_now == kTakesOver) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Ends the last step's events. A body with compliance answers to regions that took over from the
+/// next step on, and moves all its regions. Of answers that follow upon each other within the fade
+/// a region that stands by waits for the first alone, lest the force stand still.
+void end_events(World& world) {
+  for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
+    const bool begins_to_follow =
+        world.bodies.at<BodyModels>(body).body == BodyModel::kCompliance &&
+        any_took_over(world, body);
+    for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+      RegionWrench& wrench = world.regions.at<RegionWrench>(region);
+      std::uint32_t& event = wrench.event_now;
+      if (world.regions.at<RegionIdentity>(region).body != body) {
+        continue;
+      }
+      if (begins_to_follow && (event == kTakesOver || wrench.event_share == 0.0)) {
+        event = kBodyFollows;
+      } else if (event >= kBodyFollows && event + 1 < kBodyFollows + kFollowingSteps) {
+        event += 1;
+      } else {
+        event = static_cast<std::uint32_t>(RegionEvent::kNone);
+      }
+    }
+  }
+}
+
+/// A block of cells that no region uses. There are as many blocks as rows, so one is free when a
+/// row is.
+Range free_cells(const World& world) {
+  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  const std::uint32_t count = side * side;
+  for (std::uint32_t block = 0; block < world.regions.capacity(); ++block) {
+    const Range cells{block * count, count};
+    const auto uses = [&](const RegionIdentity& region) {
+      return region.cells == cells;
+    };
+    if (std::ranges::none_of(world.regions.column<RegionIdentity>(), uses)) {
+      return cells;
+    }
+  }
+  return {};
+}
+
+std::uint32_t regions_on(const World& world, std::uint32_t body) {
+  return static_cast<std::uint32_t>(
+      std::ranges::count(world.regions.column<RegionIdentity>(), body, &RegionIdentity::body));
+}
+
+/// Begins a region where there was none, or one that splits off another.
+/// @param split_from  kNoRow, or that one
+void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t cluster,
+                  std::uint32_t split_from) {
+  World& world = context.world;
+  Clock& clock = world.clock.at<Clock>(0);
+  const std::uint32_t row = world.regions.size();
+  const bool full =
+      regions_on(world, pair.body) >= kMaxRegionsPerBody || row == world.regions.capacity();
+  if (full) {
+    raise(clock, Fault::kRegionsFull);
+    return;
+  }
+  const Range cells = free_cells(world);
+  const std::optional<Entity> handle = world.region_handles.create(row);
+  TORSION_ASSERT(handle.has_value() && world.regions.append().has_value());
+  world.regions.at<RegionIdentity>(row) = {*handle, pair.body, pair.tool, clock.regions_formed,
+                                           cells};
+  clock.regions_formed += 1;
+  std::ranges::fill(world.cells.rows<CellGeometry>(cells), CellGeometry{});
+  std::ranges::fill(world.cells.rows<CellTraction>(cells), CellTraction{});
+  if (!world.mdr_layers.empty()) {
+    const Range layers{cells.first / cells.count * kMdrLayers, kMdrLayers};
+    std::ranges::fill(world.mdr_layers.rows<MdrLayer>(layers), MdrLayer{});
+  }
+  if (!world.footings.empty()) {
+    world.footings.at<Footing>(cells.first / cells.count) = Footing{};
+  }
+  if (!world.patch_cells.empty()) {
+    world.patch_cells.zero(cells);
+  }
+  place_new_grid(context, row, {pair.points, cluster});
+  if (split_from == kNoRow) {
+    begin_support(world, row);
+  } else {
+    begin_split_support(world, split_from, row);
+    if (world.regions.at<PatchState>(split_from).started != 0) {
+      copy_patch(world, split_from, row);
+    }
+  }
+  // on_tool is zero: what it exerts at birth fades in.
+  world.regions.at<RegionWrench>(row).event_now = static_cast<std::uint32_t>(
+      split_from != kNoRow ? RegionEvent::kTakesOver : RegionEvent::kBegins);
+}
+
+bool owns_cluster(const Scratch& scratch, std::uint32_t region) {
+  return std::ranges::any_of(
+      scratch.owners, [region](const ClusterOwner& owner) { return owner.region == region; });
+}
+
+/// Regions continue in the cluster that they overlap most; the oldest comes first and keeps what it
+/// takes.
+void match_by_overlap(const World& world, Scratch& scratch, const ContactPair& pair,
+                      std::span<const ContactPoint> points) {
+  const auto regions = world.regions.column<RegionIdentity>();
+  for (std::uint32_t region = 0; region < regions.size(); ++region) {
+    if (!of_pair(regions[region], pair)) {
+      continue;
+    }
+    scratch.overlaps.assign(pair.clusters, 0.0);
+    const RegionCells cells(world, region);
+    for (const ContactPoint& point : points) {
+      scratch.overlaps[point.cluster] += cells.overlap_with(point.position);
+    }
+    const auto best = std::ranges::max_element(scratch.overlaps);
+    if (best == scratch.overlaps.end() || *best <= 0.0) {
+      continue;
+    }
+    ClusterOwner& owner = scratch.owners[static_cast<std::size_t>(best - scratch.overlaps.begin())];
+    if (owner.region == kNoRow) {
+      owner = {region, *best};
+    }
+  }
+}
+
+/// A small region may slide or roll past its own size in a step: what is left over on both sides is
+/// matched when it is nearer than two regions can be to each other.
+void match_by_distance(const World& world, Scratch& scratch, const ContactPair& pair,
+                       std::span<const ContactPoint> points) {
+  const double threshold = world.bodies.at<BodyModels>(pair.body).region_threshold;
+  const auto regions = world.regions.column<RegionIdentity>();
+  for (std::uint32_t region = 0; region < regions.size(); ++region) {
+    if (!of_pair(regions[region], pair) || owns_cluster(scratch, region)) {
+      continue;
+    }
+    double nearest = threshold;
+    std::uint32_t cluster = kNoRow;
+    for (const ContactPoint& point : points) {
+      const double distance =
+          glm::distance(point.position, world.regions.at<RegionGeometry>(region).equivalent_point);
+      if (scratch.owners[point.cluster].region == kNoRow && distance < nearest) {
+        nearest = distance;
+        cluster = point.cluster;
+      }
+    }
+    if (cluster != kNoRow) {
+      scratch.owners[cluster] = {region, 0.0};
+    }
+  }
+}
+
+/// Fills scratch.owners: which region each cluster continues.
+void match_clusters(const World& world, Scratch& scratch, const ContactPair& pair,
+                    std::span<const ContactPoint> points) {
+  scratch.owners.assign(pair.clusters, ClusterOwner{});
+  match_by_overlap(world, scratch, pair, points);
+  match_by_distance(world, scratch, pair, points);
+}
+
+/// Where the region's contact went: the region that now owns the cluster over its old place, or
+/// kNoRow.
+std::uint32_t heir_of(const World& world, const Scratch& scratch, std::uint32_t region,
+                      std::span<const ContactPoint> points) {
+  const RegionCells cells(world, region);
+  for (const ContactPoint& point : points) {
+    if (cells.overlap_with(point.position) >= 1.0) {
+      return scratch.owners[point.cluster].region;
+    }
+  }
+  return kNoRow;
+}
+
+/// A cluster without an owner that lies over a living region was split off it. Leaves that region
+/// in scratch.owners.
+void note_splits(World& world, Scratch& scratch, std::span<const ContactPoint> points) {
+  for (const ContactPoint& point : points) {
+    if (scratch.owners[point.cluster].region != kNoRow) {
+      continue;
+    }
+    for (const ClusterOwner& owner : scratch.owners) {
+      if (owner.region != kNoRow &&
+          RegionCells(world, owner.region).overlap_with(point.position) >= 1.0) {
+        world.regions.at<RegionWrench>(owner.region).event_now = kTakesOver;
+        scratch.owners[point.cluster].split_from = owner.region;
+      }
+    }
+  }
+}
+
+/// Whether a region of patch has tractions that are worth keeping.
+bool has_settled(const World& world, std::uint32_t region) {
+  constexpr double kSettled = 0.1;  // PatchState::residual
+  const PatchState& state = world.regions.at<PatchState>(region);
+  return state.started != 0 && state.residual < kSettled;
+}
+
+/// Points are sought under the body's rest shape. One that gives way may be dragged along by
+/// friction until the tool stands beside that shape with all its points: cells that carry a force
+/// where they are now are a contact without them. Where there are points they say which contacts
+/// there are.
+bool lives_without_points(const World& world, const ContactPair& pair, std::uint32_t region) {
+  return pair.points.count == 0 &&
+         world.bodies.at<BodyModels>(pair.body).body == BodyModel::kCompliance &&
+         world.regions.at<RegionNormal>(region).force > 0.0;
+}
+
+/// Regions that own no cluster go on without points, or end.
+void end_or_go_on(StepContext& context, const ContactPair& pair,
+                  std::span<const ContactPoint> points) {
+  World& world = context.world;
+  Scratch& scratch = context.scratch;
+  const auto regions = world.regions.column<RegionIdentity>();
+  for (std::uint32_t region = 0; region < regions.size(); ++region) {
+    if (!of_pair(regions[region], pair) || owns_cluster(scratch, region)) {
+      continue;
+    }
+    if (lives_without_points(world, pair, region)) {
+      follow_contact(context, region, {pair.points, kNoRow});
+    } else {
+      end_region(world, region, heir_of(world, scratch, region, points));
+      scratch.region_commands.destroy(regions[region].self);
+    }
+  }
+}
+
+/// Regions of patch that others take over hand them their tractions.
+void join_patches(StepContext& context, const ContactPair& pair,
+                  std::span<const ContactPoint> points) {
+  const World& world = context.world;
+  const auto regions = world.regions.column<RegionIdentity>();
+  for (std::uint32_t region = 0; region < regions.size(); ++region) {
+    if (!of_pair(regions[region], pair) || owns_cluster(context.scratch, region) ||
+        !has_settled(world, region)) {
+      continue;
+    }
+    const std::uint32_t heir = heir_of(world, context.scratch, region, points);
+    if (heir != kNoRow && has_settled(world, heir)) {
+      join_patch(context, region, heir);
+    }
+  }
+}
+
+}  // namespace
+
+void group_regions(StepContext& context) {
+  World& world = context.world;
+  Scratch& scratch = context.scratch;
+  end_events(world);
+  for (ContactPair& pair : scratch.pairs) {
+    join_clusters(world, scratch, pair);
+    const std::span<const ContactPoint> points(scratch.points.data() + pair.points.first,
+                                               pair.points.count);
+    match_clusters(world, scratch, pair, points);
+    note_splits(world, scratch, points);
+    end_or_go_on(context, pair, points);
+    for (std::uint32_t cluster = 0; cluster < pair.clusters; ++cluster) {
+      const std::uint32_t owner = scratch.owners[cluster].region;
+      if (owner != kNoRow) {
+        follow_contact(context, owner, {pair.points, cluster});
+      }
+    }
+    join_patches(context, pair, points);
+    for (std::uint32_t cluster = 0; cluster < pair.clusters; ++cluster) {
+      const ClusterOwner& owner = scratch.owners[cluster];
+      if (owner.region == kNoRow) {
+        begin_region(context, pair, cluster, owner.split_from);
+      }
+    }
+    scratch.region_commands.apply(world.regions, world.region_handles);
+  }
+}
+
+}  // namespace torsion

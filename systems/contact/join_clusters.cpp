@@ -1,0 +1,244 @@
+#include "systems/contact/join_clusters.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <span>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "systems/contact/cell_finder.hpp"
+#include "systems/contact/grid_cells.hpp"
+#include "systems/geometry/bounds.hpp"
+#include "systems/math/disjoint_sets.hpp"
+#include "systems/math/frames.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kLeastCoverage = 0.1;
+constexpr double kLeastAgreement = 0.9;  // cosine between the normals of regions that may be one
+
+/// A region's covered cells, and which contact points lie on them.
+struct RegionCover {
+  RegionCover(const World& world, std::uint32_t region)
+      : frame(world.regions.at<RegionFrame>(region)),
+        finder(moved_grid_in_body(frame, world.regions.at<RegionCarrier>(region),
+                                  world.regions.at<RegionSupport>(region)),
+               frame.half_size, world.settings.at<Settings>(0).grid_side),
+        normal(glm::cross(finder.tangent_x, finder.tangent_y)),
+        cells(world.cells.rows<CellGeometry>(world.regions.at<RegionIdentity>(region).cells)) {}
+
+  /// By more than what the slope at the rim of a contact that ends before it may feign.
+  [[nodiscard]] bool is_covered(const CellPlace& cell) const {
+    return cells[std::size_t{cell.j} * finder.side + cell.i].coverage >= kLeastCoverage;
+  }
+
+  /// The covered cell that a point lies on; none where it is beside it, over or under it.
+  [[nodiscard]] std::optional<CellPlace> under(const glm::dvec3& point) const {
+    const auto cell = finder.under(point);
+    if (!cell || !is_covered(*cell)) {
+      return std::nullopt;
+    }
+    return is_near(point, *cell) ? cell : std::nullopt;
+  }
+
+  /// Not far over or under a cell: as steep as two to one, the tool's surface goes up by two cells
+  /// across one.
+  [[nodiscard]] bool is_near(const glm::dvec3& point, const CellPlace& cell) const {
+    const double reach = 4.0 * std::max(frame.half_size.x, frame.half_size.y) / finder.side;
+    const double height = glm::dot(point - finder.origin, normal);
+    return std::abs(height - cells[std::size_t{cell.j} * finder.side + cell.i].height) < reach;
+  }
+
+  /// m, body: where the tool's surface is in a cell.
+  [[nodiscard]] glm::dvec3 place_of(const CellPlace& cell) const {
+    const glm::dvec2 center = cell_center(frame, finder.side, cell.i, cell.j);
+    return finder.origin + finder.tangent_x * center.x + finder.tangent_y * center.y +
+           normal * cells[std::size_t{cell.j} * finder.side + cell.i].height;
+  }
+
+  [[nodiscard]] CellBits bits() const {
+    CellBits covered{};
+    for (std::uint32_t j = 0; j < finder.side; ++j) {
+      for (std::uint32_t i = 0; i < finder.side; ++i) {
+        covered[j] |= is_covered({i, j}) ? std::uint64_t{1} << i : 0;
+      }
+    }
+    return covered;
+  }
+
+  const RegionFrame& frame;
+  CellFinder finder;
+  glm::dvec3 normal;
+  std::span<const CellGeometry> cells;
+};
+
+bool several_clusters_on(const RegionCover& cover, std::span<const ContactPoint> points) {
+  std::uint32_t first = kNoRow;
+  return std::ranges::any_of(points, [&](const ContactPoint& point) {
+    if (point.cluster == first || !cover.under(point.position)) {
+      return false;
+    }
+    const bool another = first != kNoRow;
+    first = point.cluster;
+    return another;
+  });
+}
+
+void link_joined(const RegionCover& cover, std::span<const ContactPoint> points,
+                 std::span<std::uint32_t> parent) {
+  CellBits free = cover.bits();
+  for (const ContactPoint& start : points) {
+    const auto cell = cover.under(start.position);
+    const std::uint64_t bit = cell ? std::uint64_t{1} << cell->i : 0;
+    if (!cell || (free[cell->j] & bit) == 0) {
+      continue;  // reached before, and linked
+    }
+    CellBits reached{};
+    reached[cell->j] = bit;
+    free[cell->j] &= ~bit;
+    while (spread_one_step(cover.finder.side, free, reached)) {
+    }
+    for (const ContactPoint& point : points) {
+      const auto other = cover.under(point.position);
+      if (other && (reached[other->j] >> other->i & 1U) != 0) {
+        link(parent, start.cluster, point.cluster);
+      }
+    }
+  }
+}
+
+/// The cluster of a point on a region's covered cells; kNoRow where there is none.
+std::uint32_t cluster_on(const RegionCover& cover, std::span<const ContactPoint> points) {
+  const auto on = std::ranges::find_if(
+      points, [&](const ContactPoint& point) { return cover.under(point.position).has_value(); });
+  return on == points.end() ? kNoRow : on->cluster;
+}
+
+/// Whether a covered cell of one lies on one of the other or beside it.
+bool touch(const RegionCover& one, const RegionCover& other) {
+  const double reach = glm::length(one.frame.half_size) + glm::length(other.frame.half_size);
+  if (glm::distance(one.finder.origin, other.finder.origin) > reach ||
+      glm::dot(one.normal, other.normal) < kLeastAgreement) {
+    return false;
+  }
+  CellBits beside = other.bits();
+  CellBits all;
+  all.fill(~std::uint64_t{0});
+  spread_one_step(other.finder.side, all, beside);
+  for (std::uint32_t j = 0; j < one.finder.side; ++j) {
+    for (std::uint32_t i = 0; i < one.finder.side; ++i) {
+      if (one.is_covered({i, j})) {
+        const glm::dvec3 place = one.place_of({i, j});
+        const auto cell = other.finder.under(place);
+        if (cell && (beside[cell->j] >> cell->i & 1U) != 0 && other.is_near(place, *cell)) {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+/// Numbers the sets of clusters 0, 1, ... and gives their numbers to the points.
+void renumber(std::span<std::uint32_t> parent, std::span<std::uint32_t> numbers,
+              std::span<ContactPoint> points, ContactPair& pair) {
+  std::uint32_t count = 0;
+  for (std::uint32_t cluster = 0; cluster < pair.clusters; ++cluster) {
+    const std::uint32_t root = root_of(parent, cluster);
+    numbers[cluster] = root == cluster ? count++ : numbers[root];
+  }
+  for (ContactPoint& point : points) {
+    point.cluster = numbers[point.cluster];
+  }
+  pair.clusters = count;
+}
+
+bool is_of_pair(const World& world, std::uint32_t region, const ContactPair& pair) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  return identity.tool == pair.tool && identity.body == pair.body;
+}
+
+/// Links the clusters on a region's cells, and its own with those of other regions that it touches.
+void join_on(const World& world, std::uint32_t region, const ContactPair& pair,
+             std::span<const ContactPoint> points, std::span<std::uint32_t> parent) {
+  const RegionCover cover(world, region);
+  if (several_clusters_on(cover, points)) {
+    link_joined(cover, points, parent);
+  }
+  const std::uint32_t cluster = cluster_on(cover, points);
+  for (std::uint32_t other = 0; cluster != kNoRow && other < world.regions.size(); ++other) {
+    if (other == region || !is_of_pair(world, other, pair)) {
+      continue;
+    }
+    const RegionCover beside(world, other);
+    if (!touch(cover, beside)) {
+      continue;
+    }
+    const std::uint32_t neighbour = cluster_on(beside, points);
+    if (neighbour != kNoRow) {
+      link(parent, cluster, neighbour);
+    }
+  }
+}
+
+/// Where the clusters' points are.
+class ClusterBoxes {
+ public:
+  ClusterBoxes(std::span<const ContactPoint> points, std::uint32_t clusters) : count_(clusters) {
+    boxes_.fill(bounds_of(std::span<const glm::dvec3>()));
+    for (const ContactPoint& point : points) {
+      if (point.cluster < boxes_.size()) {
+        Bounds& box = boxes_[point.cluster];
+        box.lowest = glm::min(box.lowest, point.position);
+        box.highest = glm::max(box.highest, point.position);
+      }
+    }
+  }
+
+  /// How many clusters, of as many as it knows, may have points on a region or beside it.
+  [[nodiscard]] std::size_t near(const World& world, std::uint32_t region) const {
+    if (count_ > boxes_.size()) {
+      return count_;
+    }
+    const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+    const glm::dvec3 middle = frame.origin + world.regions.at<RegionCarrier>(region).translation +
+                              world.regions.at<RegionSupport>(region).translation;
+    const double reach = 2.0 * (glm::length(frame.half_size) +
+                                world.regions.at<RegionGeometry>(region).largest_depth);
+    return static_cast<std::size_t>(
+        std::count_if(boxes_.begin(), boxes_.begin() + count_, [&](const Bounds& box) {
+          return boxes_meet(box, {middle, middle}, reach);
+        }));
+  }
+
+ private:
+  std::array<Bounds, std::size_t{2} * kMaxRegionsPerBody> boxes_;
+  std::uint32_t count_;
+};
+
+}  // namespace
+
+void join_clusters(const World& world, Scratch& scratch, ContactPair& pair) {
+  if (pair.clusters < 2) {
+    return;
+  }
+  const std::span<ContactPoint> points(scratch.points.data() + pair.points.first,
+                                       pair.points.count);
+  const std::span<std::uint32_t> parent(scratch.parent.data(), pair.clusters);
+  std::iota(parent.begin(), parent.end(), 0U);
+  const ClusterBoxes boxes(points, pair.clusters);
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    // A region far from all clusters but one has nothing to join, and no near neighbour.
+    if (is_of_pair(world, region, pair) && boxes.near(world, region) > 1) {
+      join_on(world, region, pair, points, parent);
+    }
+  }
+  renumber(parent, scratch.order, points, pair);
+}
+
+}  // namespace torsion

@@ -1,0 +1,273 @@
+#include "systems/contact/region_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/contact/contact_axes.hpp"
+#include "systems/contact/grid_cells.hpp"
+#include "systems/contact/grid_place.hpp"
+#include "systems/contact/grid_summary.hpp"
+#include "systems/contact/region_motion.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/patch/centering.hpp"
+#include "systems/patch/grid.hpp"
+#include "systems/patch/split.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr int kMostRegrids =
+    10;  // of one grid in one step: a new region finds its size by doubling
+constexpr double kSmallestBoxFill = 0.45;  // by the contact, else the grid is made smaller
+constexpr double kTurn = 0.5;              // of the angle by which a grid lies askew, in a step
+constexpr double kSettled =
+    0.02;  // of the grid: what it is off by when a region begins, splits or takes over another
+
+/// Where the contact sticks, the material went along with the tool in the last step: the grid turns
+/// with it, and the place of the tractions moves with it. Without this a long contact that sticks
+/// and turns would seem to leave the area that it holds, for contact is found against the rest
+/// shape.
+void follow_material(World& world, std::uint32_t region) {
+  RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  RegionFrame& tractions = world.regions.at<TractionFrame>(region).frame;
+  const RegionMotion& motion = world.regions.at<RegionMotion>(region);
+  const double share = world.regions.at<RegionFriction>(region).stick_share;
+  const double angle = share * motion.spin;
+  const glm::dvec3 pivot = grid_to_body(frame, {motion.pivot, 0.0});
+  const glm::dvec3 slide = tangent_to_body(frame, share * motion.slide);
+  const glm::dvec3 arm = tractions.origin - pivot;
+  tractions.origin += slide + std::sin(angle) * glm::cross(frame.normal, arm);
+  turn_axes(tractions, angle);
+  turn_axes(frame, angle);
+}
+
+bool has_mdr(const Grid& grid) {
+  return grid.world.bodies.at<BodyModels>(grid.identity.body).contact == ContactModel::kMdr;
+}
+
+/// True when the contact reaches the grid's edge, so that some of it may lie outside.
+bool reaches_edge(const Grid& grid, const PlaneBox& box) {
+  const glm::dvec2 inner = grid.frame.half_size - cell_half_size(grid);
+  return box.lowest.x < -inner.x || box.lowest.y < -inner.y || box.highest.x > inner.x ||
+         box.highest.y > inner.y;
+}
+
+bool fills_too_little(const Grid& grid, const PlaneBox& box) {
+  const glm::dvec2 fill = (box.highest - box.lowest) / (2.0 * grid.frame.half_size);
+  return std::max(fill.x, fill.y) < kSmallestBoxFill;
+}
+
+/// True when a further pass would leave the grid where it is.
+bool settled(const Grid& grid, const PlaneBox& box) {
+  const glm::dvec2 change = glm::abs(half_size_for(grid, box) - grid.frame.half_size);
+  const glm::dvec2 shift = glm::abs(0.5 * (box.lowest + box.highest));
+  const glm::dvec2 off = glm::max(change, shift) / grid.frame.half_size;
+  return std::max(off.x, off.y) < kSettled;
+}
+
+/// Turns the grid, and what the springs of mdr know in its axes.
+void turn_grid(const Grid& grid, std::uint32_t region, double angle) {
+  turn_axes(grid.frame, angle);
+  const glm::dmat2 back(std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle));
+  if (has_mdr(grid)) {
+    const Range layers{block_of(grid.identity) * kMdrLayers, kMdrLayers};
+    for (MdrLayer& layer : grid.world.mdr_layers.rows<MdrLayer>(layers)) {
+      layer.shift = back * layer.shift;
+    }
+  }
+  RegionFriction& friction = grid.world.regions.at<RegionFriction>(region);
+  friction.force = back * friction.force;
+}
+
+/// Lays the grid's axes along a long contact, across which a grid askew has only a cell or two.
+/// @param part  of the angle between them that it turns by
+/// @return the contact's box in the grid's axes then
+PlaneBox align_grid(const Grid& grid, std::uint32_t region, const CellBits& covered, double part) {
+  const double angle = part * contact_axes(grid, covered_moments(grid)).angle;
+  if (angle == 0.0) {
+    return covered_box(grid, covered);
+  }
+  const PlaneBox box = covered_box(grid, covered, angle);
+  turn_grid(grid, region, angle);
+  return box;
+}
+
+/// Passes over the grid until it holds the whole contact and little else. In most steps it does at
+/// once, and moves with the contact from step to step; when something happened to the region it
+/// settles within the step, so that what fades in is not the grid's way to its place.
+/// @return whether the grid was laid anew
+bool fit_to_contact(const Grid& grid, std::uint32_t region, const RegionPoints& contact,
+                    double start_depth, bool event_now) {
+  for (int pass = 0; pass < kMostRegrids; ++pass) {
+    const CellBits covered = find_cells(grid, contact);
+    PlaneBox box = covered_box(grid, covered);
+    if (box.empty()) {
+      if (pass > 0) {
+        return true;
+      }
+      // Cells look for the tool where it was; of a thin one that has turned none may find it.
+      restart_heights(grid, start_depth);
+      continue;
+    }
+    if (reaches_edge(grid, box)) {
+      box.lowest -= 0.5 * grid.frame.half_size;
+      box.highest += 0.5 * grid.frame.half_size;
+    } else if (event_now ? settled(grid, box) : !fills_too_little(grid, box)) {
+      return pass > 0;
+    }
+    if (event_now && !reaches_edge(grid, box)) {
+      box = align_grid(grid, region, covered, 1.0);
+    }
+    fit(grid, box);
+    restart_heights(grid, start_depth);
+  }
+  return true;
+}
+
+double deepest_point(std::span<const ContactPoint> points, std::uint32_t cluster,
+                     glm::dvec3& position) {
+  double depth = 0.0;
+  for (const ContactPoint& point : points) {
+    if (point.cluster == cluster && point.depth > depth) {
+      depth = point.depth;
+      position = point.position;
+    }
+  }
+  return depth;
+}
+
+void include_points(const Grid& grid, const RegionPoints& contact, PlaneBox& box) {
+  for (const ContactPoint& point : points_of(grid.scratch, contact)) {
+    if (point.cluster == contact.cluster) {
+      const glm::dvec2 in_grid(body_to_grid(grid.frame, point.position));
+      box.include(in_grid, in_grid);
+    }
+  }
+}
+
+/// The region's contact in this step, findable by its block of cells, which stays when rows move.
+RegionPoints& contact_of(StepContext& context, const RegionIdentity& region) {
+  return context.scratch.region_points[block_of(region)];
+}
+
+/// What sticks goes with the tool in this step, too. Cells that only followed a step later would
+/// lie at other depths in between, for which nobody has worked.
+void foresee_carrier(World& world, std::uint32_t region) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const double share = world.regions.at<RegionFriction>(region).stick_share;
+  const MotionOverBody motion = motion_over_body(world, region);
+  // As a rigid body about the contact's middle, so that it does not matter where the grid has its
+  // origin.
+  const glm::dvec3 middle = world.regions.at<RegionGeometry>(region).equivalent_point;
+  const glm::dvec3 shift = shift_at(motion, middle);
+  const double turn = share * glm::dot(turn_of(motion), frame.normal);
+  RegionCarrier& carrier = world.regions.at<RegionCarrier>(region);
+  const glm::dvec3 arm = frame.origin + carrier.translation - middle;
+  carrier.translation += share * (shift - frame.normal * glm::dot(shift, frame.normal)) +
+                         (glm::angleAxis(turn, frame.normal) * arm - arm);
+  carrier.rotation += frame.normal * turn;
+}
+
+/// A grid that is laid anew may see more of the body than the one before it, by whose cells it is
+/// turned: of a face that comes to lie on a body the first to touch is an edge, whose normal is
+/// another one, and over the whole face that would be a depth of its own.
+void look_along_normal(const Grid& grid, const RegionPoints& contact) {
+  constexpr double kLittle = 0.1;  // of the depth
+  const RegionGeometry seen = summarize_cells(grid);
+  const double sine = glm::length(glm::cross(grid.frame.normal, seen.mean_normal));
+  const double reach = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
+  if (sine * reach <= kLittle * seen.largest_depth) {
+    return;
+  }
+  turn_normal_to(grid.frame, seen.mean_normal);
+  restart_heights(grid, seen.largest_depth);
+  find_cells(grid, contact);
+}
+
+}  // namespace
+
+void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
+  const Grid grid = grid_of(context, region);
+  contact_of(context, grid.identity) = contact;
+  glm::dvec3 deepest(0.0);
+  const double depth = deepest_point(points_of(grid.scratch, contact), contact.cluster, deepest);
+  const Distance surface = signed_distance(
+      grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts, deepest);
+  RegionFrame& frame = grid.frame;
+  frame = RegionFrame{};
+  frame.origin = deepest;
+  turn_normal_to(frame, glm::normalize(surface.gradient));
+  PlaneBox box;
+  const glm::dvec2 start(2.0 * depth);
+  box.include(-start, start);
+  include_points(grid, contact, box);
+  fit(grid, box);
+  restart_heights(grid, depth);
+}
+
+void follow_contact(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
+  const Grid grid = grid_of(context, region);
+  contact_of(context, grid.identity) = contact;
+  if (has_patch(context.world, grid.identity)) {
+    if (context.world.regions.at<RegionNormal>(region).force <= 0.0) {
+      // It has nothing to keep, and its grid may lie beside the points, where it would stay.
+      context.world.patch_cells.zero(grid.identity.cells);
+      context.world.regions.at<PatchState>(region) = PatchState{};
+      place_new_grid(context, region, contact);
+      return;
+    }
+    follow_patch(context, region, contact);
+    turn_normal_to(grid.frame, context.world.regions.at<RegionGeometry>(region).mean_normal);
+    return;
+  }
+  const MotionOverBody motion = motion_over_body(context.world, region);
+  const bool moves = motion.shift != glm::dvec3(0.0) || motion.turn != glm::dvec3(0.0);
+  // The springs of mdr are round: they need no grid that turns with what sticks.
+  if (!has_mdr(grid)) {
+    follow_material(context.world, region);
+  }
+  const CellBits covered = covered_cells(grid);
+  PlaneBox box = moves ? align_grid(grid, region, covered, kTurn) : covered_box(grid, covered);
+  if (box.empty()) {
+    // Here, too. A grid that only approached its points would shrink to a point under a single one.
+    // Without points it stays where it is, and its cells find nothing or the tool again.
+    if (contact.cluster != kNoRow) {
+      place_new_grid(context, region, contact);
+    }
+    return;
+  }
+  include_points(grid, contact, box);
+  approach(grid, box, moves);
+  turn_normal_to(grid.frame, context.world.regions.at<RegionGeometry>(region).mean_normal);
+}
+
+void region_grids(StepContext& context) {
+  for (std::uint32_t region = 0; region < context.world.regions.size(); ++region) {
+    const Grid grid = grid_of(context, region);
+    const RegionPoints& contact = contact_of(context, grid.identity);
+    if (has_patch(context.world, grid.identity) &&
+        context.world.regions.at<PatchState>(region).started != 0) {
+      foresee_carrier(context.world, region);
+      find_cells(grid, contact);
+      if (context.world.regions.at<PatchState>(region).resized != 0) {
+        look_along_normal(grid, contact);
+      }
+    } else {
+      glm::dvec3 deepest(0.0);
+      const double depth =
+          deepest_point(points_of(grid.scratch, contact), contact.cluster, deepest);
+      if (has_patch(context.world, grid.identity)) {
+        center_patch(grid, contact, depth);
+      } else {
+        const bool event_now = context.world.regions.at<RegionWrench>(region).event_now != 0;
+        if (fit_to_contact(grid, region, contact, depth, event_now)) {
+          look_along_normal(grid, contact);
+        }
+      }
+    }
+    context.world.regions.at<RegionGeometry>(region) = summarize_cells(grid);
+  }
+  share_out_patches(context);
+}
+
+}  // namespace torsion

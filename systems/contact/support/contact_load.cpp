@@ -1,0 +1,235 @@
+#include "systems/contact/support/contact_load.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "systems/contact/support/support_field.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/math/widest.hpp"
+#include "systems/mdr/smooth_contact.hpp"
+#include "systems/patch/grid.hpp"
+
+namespace torsion {
+namespace {
+
+/// One region's cells.
+struct LoadedCells {
+  const RegionFrame& frame;
+  std::uint32_t side;
+  double area;  // m^2, of a cell
+  std::span<const CellTraction> tractions;
+};
+
+LoadedCells cells_of(const World& world, std::uint32_t region) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  return {frame, side, cell_area(frame, side),
+          world.cells.rows<CellTraction>(world.regions.at<RegionIdentity>(region).cells)};
+}
+
+/// Calls each(x and y of the cell's centre, traction) for the cells with pressure.
+template <class Each>
+void for_loaded(const LoadedCells& cells, const Each& each) {
+  std::size_t cell = 0;
+  for (std::uint32_t j = 0; j < cells.side; ++j) {
+    for (std::uint32_t i = 0; i < cells.side; ++i, ++cell) {
+      if (cells.tractions[cell].pressure > 0.0) {
+        each(cell_center(cells.frame, cells.side, i, j), cells.tractions[cell]);
+      }
+    }
+  }
+}
+
+/// A disc at the region's place.
+ContactEllipse disc_of(const World& world, std::uint32_t region) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+  const glm::dvec2 extent = overlap_extent(world, region);
+  const double least = 1e-3 * std::max(extent.x, extent.y);
+  ContactEllipse disc;
+  disc.center = geometry.rest_point;
+  disc.normal = frame.normal;
+  disc.radius = std::max(geometry.radius, least);
+  disc.axis_1 = frame.tangent_x * disc.radius;
+  disc.axis_2 = frame.tangent_y * disc.radius;
+  return disc;
+}
+
+ContactEllipse ellipse_of(const World& world, std::uint32_t region) {
+  const LoadedCells cells = cells_of(world, region);
+  double count = 0.0;
+  glm::dvec2 sum(0.0);
+  double xx = 0.0;
+  double xy = 0.0;
+  double yy = 0.0;
+  for_loaded(cells, [&](const glm::dvec2& at, const CellTraction&) {
+    count += 1.0;
+    sum += at;
+    xx += at.x * at.x;
+    xy += at.x * at.y;
+    yy += at.y * at.y;
+  });
+  if (count == 0.0) {
+    return disc_of(world, region);
+  }
+  const glm::dvec2 middle = sum / count;
+  // A cell's own second moment is a twelfth of its side's square.
+  const glm::dvec2 side = 2.0 * cells.frame.half_size / static_cast<double>(cells.side);
+  xx = xx / count - middle.x * middle.x + side.x * side.x / 12.0;
+  yy = yy / count - middle.y * middle.y + side.y * side.y / 12.0;
+  xy = xy / count - middle.x * middle.y;
+  // An ellipse has a quarter of its half axes' squares: axes are twice a root of the moments, here
+  // Cholesky's; any root makes the same ellipse of the unit disc.
+  const double first = std::sqrt(xx);
+  const double across = xy / first;
+  const double second = std::sqrt(std::max(yy - across * across, 1e-6 * yy));
+  ContactEllipse ellipse;
+  ellipse.normal = cells.frame.normal;
+  ellipse.center = grid_to_body(cells.frame, glm::dvec3(middle, 0.0));
+  ellipse.axis_1 = tangent_to_body(cells.frame, 2.0 * glm::dvec2(first, across));
+  ellipse.axis_2 = tangent_to_body(cells.frame, 2.0 * glm::dvec2(0.0, second));
+  ellipse.radius = std::sqrt(count * cells.area / std::numbers::pi);
+  return ellipse;
+}
+
+void add_wrench(ContactLoad& load, const glm::dvec3& arm, const glm::dvec3& force) {
+  const glm::dvec3 couple = glm::cross(arm, force);
+  load.wrench += (Vector6() << force.x, force.y, force.z, couple.x, couple.y, couple.z).finished();
+}
+
+/// One row of loaded cells.
+struct LoadedRow {
+  std::size_t count = 0;
+  // A place in the footing's coordinates, and the traction on the tool, Pa, grid.
+  std::array<double, kMaxGridSide> x, y, along_x, along_y, pressure;
+};
+
+/// Terms of a SupportField and one of zero, to fill vectors.
+constexpr std::size_t kPaddedTerms = kSupportTerms + 1;
+
+/// Sums of term times traction, Pa, grid.
+struct TermSums {
+  std::array<double, kPaddedTerms> along_x{}, along_y{}, pressure{};
+};
+
+/// Adds a row's. The terms lie side by side in vectors, so that no sum is split.
+TORSION_WIDEST
+void add_terms(const LoadedRow& __restrict row, TermSums& __restrict sums) {
+  for (std::size_t cell = 0; cell < row.count; ++cell) {
+    const auto terms = support_terms({row.x[cell], row.y[cell]});
+    std::array<double, kPaddedTerms> padded{};
+    std::copy(terms.begin(), terms.end(), padded.begin());
+    for (std::size_t k = 0; k < kPaddedTerms; ++k) {
+      sums.along_x[k] += padded[k] * row.along_x[cell];
+      sums.along_y[k] += padded[k] * row.along_y[cell];
+      sums.pressure[k] += padded[k] * row.pressure[cell];
+    }
+  }
+}
+
+/// Tractions and their first moments about the grid's origin, grid axes.
+struct PlainSums {
+  glm::dvec2 along{0.0};                 // Pa
+  double pressure = 0.0;                 // Pa
+  glm::dvec2 pressure_times_place{0.0};  // Pa m
+  double turning = 0.0;                  // Pa m: place x traction
+};
+
+ContactLoad load_of_cells(const World& world, std::uint32_t region, const Footing& footing) {
+  const LoadedCells cells = cells_of(world, region);
+  const RegionFrame& frame = cells.frame;
+  const glm::dvec2 origin = plain_coordinates_in(footing, frame.origin);
+  const glm::dvec2 by_x(glm::dot(footing.tangent_x, frame.tangent_x) / footing.reach,
+                        glm::dot(footing.tangent_y, frame.tangent_x) / footing.reach);
+  const glm::dvec2 by_y(glm::dot(footing.tangent_x, frame.tangent_y) / footing.reach,
+                        glm::dot(footing.tangent_y, frame.tangent_y) / footing.reach);
+  PlainSums plain;
+  TermSums sums;
+  LoadedRow row;
+  std::size_t cell = 0;
+  for (std::uint32_t j = 0; j < cells.side; ++j) {
+    row.count = 0;
+    for (std::uint32_t i = 0; i < cells.side; ++i, ++cell) {
+      const CellTraction& at = cells.tractions[cell];
+      if (at.pressure <= 0.0) {
+        continue;
+      }
+      const glm::dvec2 place = cell_center(frame, cells.side, i, j);
+      const glm::dvec2 coordinates = support_coordinates(origin + by_x * place.x + by_y * place.y);
+      row.x[row.count] = coordinates.x;
+      row.y[row.count] = coordinates.y;
+      row.along_x[row.count] = at.traction.x;
+      row.along_y[row.count] = at.traction.y;
+      row.pressure[row.count++] = at.pressure;
+      plain.along += at.traction;
+      plain.pressure += at.pressure;
+      plain.pressure_times_place += at.pressure * place;
+      plain.turning += place.x * at.traction.y - place.y * at.traction.x;
+    }
+    add_terms(row, sums);
+  }
+  const auto on_material = [&](double along_x, double along_y, double pressure) {
+    return -cells.area *
+           (frame.normal * pressure + tangent_to_body(frame, glm::dvec2(along_x, along_y)));
+  };
+  ContactLoad load;
+  for (std::size_t k = 0; k < kSupportTerms; ++k) {
+    load.moments[k] = on_material(sums.along_x[k], sums.along_y[k], sums.pressure[k]);
+  }
+  add_wrench(load, frame.origin - footing.center,
+             on_material(plain.along.x, plain.along.y, plain.pressure));
+  const glm::dvec3 couple =
+      on_material(plain.pressure_times_place.y, -plain.pressure_times_place.x, plain.turning);
+  load.wrench.tail<3>() += Eigen::Vector3d(couple.x, couple.y, couple.z);
+  return load;
+}
+
+/// Force and couple spread over the region's disc.
+ContactLoad load_of_disc(const World& world, std::uint32_t region, const Footing& footing) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const RegionFriction& friction = world.regions.at<RegionFriction>(region);
+  const ContactEllipse disc = disc_of(world, region);
+  const glm::dvec3 force = -frame.normal * world.regions.at<RegionNormal>(region).force -
+                           tangent_to_body(frame, friction.force);
+  ContactLoad load;
+  double polar = 0.0;
+  for (const DiscPoint& point : disc_points()) {
+    polar += point.ball_share * glm::dot(point.place, point.place);
+  }
+  const double turning = -friction.couple / (polar * disc.radius * disc.radius);
+  for (const DiscPoint& point : disc_points()) {
+    const glm::dvec3 arm = disc.axis_1 * point.place.x + disc.axis_2 * point.place.y;
+    const glm::dvec3 here = point.ball_share * (force + turning * glm::cross(frame.normal, arm));
+    const auto terms = support_terms(coordinates_in(footing, disc.center + arm));
+    for (std::size_t k = 0; k < kSupportTerms; ++k) {
+      load.moments[k] += terms[k] * here;
+    }
+    add_wrench(load, disc.center + arm - footing.center, here);
+  }
+  return load;
+}
+
+}  // namespace
+
+PortCompliance ports_of(const World& world, std::uint32_t body) {
+  const OwnedRows& owned = world.bodies.at<OwnedRows>(body);
+  return {world.ports.rows<CompliancePort>(owned.ports),
+          world.compliance.rows<ComplianceValue>(owned.compliance)};
+}
+
+ContactEllipse contact_ellipse(const World& world, std::uint32_t region) {
+  return has_patch(world, world.regions.at<RegionIdentity>(region)) ? ellipse_of(world, region)
+                                                                    : disc_of(world, region);
+}
+
+ContactLoad contact_load(const World& world, std::uint32_t region, const Footing& footing) {
+  return has_patch(world, world.regions.at<RegionIdentity>(region))
+             ? load_of_cells(world, region, footing)
+             : load_of_disc(world, region, footing);
+}
+
+}  // namespace torsion

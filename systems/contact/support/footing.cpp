@@ -1,0 +1,304 @@
+#include "systems/contact/support/footing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "systems/contact/support/support_field.hpp"
+#include "systems/math/dense_solve.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr std::size_t kLeastPorts = 14;  // that a footing has, if the body has them
+constexpr double kBeyond = 1.3;          // reach over the contact's longer half axis
+constexpr double kLeastFacing = 0.4;     // cosine between a port's normal and the contact's
+constexpr double kMoved = 0.04;          // of its reach: a footing moved farther is laid anew
+constexpr double kGrown = 1.12;          // likewise the contact's radius
+constexpr double kTurned = 0.9997;       // likewise the cosine of the normal
+/// Against wiggles where ports are few, over the sum of the weights: by degree. Constants and
+/// slopes are left alone.
+constexpr std::array<double, 5> kStiffer{0.0, 0.0, 1e-6, 1e-5, 1e-4};
+
+double stiffer(int degree, double size) {
+  const double base = kStiffer[static_cast<std::size_t>(degree)];
+  return base * std::pow(size, -2.0 * degree);
+}
+
+/// Distance that takes in kLeastPorts ports; a little more than the farthest where there are
+/// fewer.
+double distance_to_enough(const PortCompliance& body, const ContactEllipse& contact) {
+  std::array<double, kLeastPorts> nearest;
+  nearest.fill(kNeverSeen);
+  for (const CompliancePort& port : body.ports) {
+    const double distance = seen_distance(port, contact.center, contact.normal);
+    if (distance < nearest.back()) {
+      nearest.back() = distance;
+      for (std::size_t i = kLeastPorts - 1; i > 0 && nearest[i] < nearest[i - 1]; --i) {
+        std::swap(nearest[i], nearest[i - 1]);
+      }
+    }
+  }
+  double farthest = 0.0;
+  for (const double distance : nearest) {
+    farthest = distance < kNeverSeen ? distance : farthest;
+  }
+  return nearest.back() < kNeverSeen ? farthest : 1.2 * farthest;
+}
+
+/// Ports within reach, those that are spread widest first (choose_ports), and their weights.
+void find_ports(const PortCompliance& body, const ContactEllipse& contact, double size,
+                Footing& footing, std::array<double, kFootingPorts>& weights) {
+  footing.count = 0;
+  for (std::uint32_t port = 0; port < body.ports.size() && footing.count < kFootingPorts; ++port) {
+    const double share =
+        seen_distance(body.ports[port], contact.center, contact.normal) / footing.reach;
+    if (share < 1.0) {
+      const double inner = 1.0 - share * share;
+      weights[footing.count] = inner * inner / (share * share + 0.5 * size * size);
+      footing.ports[footing.count++] = port;
+    }
+  }
+}
+
+/// Weighted least squares: terms = (A' W A + stiffer)^-1 A' W displacements.
+void fit_terms(const PortCompliance& body, const std::array<double, kFootingPorts>& weights,
+               double size, Footing& footing) {
+  constexpr std::size_t kStride = kSupportTerms + 1;  // even, for vectors
+  std::array<double, kSupportTerms * kStride> normal{};
+  footing.fit = {};
+  double sum = 0.0;
+  for (std::size_t p = 0; p < footing.count; ++p) {
+    const auto terms =
+        support_terms(coordinates_in(footing, body.ports[footing.ports[p]].position));
+    sum += weights[p];
+    for (std::size_t k = 0; k < kSupportTerms; ++k) {
+      const double weighted = weights[p] * terms[k];
+      footing.fit[k][p] = weighted;
+      for (std::size_t l = 0; l < kSupportTerms; ++l) {
+        normal[k * kStride + l] += weighted * terms[l];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < kSupportTerms; ++k) {
+    // The last part only keeps what no port speaks of at zero.
+    normal[k * (kStride + 1)] += sum * (stiffer(kSupportDegrees[k], size) + 1e-12);
+  }
+  solve_symmetric(kSupportTerms, kStride, normal.data(), kFootingPorts, footing.fit[0].data(),
+                  1e-13 * sum);
+}
+
+/// Moments of a unit force or couple on the contact along each axis, spread as by a rigid disc.
+std::array<SupportMoments, 6> moments_of_wrenches(const Footing& footing,
+                                                  const ContactEllipse& contact) {
+  std::array<DiscForces, 6> spread;
+  for (std::size_t c = 0; c < 6; ++c) {
+    glm::dvec3 force(0.0);
+    glm::dvec3 couple(0.0);
+    (c < 3 ? force : couple)[static_cast<int>(c % 3)] = 1.0;
+    spread[c] = spread_wrench(contact, &DiscPoint::disc_share, force, couple);
+  }
+  std::array<SupportMoments, 6> moments{};
+  for (std::size_t q = 0; q < kDiscPoints; ++q) {
+    const glm::dvec2 place = disc_points()[q].place;
+    const glm::dvec3 arm = contact.axis_1 * place.x + contact.axis_2 * place.y;
+    const auto terms = support_terms(coordinates_in(footing, contact.center + arm));
+    for (std::size_t c = 0; c < 6; ++c) {
+      for (std::size_t k = 0; k < kSupportTerms; ++k) {
+        moments[c][k] += spread[c][q] * terms[k];
+      }
+    }
+  }
+  return moments;
+}
+
+}  // namespace
+
+double seen_distance(const CompliancePort& port, const glm::dvec3& point,
+                     const glm::dvec3& normal) {
+  const double facing = (glm::dot(port.normal, normal) - kLeastFacing) / (1.0 - kLeastFacing);
+  return facing > 0.0 ? glm::distance(port.position, point) / facing : kNeverSeen;
+}
+
+const std::array<DiscPoint, kDiscPoints>& disc_points() {
+  static const std::array<DiscPoint, kDiscPoints> points = [] {
+    // With r^2 = 1 - t^2 the shares are dt and t^2 dt over 0 to 1: Gauss' three points.
+    constexpr std::array<double, 3> kPlaces{0.1127016653792583, 0.5, 0.8872983346207417};
+    constexpr std::array<double, 3> kWeights{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+    std::array<DiscPoint, kDiscPoints> made;
+    for (std::size_t i = 0; i < kDiscPoints; ++i) {
+      const std::size_t ring = i / 8;
+      const double t = kPlaces[ring];
+      const double angle = 0.25 * std::numbers::pi *
+                           (static_cast<double>(i % 8) + 0.5 * static_cast<double>(ring % 2));
+      const double radius = std::sqrt(1.0 - t * t);
+      made[i] = {{radius * std::cos(angle), radius * std::sin(angle)},
+                 kWeights[ring] / 8.0,
+                 3.0 * t * t * kWeights[ring] / 8.0};
+    }
+    return made;
+  }();
+  return points;
+}
+
+DiscForces spread_wrench(const ContactEllipse& contact, double DiscPoint::*shares,
+                         const glm::dvec3& force, const glm::dvec3& couple) {
+  const double twist = glm::dot(couple, contact.normal);
+  const glm::dvec3 tilt = couple - contact.normal * twist;
+  double polar = 0.0;
+  glm::dmat3 planar(0.0);
+  for (const DiscPoint& point : disc_points()) {
+    const glm::dvec3 arm = contact.axis_1 * point.place.x + contact.axis_2 * point.place.y;
+    polar += point.*shares * glm::dot(arm, arm);
+    planar += point.*shares * glm::outerProduct(arm, arm);
+  }
+  // Normal forces n (arm . g) have the couple sum of (arm . g) arm x n: g = planar^-1 (n x tilt).
+  // Over polar, for beside n n' a contact of nanometres would be lost in rounding.
+  const glm::dvec3 slope =
+      glm::inverse(planar / polar + glm::outerProduct(contact.normal, contact.normal)) *
+      (glm::cross(contact.normal, tilt) / polar);
+  DiscForces forces;
+  for (std::size_t q = 0; q < kDiscPoints; ++q) {
+    const DiscPoint& point = disc_points()[q];
+    const glm::dvec3 arm = contact.axis_1 * point.place.x + contact.axis_2 * point.place.y;
+    forces[q] = point.*shares * (force + contact.normal * glm::dot(arm, slope) +
+                                 glm::cross(contact.normal, arm) * (twist / polar));
+  }
+  return forces;
+}
+
+bool still_fits(const Footing& footing, const ContactEllipse& contact) {
+  return footing.reach > 0.0 &&
+         glm::distance(footing.center, contact.center) < kMoved * footing.reach &&
+         contact.radius < kGrown * footing.radius && footing.radius < kGrown * contact.radius &&
+         glm::dot(footing.normal, contact.normal) > kTurned;
+}
+
+glm::dvec2 plain_coordinates_in(const Footing& footing, const glm::dvec3& point) {
+  const glm::dvec3 from = point - footing.origin;
+  return glm::dvec2(glm::dot(footing.tangent_x, from), glm::dot(footing.tangent_y, from)) /
+         footing.reach;
+}
+
+glm::dvec2 coordinates_in(const Footing& footing, const glm::dvec3& point) {
+  return support_coordinates(plain_coordinates_in(footing, point));
+}
+
+void lay_footing(const PortCompliance& body, const ContactEllipse& contact, Footing& footing) {
+  footing.origin = contact.center;
+  footing.center = contact.center;
+  footing.radius = contact.radius;
+  footing.normal = contact.normal;
+  const glm::dvec3 other =
+      std::abs(contact.normal.x) < 0.6 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+  footing.tangent_x = glm::normalize(glm::cross(contact.normal, other));
+  footing.tangent_y = glm::cross(contact.normal, footing.tangent_x);
+  const double longer = std::max(glm::length(contact.axis_1), glm::length(contact.axis_2));
+  footing.extent = longer;
+  footing.reach = std::max(distance_to_enough(body, contact), kBeyond * longer);
+  std::array<double, kFootingPorts> weights{};
+  const double size = std::max(kBeyond * longer / footing.reach, 0.05);
+  find_ports(body, contact, size, footing, weights);
+  fit_terms(body, weights, size, footing);
+  const std::array<SupportMoments, 6> moments = moments_of_wrenches(footing, contact);
+  for (std::size_t c = 0; c < 6; ++c) {
+    forces_at_ports(footing, moments[c], footing.unit_forces[c]);
+  }
+}
+
+void forces_at_ports(const Footing& footing, const SupportMoments& moments, PortVectors& forces) {
+  for (std::size_t p = 0; p < footing.count; ++p) {
+    forces[p] = glm::dvec3(0.0);
+  }
+  for (std::size_t k = 0; k < kSupportTerms; ++k) {
+    for (std::size_t p = 0; p < footing.count; ++p) {
+      forces[p] += footing.fit[k][p] * moments[k];
+    }
+  }
+}
+
+void displacements_at_ports(const PortCompliance& body, const Footing& footing,
+                            const PortVectors& forces, PortVectors& displacements) {
+  const std::size_t side = 3 * body.ports.size();
+  for (std::size_t to = 0; to < footing.count; ++to) {
+    const ComplianceValue* const rows = &body.values[3 * std::size_t{footing.ports[to]} * side];
+    glm::dvec3 sum(0.0);
+    for (std::size_t from = 0; from < footing.count; ++from) {
+      const ComplianceValue* const at = rows + 3 * std::size_t{footing.ports[from]};
+      const glm::dvec3& f = forces[from];
+      sum += glm::dvec3(
+          at[0].value * f.x + at[1].value * f.y + at[2].value * f.z,
+          at[side].value * f.x + at[side + 1].value * f.y + at[side + 2].value * f.z,
+          at[2 * side].value * f.x + at[2 * side + 1].value * f.y + at[2 * side + 2].value * f.z);
+    }
+    displacements[to] = sum;
+  }
+}
+
+Vector6 rigid_motion(const Footing& footing, const PortVectors& displacements) {
+  Vector6 motion;
+  for (std::size_t c = 0; c < 6; ++c) {
+    double sum = 0.0;
+    for (std::size_t p = 0; p < footing.count; ++p) {
+      sum += glm::dot(footing.unit_forces[c][p], displacements[p]);
+    }
+    motion[static_cast<Eigen::Index>(c)] = sum;
+  }
+  return motion;
+}
+
+SupportField bending(const Footing& footing, const PortVectors& displacements,
+                     const Vector6& rigid) {
+  SupportField field;
+  field.origin = footing.origin;
+  field.along_x = footing.tangent_x / footing.reach;
+  field.along_y = footing.tangent_y / footing.reach;
+  for (std::size_t k = 0; k < kSupportTerms; ++k) {
+    for (std::size_t p = 0; p < footing.count; ++p) {
+      field.terms[k] += footing.fit[k][p] * displacements[p];
+    }
+  }
+  const glm::dvec3 translation(rigid[0], rigid[1], rigid[2]);
+  const glm::dvec3 rotation(rigid[3], rigid[4], rigid[5]);
+  field.terms[0] -= translation + glm::cross(rotation, footing.origin - footing.center);
+  field.terms[1] -= glm::cross(rotation, footing.tangent_x) * footing.reach;
+  field.terms[2] -= glm::cross(rotation, footing.tangent_y) * footing.reach;
+  return field;
+}
+
+Matrix6 motion_between(const PortCompliance& body, const Footing& to, const Footing& from) {
+  using RowMatrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  using Columns = Eigen::Matrix<double, 3, 6>;
+  static_assert(sizeof(ComplianceValue) == sizeof(double));
+  const auto forces_of = [](const Footing& footing, std::size_t port) {
+    Columns forces;
+    for (std::size_t c = 0; c < 6; ++c) {
+      const glm::dvec3& force = footing.unit_forces[c][port];
+      forces.col(static_cast<Eigen::Index>(c)) << force.x, force.y, force.z;
+    }
+    return forces;
+  };
+  std::array<Columns, kFootingPorts> forces;
+  for (std::size_t j = 0; j < from.count; ++j) {
+    forces[j] = forces_of(from, j);
+  }
+  const std::size_t side = 3 * body.ports.size();
+  const Eigen::OuterStride<> stride(static_cast<Eigen::Index>(side));
+  Matrix6 motion = Matrix6::Zero();
+  for (std::size_t i = 0; i < to.count; ++i) {
+    Columns moved = Columns::Zero();
+    const ComplianceValue* const rows = &body.values[3 * std::size_t{to.ports[i]} * side];
+    for (std::size_t j = 0; j < from.count; ++j) {
+      const Eigen::Map<const RowMatrix3, 0, Eigen::OuterStride<>> block(
+          &rows[3 * std::size_t{from.ports[j]}].value, stride);
+      moved.noalias() += block * forces[j];
+    }
+    motion.noalias() += forces_of(to, i).transpose() * moved;
+  }
+  return motion;
+}
+
+}  // namespace torsion

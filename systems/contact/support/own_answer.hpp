@@ -1,0 +1,37 @@
+#pragma once
+
+// How a compliant body gives way under a region within the step in which the region's loads are
+// found. Contact model patch has that in its own equations (patch/support.hpp); this is for those
+// that know a contact as a whole.
+
+#include <Eigen/Core>
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
+#include "ecs/world.hpp"
+
+namespace torsion {
+
+/// Of a contact on the material: forces along the grid's x and y and the couple about its normal,
+/// and the force into the body; or motions along them, m and rad.
+using ContactLoads = glm::dvec4;
+
+struct OwnAnswer {
+  bool any = false;            // else the body does not give way, or not so that it is known
+  glm::dvec3 point{0.0};       // m, body: where the loads act
+  glm::dmat4 compliance{0.0};  // motions by loads: the others' answers are in it, where they matter
+  ContactLoads known{0.0};     // to which the body has given way already
+  // Of loads of 1, about the footing's centre: wrenches, and what they move.
+  Eigen::Matrix<double, 6, 4> wrenches, motions;
+};
+
+/// @param point  m, body: where the loads act
+OwnAnswer own_answer(const World& world, std::uint32_t region, const glm::dvec3& point);
+
+/// The body has given way to so much more: moves the region's support, which is in this step still
+/// to move it by what of that the contact has not reckoned with.
+/// @param reckoned  motion of the material that the contact has taken
+void move_by_own_answer(World& world, std::uint32_t region, const OwnAnswer& answer,
+                        const ContactLoads& more, const ContactLoads& reckoned);
+
+}  // namespace torsion

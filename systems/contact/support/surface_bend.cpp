@@ -1,0 +1,90 @@
+#include "systems/contact/support/surface_bend.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "systems/geometry/distance.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/model/prepare_compliance.hpp"
+
+namespace torsion {
+namespace {
+
+/// Of the elements' length: nearer to each other than this, ports know no more of each other than
+/// at this distance, for the elements' loads and the fits of their motions are as wide
+/// (model/finite_elements/loads.cpp). Measured on a sphere 24 elements across: what ports at
+/// distances of 0, 1, 2, 3 and 4 elements do to each other, less the sphere's rocking, is that
+/// of 2.1, 2.2, 2.4, 3.2 and 4. Twice as much would be 0.4 % of a contact's sideways compliance at
+/// a / R = 0.01.
+constexpr double kElementsSee = 2.1;
+constexpr double kFlat = 1e-3;  // curvature times reach: less is not worth tables
+constexpr double kEdge = 0.9;   // cosine between normals a reach apart: no gentle curve
+constexpr double kSpan = 0.5;   // of the reach: where the curvature is measured
+
+double port_spacing(const World& world, std::uint32_t body) {
+  const Bounds& bounds = world.bodies.at<Bounds>(body);
+  const glm::dvec3 extent = bounds.highest - bounds.lowest;
+  return std::max({extent.x, extent.y, extent.z}) / compliance_elements(bounds);
+}
+
+/// The mean logarithm of the distance between the forces at the ports that a force on the contact
+/// is, and their displacements that its own is.
+double mean_reach(const World& world, std::uint32_t body, const Footing& footing) {
+  const auto ports = world.ports.rows<CompliancePort>(world.bodies.at<OwnedRows>(body).ports);
+  const double nearest = kElementsSee * port_spacing(world, body);
+  const double least = nearest * nearest * nearest * nearest;
+  const auto share = [&footing](std::size_t port) {
+    return glm::dot(footing.unit_forces[0][port], glm::dvec3(1.0, 0.0, 0.0));
+  };
+  double sum = 0.0;
+  for (std::size_t i = 0; i < footing.count; ++i) {
+    sum += share(i) * share(i) * std::log(nearest);
+    for (std::size_t j = 0; j < i; ++j) {
+      const glm::dvec3 way = ports[footing.ports[i]].position - ports[footing.ports[j]].position;
+      const double square = glm::dot(way, way);
+      sum += share(i) * share(j) * 0.5 * std::log(square * square + least);
+    }
+  }
+  return std::exp(sum);
+}
+
+}  // namespace
+
+SurfaceBend find_surface_bend(const World& world, std::uint32_t body, const Footing& footing,
+                              const RegionFrame& axes, double across) {
+  SurfaceBend bend;
+  const double reach = mean_reach(world, body, footing);
+  const double span = std::max(kSpan * reach, across);
+  const Range parts = world.bodies.at<OwnedRows>(body).parts;
+  const auto slope = [&](const glm::dvec3& direction) {
+    const glm::dvec3 before =
+        glm::normalize(signed_distance(world, parts, footing.center - span * direction).gradient);
+    const glm::dvec3 after =
+        glm::normalize(signed_distance(world, parts, footing.center + span * direction).gradient);
+    const bool gentle =
+        std::min(glm::dot(before, axes.normal), glm::dot(after, axes.normal)) > kEdge;
+    const glm::dvec3 change = (after - before) / (2.0 * span);
+    return gentle
+               ? glm::dvec3(glm::dot(change, axes.tangent_x), glm::dot(change, axes.tangent_y), 1.0)
+               : glm::dvec3(0.0);
+  };
+  const glm::dvec3 by_x = slope(axes.tangent_x);
+  const glm::dvec3 by_y = slope(axes.tangent_y);
+  const SurfaceCurvature curvature{by_x.x, 0.5 * (by_x.y + by_y.x), by_y.y};
+  const double most =
+      std::max({std::abs(curvature.xx), std::abs(curvature.xy), std::abs(curvature.yy)});
+  if (by_x.z * by_y.z > 0.0 && most * reach > kFlat) {
+    bend = {curvature, reach};
+  }
+  return bend;
+}
+
+bool may_bend(const World& world, std::uint32_t body) {
+  const auto parts = world.parts.rows<ShapePart>(world.bodies.at<OwnedRows>(body).parts);
+  return std::ranges::any_of(parts,
+                             [](const ShapePart& part) { return part.kind != ShapeKind::kBox; });
+}
+
+}  // namespace torsion

@@ -1,0 +1,196 @@
+#include "systems/geometry/sample_surface_pieces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+
+#include "systems/geometry/distance_shapes.hpp"
+
+namespace torsion {
+namespace {
+
+/// Moves a point of the box of half extents `half` to the surface of the shape that the box
+/// encloses: flat faces stay flat, and the shape's edges come from the box's.
+glm::dvec3 from_box_to_shape(const ShapePart& shape, const glm::dvec3& p) {
+  const glm::dvec3& half = shape.half_extent;
+  switch (shape.kind) {
+    case ShapeKind::kSphere:
+      return half.x * glm::normalize(p);
+    case ShapeKind::kEllipsoid:
+      return half * glm::normalize(p / half);
+    case ShapeKind::kCylinder: {
+      const double square = larger(std::abs(p.x), std::abs(p.z));
+      const double round = std::sqrt(p.x * p.x + p.z * p.z);
+      const double scale = round > 0.0 ? square / round : 1.0;
+      return {p.x * scale, p.y, p.z * scale};
+    }
+    case ShapeKind::kCapsule: {
+      const double segment = larger(half.y - half.x, 0.0);
+      const glm::dvec3 axis_point(0.0, std::clamp(p.y, -segment, segment), 0.0);
+      return axis_point + half.x * glm::normalize(p - axis_point);
+    }
+    default:
+      return p;
+  }
+}
+
+/// The box that from_box_to_shape starts from.
+glm::dvec3 enclosing_box(const ShapePart& shape) {
+  const glm::dvec3& half = shape.half_extent;
+  switch (shape.kind) {
+    case ShapeKind::kSphere:
+      return glm::dvec3(half.x);
+    case ShapeKind::kCylinder:
+      return {half.x, half.y, half.x};
+    case ShapeKind::kCapsule:
+      return {half.x, larger(half.y, half.x), half.x};
+    default:
+      return half;
+  }
+}
+
+/// Adds the piece unless it has no area or is hidden in another part.
+void add_piece(const std::array<glm::dvec3, 3>& corner, std::uint32_t part, double bulge,
+               const PartSolids& solids, std::vector<SurfaceTriangle>& pieces) {
+  const glm::dvec3 normal = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+  const double length = std::sqrt(glm::dot(normal, normal));
+  if (!(length > 0.0)) {
+    return;
+  }
+  const glm::dvec3 middle = (corner[0] + corner[1] + corner[2]) / 3.0;
+  const double reach = std::max({glm::distance(middle, corner[0]), glm::distance(middle, corner[1]),
+                                 glm::distance(middle, corner[2])});
+  if (!solids.inside_others(middle, part, reach + bulge)) {
+    pieces.push_back({corner, 0.5 * length, normal / length, bulge, part});
+  }
+}
+
+/// How far the exact surface lies from a piece: seen at its middle and the middles of its edges;
+/// half more for what is between.
+double bulge_of(const ShapePart& shape, const std::array<glm::dvec3, 3>& corner) {
+  double bulge = 0.0;
+  for (const glm::dvec3& point :
+       {(corner[0] + corner[1] + corner[2]) / 3.0, 0.5 * (corner[0] + corner[1]),
+        0.5 * (corner[1] + corner[2]), 0.5 * (corner[2] + corner[0])}) {
+    bulge = larger(bulge, std::abs(exact_distance(shape, point).value));
+  }
+  return 1.5 * bulge;
+}
+
+/// One face of the box, cut into squares: the face where `axis` is at `side` times its half extent.
+void add_face(const ShapePart& shape, std::uint32_t part, int axis, double side, double step,
+              const PartSolids& solids, std::vector<SurfaceTriangle>& pieces) {
+  const glm::dvec3 box = enclosing_box(shape);
+  const int u = (axis + 1) % 3;
+  const int v = (axis + 2) % 3;
+  const auto cuts = [&](int along) {
+    return static_cast<int>(std::clamp(std::ceil(2.0 * box[along] / step), 4.0, 1024.0));
+  };
+  const int cuts_u = cuts(u);
+  const int cuts_v = cuts(v);
+  const auto corner = [&](int i, int j) {
+    glm::dvec3 p(0.0);
+    p[axis] = side * box[axis];
+    p[u] = box[u] * (2.0 * i / cuts_u - 1.0);
+    p[v] = box[v] * (2.0 * j / cuts_v - 1.0);
+    return shape.pose.position + shape.pose.rotation * from_box_to_shape(shape, p);
+  };
+  for (int j = 0; j < cuts_v; ++j) {
+    for (int i = 0; i < cuts_u; ++i) {
+      const glm::dvec3 a = corner(i, j);
+      const glm::dvec3 b = corner(i + 1, j);
+      const glm::dvec3 c = corner(i + 1, j + 1);
+      const glm::dvec3 d = corner(i, j + 1);
+      for (std::array<glm::dvec3, 3> triangle : {std::array{a, b, c}, std::array{a, c, d}}) {
+        if (side < 0.0) {
+          std::swap(triangle[1], triangle[2]);
+        }
+        add_piece(triangle, part, bulge_of(shape, triangle), solids, pieces);
+      }
+    }
+  }
+}
+
+void add_exact_shape(const ShapePart& shape, std::uint32_t part, double squares,
+                     const PartSolids& solids, std::vector<SurfaceTriangle>& pieces) {
+  const glm::dvec3 box = enclosing_box(shape);
+  const double area = 8.0 * (box.x * box.y + box.y * box.z + box.z * box.x);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      add_face(shape, part, axis, side, std::sqrt(area / squares), solids, pieces);
+    }
+  }
+}
+
+}  // namespace
+
+Distance exact_distance(const ShapePart& shape, const glm::dvec3& point) {
+  const glm::dvec3 local = glm::conjugate(shape.pose.rotation) * (point - shape.pose.position);
+  Distance distance =
+      with_exact_shape(shape, [&](const auto& exact) { return exact(local.x, local.y, local.z); });
+  distance.gradient = shape.pose.rotation * distance.gradient;
+  return distance;
+}
+
+PartSolids::PartSolids(std::span<const PartDescription> parts)
+    : parts_(parts), meshes_(parts.size()), boxes_(parts.size()) {
+  for (std::size_t part = 0; part < parts.size() && parts.size() > 1; ++part) {
+    if (parts[part].shape.kind != ShapeKind::kMesh) {
+      continue;
+    }
+    if (Result<MeshDistance> mesh = MeshDistance::build(parts[part].surface)) {
+      const std::vector<glm::dvec3>& positions = parts[part].surface.positions;
+      meshes_[part] = std::move(mesh).value();
+      boxes_[part] = {positions[0], positions[0]};
+      for (const glm::dvec3& position : positions) {
+        boxes_[part].lowest = glm::min(boxes_[part].lowest, position);
+        boxes_[part].highest = glm::max(boxes_[part].highest, position);
+      }
+    }
+  }
+}
+
+double PartSolids::distance_inside(std::uint32_t part, const glm::dvec3& point) const {
+  const ShapePart& shape = parts_[part].shape;
+  if (shape.kind != ShapeKind::kMesh) {
+    return exact_distance(shape, point).value;
+  }
+  const bool in_box = glm::all(glm::greaterThan(point, boxes_[part].lowest)) &&
+                      glm::all(glm::lessThan(point, boxes_[part].highest));
+  return in_box && meshes_[part] ? meshes_[part]->closest(point).distance.value : 0.0;
+}
+
+bool PartSolids::inside_others(const glm::dvec3& point, std::uint32_t own, double margin) const {
+  for (std::uint32_t part = 0; part < parts_.size(); ++part) {
+    if (part != own && distance_inside(part, point) < -margin) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::vector<SurfaceTriangle> surface_pieces(std::span<const PartDescription> parts,
+                                            const PartSolids& solids, std::uint32_t target_count) {
+  // About 4 squares for each sample, and enough on each part for its shape.
+  const double squares =
+      4.0 * target_count / static_cast<double>(std::max<std::size_t>(parts.size(), 1)) + 600.0;
+  std::vector<SurfaceTriangle> pieces;
+  for (std::uint32_t part = 0; part < parts.size(); ++part) {
+    if (parts[part].shape.kind != ShapeKind::kMesh) {
+      add_exact_shape(parts[part].shape, part, squares, solids, pieces);
+      continue;
+    }
+    const SurfaceMesh& mesh = parts[part].surface;
+    for (const glm::uvec3& triangle : mesh.triangles) {
+      add_piece(
+          {mesh.positions[triangle.x], mesh.positions[triangle.y], mesh.positions[triangle.z]},
+          part, 0.0, solids, pieces);
+    }
+  }
+  return pieces;
+}
+
+}  // namespace torsion

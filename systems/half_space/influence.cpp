@@ -1,0 +1,108 @@
+#include "systems/half_space/influence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "ecs/assert.hpp"
+
+namespace torsion {
+namespace {
+
+/// y ln(x + rho); x + rho is written so that it keeps its digits where x is negative.
+double y_log_x_plus_rho(double x, double y, double rho) {
+  const double sum = x > 0.0 ? x + rho : y * y / (rho - x);
+  return y == 0.0 ? 0.0 : y * std::log(sum);
+}
+
+/// The four integrals over a corner, whose alternating sums are those over a rectangle.
+struct Integrals {
+  double x2 = 0.0;  // of x^2 / rho^3
+  double y2 = 0.0;  // of y^2 / rho^3
+  double xy = 0.0;  // of x y / rho^3
+  double x = 0.0;   // of x / rho^2
+  double y = 0.0;   // of y / rho^2
+};
+
+Integrals corner(double x, double y) {
+  const double rho = std::hypot(x, y);
+  Integrals at;
+  at.x2 = y_log_x_plus_rho(x, y, rho);
+  at.y2 = y_log_x_plus_rho(y, x, rho);
+  at.xy = -rho;
+  at.x = (y == 0.0 ? 0.0 : y * std::log(rho)) + (x == 0.0 ? 0.0 : x * std::atan(y / x));
+  at.y = (x == 0.0 ? 0.0 : x * std::log(rho)) + (y == 0.0 ? 0.0 : y * std::atan(x / y));
+  return at;
+}
+
+/// Over the rectangle of the given half sides around (x, y).
+Integrals rectangle(double x, double y, double half_x, double half_y) {
+  const Integrals a = corner(x + half_x, y + half_y);
+  const Integrals b = corner(x - half_x, y + half_y);
+  const Integrals c = corner(x + half_x, y - half_y);
+  const Integrals d = corner(x - half_x, y - half_y);
+  return {a.x2 - b.x2 - c.x2 + d.x2, a.y2 - b.y2 - c.y2 + d.y2, a.xy - b.xy - c.xy + d.xy,
+          a.x - b.x - c.x + d.x, a.y - b.y - c.y + d.y};
+}
+
+}  // namespace
+
+void fill_influences(double poisson_ratio, std::uint32_t side, std::span<double> values) {
+  TORSION_ASSERT(values.size() == influence_count(side));
+  const double shear = 1.0 / (2.0 * std::numbers::pi);
+  const double coupling = (1.0 - 2.0 * poisson_ratio) / (4.0 * std::numbers::pi);
+  const std::size_t table = (2 * std::size_t{side} - 1) * (2 * std::size_t{side});
+  std::size_t first = 0;
+  for (std::int32_t aspect = -kMostAspect; aspect <= kMostAspect; ++aspect) {
+    const double height = std::ldexp(1.0, -aspect);  // of a cell that is 1 long
+    std::size_t next = first;
+    for (std::uint32_t row = 0; row + 1 < 2 * side; ++row) {
+      for (std::uint32_t column = 0; column < 2 * side; ++column, ++next) {
+        const double x = static_cast<double>(column) - static_cast<double>(side - 1);
+        const double y = (static_cast<double>(row) - static_cast<double>(side - 1)) * height;
+        const Integrals over = rectangle(x, y, 0.5, 0.5 * height);
+        const double both = over.x2 + over.y2;  // of 1 / rho
+        const std::array<double, kSolvedKinds> kinds{
+            shear * (1.0 - poisson_ratio) * both,
+            shear * ((1.0 - poisson_ratio) * both + poisson_ratio * over.x2),
+            shear * poisson_ratio * over.xy,
+            shear * ((1.0 - poisson_ratio) * both + poisson_ratio * over.y2),
+            coupling * over.x,
+            coupling * over.y};
+        for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+          values[next + kind * table] = kinds[kind];
+        }
+      }
+    }
+    fill_differences(values.subspan(first, kInfluenceKinds * table));
+    first += kInfluenceKinds * table;
+  }
+}
+
+void fill_differences(std::span<double> values) {
+  const std::size_t table = values.size() / kInfluenceKinds;
+  const auto of = [&](InfluenceKind kind) {
+    return values.subspan(static_cast<std::size_t>(kind) * table, table);
+  };
+  const std::span<const double> mixed = of(InfluenceKind::kXY);
+  std::ranges::transform(of(InfluenceKind::kXX), mixed, of(InfluenceKind::kXXLessXY).begin(),
+                         std::minus<>{});
+  std::ranges::transform(of(InfluenceKind::kYY), mixed, of(InfluenceKind::kYYLessXY).begin(),
+                         std::minus<>{});
+}
+
+InfluenceTables influence_tables(std::span<const double> values, std::uint32_t side,
+                                 std::int32_t aspect) {
+  TORSION_ASSERT(values.size() == influence_count(side));
+  const std::size_t table = (2 * std::size_t{side} - 1) * (2 * std::size_t{side});
+  const auto place = static_cast<std::size_t>(aspect + kMostAspect);
+  InfluenceTables tables;
+  tables.side = side;
+  for (std::size_t kind = 0; kind < kInfluenceKinds; ++kind) {
+    tables.kinds[kind] = values.data() + (place * kInfluenceKinds + kind) * table;
+  }
+  return tables;
+}
+
+}  // namespace torsion

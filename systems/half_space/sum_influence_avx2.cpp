@@ -1,0 +1,11 @@
+// Compiled for AVX2 with fused multiply-adds (systems/CMakeLists.txt).
+
+#include "systems/half_space/sum_influence_block.hpp"
+
+namespace torsion {
+
+void sum_influence_avx2(const InfluenceSums& sums) {
+  influence_block::sum_all<4>(sums);
+}
+
+}  // namespace torsion

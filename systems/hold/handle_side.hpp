@@ -1,0 +1,61 @@
+#pragma once
+
+#include "ecs/device_sample.hpp"
+#include "systems/hold/output_guard.hpp"
+#include "systems/hold/passivity.hpp"
+#include "systems/hold/tool_hold.hpp"
+#include "systems/hold/virtual_coupling.hpp"
+
+namespace torsion {
+
+/// Where a device's poses are in the world.
+struct HandleMap {
+  glm::dvec3 origin{0.0};                   // m: of the device's workspace
+  glm::dquat turned{1.0, 0.0, 0.0, 0.0};    // the device's rotation when it took hold of the tool
+  glm::dquat rotation{1.0, 0.0, 0.0, 0.0};  // the tool's then
+};
+
+/// The pose that the handle asks of the tool's frame, world.
+Pose handle_pose(const HandleMap& map, const Pose& device);
+
+/// What the device's thread keeps of a held tool: all that stands between the newest result of the
+/// physics and the wrench that is sent.
+struct HandleSide {
+  Pose home;  // of the tool, world: where the centre of a device's workspace is
+  ToolHold hold = ToolHold::kMassless;
+  HandleMap map;
+  VirtualCoupling coupling;
+  PassivityLimits passivity;
+  PassivityState books;
+  GuardLimits limits;
+  OutputGuard guard;
+  Pose device;              // of the device's handle, as far as its counts go
+  Pose last;                // m, world: of the handle in the sample before
+  double last_time = 0.0;   // s: of that sample
+  std::uint32_t epoch = 0;  // of the device
+};
+
+/// The newest that the physics said.
+struct PhysicsResult {
+  Pose tool;          // world
+  double time = 0.0;  // s, steady clock
+  bool faulty = false;
+  bool any = false;  // false: nothing was said yet
+  Wrench contact{};  // of the bodies on the tool, about its frame's origin, world axes
+};
+
+struct HandleOutcome {
+  Pose handle;            // world
+  Wrench wrench;          // to display, about the handle, world axes
+  double distance = 0.0;  // m: from handle to tool
+  bool holds = false;     // whether the handle moves the tool; else it is to be brought to it
+};
+
+/// One sample of the device. A new epoch of the device begins without force, with the coupling that
+/// its traits allow, and takes hold of the tool where the handle is near it. A device that steers a
+/// rate is put where the tool is.
+/// @param now  s, steady clock
+HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
+                                 const PhysicsResult& result, double now);
+
+}  // namespace torsion

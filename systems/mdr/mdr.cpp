@@ -1,0 +1,313 @@
+#include "systems/mdr/mdr.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "systems/contact/friction_decay.hpp"
+#include "systems/contact/support/own_answer.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/mdr/layers.hpp"
+#include "systems/mdr/round_contact.hpp"
+#include "systems/scratch.hpp"
+
+namespace torsion {
+namespace {
+
+using std::numbers::pi;
+
+/// Pressure over its mean at r^2 = square * a^2.
+double pressure_share(double square, double flat_share) {
+  constexpr double kRim = 0.1;  // a flat punch's pressure has no limit at the rim
+  const double root = std::sqrt(std::max(1.0 - square, 0.0));
+  return (1.0 - flat_share) * 1.5 * root + flat_share * 0.5 / std::max(root, kRim);
+}
+
+/// Pressure and what sticks for those who draw it and count cells.
+/// @param stick_radius  over the contact's
+void set_cells(World& world, std::uint32_t region, const RoundContact& contact,
+               double stick_radius) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  const auto cells = world.cells.rows<CellGeometry>(identity.cells);
+  const auto tractions = world.cells.rows<CellTraction>(identity.cells);
+  const double pressure =
+      contact.radius > 0.0 ? contact.force / (pi * contact.radius * contact.radius) : 0.0;
+  const double per_radius = 1.0 / std::max(contact.radius, 1e-300);
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < side; ++j) {
+    for (std::uint32_t i = 0; i < side; ++i, ++cell) {
+      const glm::dvec2 arm = (cell_center(frame, side, i, j) - contact.center) * per_radius;
+      const double square = glm::dot(arm, arm);
+      const bool inside = cells[cell].coverage > 0.0 && square < 1.0;
+      tractions[cell] = CellTraction{};
+      tractions[cell].pressure =
+          inside ? pressure * pressure_share(square, contact.pressure.flat_share) : 0.0;
+      tractions[cell].coverage = inside ? 1.0 : 0.0;
+      tractions[cell].sticks = inside && square < stick_radius * stick_radius ? 1U : 0U;
+    }
+  }
+}
+
+/// Motion of the tool over the body at the contact's centre.
+glm::dvec2 slide_at(const RegionMotion& motion, const glm::dvec2& center) {
+  const glm::dvec2 arm = center - motion.pivot;
+  return motion.slide + motion.spin * glm::dvec2(-arm.y, arm.x);
+}
+
+/// What the layers are asked, of the motion since the last step.
+MdrContact layers_contact(const World& world, std::uint32_t region, const RoundContact& round) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const RegionMotion& motion = world.regions.at<RegionMotion>(region);
+  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
+  const Friction& friction = world.bodies.at<Friction>(identity.body);
+  const double kinetic_share = world.regions.at<MdrState>(region).kinetic_share;
+  MdrContact contact;
+  contact.radius = round.radius;
+  contact.force = round.force;
+  contact.flat_share = round.pressure.flat_share;
+  contact.friction = friction.static_friction +
+                     kinetic_share * (friction.dynamic_friction - friction.static_friction);
+  contact.shear_modulus = elasticity.shear_modulus();
+  contact.poisson_ratio = elasticity.poisson_ratio;
+  contact.slide_stiffness = round.slide_stiffness;
+  contact.turn_stiffness = round.turn_stiffness;
+  contact.torque_share = round.torque_share;
+  contact.slide = slide_at(motion, round.center);
+  contact.spin = motion.spin;
+  return contact;
+}
+
+/// Of springs that all stick, N/m.
+double slide_stiffness(const MdrContact& contact) {
+  return contact.slide_stiffness * 8.0 * contact.shear_modulus * contact.radius /
+         (2.0 - contact.poisson_ratio);
+}
+
+/// mu_s comes down to mu_d over a short slip and is back after as long an elastic path.
+void move_friction(const MdrContact& contact, double slipped, double& kinetic_share) {
+  const double inverse = inverse_of(contact.friction * contact.force / slide_stiffness(contact));
+  const double path = glm::length(contact.slide) + std::abs(contact.spin) * contact.radius;
+  kinetic_share += (1.0 - kinetic_share) * travelled(slipped, inverse / kSlipLength);
+  kinetic_share *= 1.0 - travelled(std::max(path - slipped, 0.0), inverse);
+}
+
+/// The contact's middle on the body's rest surface, m, body.
+glm::dvec3 middle_of(const World& world, std::uint32_t region, const RoundContact& round) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const double height = body_to_grid(frame, world.regions.at<RegionGeometry>(region).rest_point).z;
+  return grid_to_body(frame, {round.center, height});
+}
+
+/// Where the contact is, for the systems after this one.
+void set_geometry(World& world, std::uint32_t region, const RoundContact& round) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+  geometry.rest_point = middle_of(world, region, round);
+  geometry.equivalent_point = geometry.rest_point - frame.normal * round.depth;
+  geometry.radius = round.radius;
+  geometry.area = pi * round.radius * round.radius;
+  geometry.mean_depth = round.depth;
+}
+
+/// A region's springs, as often as they are tried in a step.
+struct Springs {
+  const MdrTables& tables;
+  MdrPressure pressure;  // of the last step
+  double radius = 0.0;   // m
+  std::array<MdrLayer, kMdrLayers> before;
+  std::span<MdrLayer> layers;
+};
+
+/// Moves them from where they were before.
+MdrForces move_springs(const Springs& springs, const RoundContact& round,
+                       const MdrContact& contact) {
+  std::ranges::copy(springs.before, springs.layers.begin());
+  const MdrPlaces places = places_of(springs.tables, round.pressure);
+  if (springs.radius != round.radius || springs.pressure != round.pressure) {
+    resize_layers({places_of(springs.tables, springs.pressure), springs.radius},
+                  {places, round.radius}, springs.layers);
+  }
+  return move_layers(places, springs.tables.limit_curve, contact, springs.layers);
+}
+
+/// What a contact and its springs come to in one step.
+struct Outcome {
+  RoundContact round;
+  MdrContact contact;
+  MdrForces forces;
+};
+
+/// Stiffnesses of springs that all stick and of the contact along its normal, with turns times the
+/// radius.
+glm::dvec4 stiffness_of(const Outcome& outcome, double modulus) {
+  const MdrContact& contact = outcome.contact;
+  const double slide = slide_stiffness(contact);
+  const double turn = contact.turn_stiffness * 16.0 / 3.0 * contact.shear_modulus * contact.radius;
+  return {slide, slide, turn, normal_slope(outcome.round, modulus)};
+}
+
+/// A contact on a body that gives way, and what it was asked.
+struct Balance {
+  const World& world;
+  std::uint32_t region;
+  const Springs& springs;
+  RoundContact seen;  // when the body has not given way in this step
+  double modulus;     // E*, Pa
+  glm::dvec4 turns;   // 1, 1, its radius, 1
+
+  /// The loads on the material, of the couple over the radius, when the springs have moved and the
+  /// contact is as deep as that.
+  /// @param motion  along x and y, turning times the radius, and the depth, m
+  ContactLoads load_at(const glm::dvec4& motion, Outcome& outcome) const {
+    outcome.round = pressed_to(motion.w, modulus, seen);
+    outcome.contact = layers_contact(world, region, outcome.round);
+    outcome.contact.slide = glm::dvec2(motion);
+    outcome.contact.spin = motion.z / turns.z;
+    outcome.forces = move_springs(springs, outcome.round, outcome.contact);
+    return {-outcome.forces.force, -outcome.forces.couple / turns.z, outcome.round.force};
+  }
+};
+
+/// Springs and depth when the body gives way to their loads l: z = free - C (l(z) - known), by
+/// Broyden's method (Dennis and Schnabel, Numerical Methods for Unconstrained Optimization, 8) from
+/// springs that all stick.
+/// @param last  of the springs in the last step, N and N m, on the material
+/// @return the loads beyond those that the body had given way to
+ContactLoads settle(const Balance& balance, const OwnAnswer& body, const glm::dvec3& last,
+                    Outcome& outcome) {
+  constexpr int kMostTries = 8;
+  constexpr double kClose = 0.03;      // of the springs' motion
+  constexpr double kClosePart = 1e-3;  // of how far they go until all slips
+  constexpr double kCloseDepth = 3e-3;
+  constexpr double kLeastDepth = 1e-3;  // of that seen: what parts does so in the next step
+  const RoundContact& seen = balance.seen;
+  const glm::dvec4& turns = balance.turns;
+  const ContactLoads known = body.known / turns;
+  glm::dmat4 compliance = body.compliance;
+  for (int column = 0; column < 4; ++column) {
+    compliance[column] *= turns[column] * turns;
+  }
+  outcome.contact = layers_contact(balance.world, balance.region, seen);
+  const glm::dvec4 free =
+      turns * glm::dvec4(outcome.contact.slide, outcome.contact.spin, seen.depth);
+  const glm::dvec4 stiffness = stiffness_of(outcome, balance.modulus);
+  const double slips = outcome.contact.friction * seen.force / stiffness.x;
+  glm::dmat4 slope(1.0);
+  for (int column = 0; column < 4; ++column) {
+    slope[column] += compliance[column] * stiffness[column];
+  }
+  const ContactLoads at_rest = ContactLoads(last, seen.force) / turns;
+  glm::dvec4 at(0.0, 0.0, 0.0, seen.depth);
+  glm::dvec4 way = glm::inverse(slope) * (free - at - compliance * (at_rest - known));
+  glm::dvec4 before(0.0);
+  ContactLoads load(0.0);
+  for (int k = 0; k < kMostTries; ++k) {
+    const glm::dvec4 from = at;
+    at += way;
+    at.w = std::max(at.w, kLeastDepth * seen.depth);
+    way = at - from;
+    load = balance.load_at(at, outcome);
+    const glm::dvec4 lacking = at - free + compliance * (load - known);
+    const double moved = glm::length(glm::dvec3(at));
+    if (glm::length(glm::dvec3(lacking)) <= kClose * moved + kClosePart * slips &&
+        std::abs(lacking.w) <= kCloseDepth * at.w) {
+      break;
+    }
+    if (way == glm::dvec4(0.0)) {
+      break;  // it parts, and nothing else moves
+    }
+    if (k > 0) {
+      slope += glm::outerProduct(lacking - before - slope * way, way) / glm::dot(way, way);
+    }
+    before = lacking;
+    way = -(glm::inverse(slope) * lacking);
+  }
+  return turns * (load - known);
+}
+
+/// The contact and its springs in this step, with the body's answer to them where it is known.
+Outcome find_outcome(World& world, std::uint32_t region, const Springs& springs) {
+  RegionSupport& support = world.regions.at<RegionSupport>(region);
+  support.translation_step = support.rotation_step = glm::dvec3(0.0);  // region_motion has it
+  Outcome outcome;
+  outcome.round = round_contact(world, region);
+  if (outcome.round.force <= 0.0) {
+    return outcome;
+  }
+  const OwnAnswer body = own_answer(world, region, middle_of(world, region, outcome.round));
+  if (!body.any) {
+    outcome.contact = layers_contact(world, region, outcome.round);
+    outcome.forces = move_springs(springs, outcome.round, outcome.contact);
+    return outcome;
+  }
+  const double modulus =
+      world.bodies.at<Elasticity>(world.regions.at<RegionIdentity>(region).body).contact_modulus();
+  const Balance balance{world,         region,  springs,
+                        outcome.round, modulus, {1.0, 1.0, outcome.round.radius, 1.0}};
+  const RegionFriction& friction = world.regions.at<RegionFriction>(region);
+  const ContactLoads more =
+      settle(balance, body, -glm::dvec3(friction.force, friction.couple), outcome);
+  const RegionMotion& motion = world.regions.at<RegionMotion>(region);
+  const glm::dvec2 slide = slide_at(motion, outcome.round.center) - outcome.contact.slide;
+  move_by_own_answer(world, region, body, more,
+                     ContactLoads(slide, motion.spin - outcome.contact.spin, 0.0));
+  return outcome;
+}
+
+void move_region(StepContext& context, const MdrTables& tables, std::uint32_t region) {
+  World& world = context.world;
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  MdrState& state = world.regions.at<MdrState>(region);
+  RegionNormal& normal = world.regions.at<RegionNormal>(region);
+  RegionFriction& tangential = world.regions.at<RegionFriction>(region);
+  const auto layers =
+      world.mdr_layers.rows<MdrLayer>({block_of(identity) * kMdrLayers, kMdrLayers});
+  Springs springs{tables, {state.flat_share, state.elongation}, state.radius, {}, layers};
+  std::ranges::copy(layers, springs.before.begin());
+  const Outcome outcome = find_outcome(world, region, springs);
+  const RoundContact& round = outcome.round;
+  const MdrForces& forces = outcome.forces;
+  normal = RegionNormal{};
+  tangential = RegionFriction{};
+  if (round.force <= 0.0) {
+    std::ranges::fill(layers, MdrLayer{});
+    state = MdrState{};
+    set_cells(world, region, round, 0.0);
+    return;
+  }
+  state.radius = round.radius;
+  state.flat_share = round.pressure.flat_share;
+  state.elongation = round.pressure.elongation;
+  move_friction(outcome.contact, forces.slipped, state.kinetic_share);
+  normal.force = round.force;
+  normal.stiffness =
+      normal_slope(round, world.bodies.at<Elasticity>(identity.body).contact_modulus());
+  tangential.force = forces.force;
+  tangential.couple = forces.couple;
+  tangential.stick_share = forces.stick_radius * forces.stick_radius;
+  tangential.stick_radius = forces.stick_radius * round.radius;
+  tangential.stick_turn = layers.back().turn;
+  set_geometry(world, region, round);
+  set_cells(world, region, round, forces.stick_radius);
+}
+
+}  // namespace
+
+void mdr_forces(StepContext& context) {
+  World& world = context.world;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
+    if (world.bodies.at<BodyModels>(body).contact == ContactModel::kMdr) {
+      move_region(context, context.scratch.mdr_tables, region);
+    }
+  }
+}
+
+}  // namespace torsion

@@ -1,0 +1,162 @@
+#include "systems/mdr/round_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "systems/half_space/elliptic_contact.hpp"
+#include "systems/half_space/layer_thickness.hpp"
+#include "systems/mdr/contact_shape.hpp"
+#include "systems/mdr/smooth_contact.hpp"
+
+namespace torsion {
+namespace {
+
+using std::numbers::pi;
+
+/// What does not depend on how the contact was found: stiffnesses of an ellipse that presses with
+/// `round_share` of Hertz' pressure.
+/// @param axes  b / a
+void set_stiffnesses(double axes, const EllipseShares& shares, double round_share,
+                     double poisson_ratio, RoundContact& contact) {
+  contact.pressure.elongation = round_share * (1.0 - axes);
+  contact.slide_stiffness = shares.force;
+  contact.turn_stiffness = axes < 1.0 ? bonded_turn_share(axes, poisson_ratio) : 1.0;
+  contact.torque_share = shares.torque;
+}
+
+/// Of shapes that are known: Hertz' ellipse, and as much less as their surfaces part beyond the
+/// paraboloid. A round profile r^2 / (2 R) + c r^4 has g = x^2 / R + (8/3) c x^4, and so
+/// F = 2 E* (d a - a^3 / (3 R) - (8/15) c a^5) with g(a) = d (Popov & Hess, 2015, ch. 3); its
+/// r^4 term here is the mean over the ellipse's rim.
+RoundContact contact_of_shapes(const SmoothContact& smooth, const Elasticity& elasticity) {
+  RoundContact contact;
+  if (smooth.depth <= 0.0) {
+    return contact;
+  }
+  const double depth = smooth.depth;
+  const EllipticContact ellipse = elliptic_contact(depth, smooth.curvature_1, smooth.curvature_2);
+  const double paraboloid = std::sqrt(ellipse.major * ellipse.minor);
+  // In units of that radius and of the depth: g = x^2 + quartic x^4 with g = 1 at the edge, where
+  // x^2 / R alone made 1, so that `beyond` r^2 / (2 R) at r = 1 is `beyond` / 2.
+  const double quartic = std::max(4.0 / 3.0 * smooth.beyond, -0.2);
+  const double square = 2.0 / (1.0 + std::sqrt(1.0 + 4.0 * quartic));
+  const double radius = std::sqrt(square);
+  contact.center = smooth.place;
+  contact.depth = depth;
+  contact.radius = radius * paraboloid;
+  contact.force = 2.0 * elasticity.contact_modulus() * paraboloid * depth * radius *
+                  (1.0 - square / 3.0 - 0.2 * quartic * square * square) * ellipse.shares.force;
+  set_stiffnesses(ellipse.minor / ellipse.major, ellipse.shares, 1.0, elasticity.poisson_ratio,
+                  contact);
+  return contact;
+}
+
+/// From the cells: a paraboloid's contact. Where the overlap ends before the contact's own edge
+/// would be, it ends there, and the rest of the depth presses like a flat stamp: a half-space gives
+/// way to a stamp by d at 2 E* a d, to a ball at (4/3) E* a d, and to a cylinder between two edges
+/// in between.
+RoundContact contact_of_cells(const World& world, std::uint32_t region,
+                              const Elasticity& elasticity) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+  const ContactShape shape = fit_contact_shape(world.regions.at<RegionFrame>(region),
+                                               world.settings.at<Settings>(0).grid_side,
+                                               world.cells.rows<CellGeometry>(identity.cells));
+  RoundContact contact;
+  if (shape.depth <= 0.0 || geometry.area <= 0.0) {
+    return contact;
+  }
+  contact.center = shape.apex;
+  contact.depth = shape.depth;
+  const double overlap = std::sqrt(geometry.area / pi);
+  // No paraboloid so flat that its contact would reach beyond the overlap.
+  const double least_1 = shape.depth / (shape.extent_1 * shape.extent_1);
+  const double least_2 = shape.depth / (shape.extent_2 * shape.extent_2);
+  const double bend_1 = std::max(shape.curvature_1, least_1);
+  const double bend_2 = std::max(shape.curvature_2, least_2);
+  const EllipticContact ellipse = elliptic_contact(shape.depth, bend_1, bend_2);
+  const double along = std::min(ellipse.major, bend_1 < bend_2 ? shape.extent_1 : shape.extent_2);
+  const double across = std::min(ellipse.minor, bend_1 < bend_2 ? shape.extent_2 : shape.extent_1);
+  contact.radius = std::min(std::sqrt(along * across), overlap);
+  // How much of each axis' curvature is the shapes' own.
+  const double round_share = 0.5 * (shape.curvature_1 / bend_1 + shape.curvature_2 / bend_2);
+  const double axes = std::clamp(across / along, 0.01, 1.0);
+  const EllipseShares shares = axes < 1.0 ? ellipse_shares(axes) : EllipseShares{};
+  const double of_stamp = 2.0 * elasticity.contact_modulus() * contact.radius * shape.depth;
+  contact.force = of_stamp * shares.force * (1.0 - round_share / 3.0);
+  contact.pressure.flat_share = (1.0 - round_share) / (1.0 - round_share / 3.0);
+  set_stiffnesses(axes, shares, round_share, elasticity.poisson_ratio, contact);
+  return contact;
+}
+
+/// Between the two, where the shapes say only part of it.
+RoundContact mix(const RoundContact& cells, const RoundContact& shapes, double share) {
+  RoundContact contact;
+  contact.center = glm::mix(cells.center, shapes.center, share);
+  contact.radius = std::lerp(cells.radius, shapes.radius, share);
+  contact.depth = std::lerp(cells.depth, shapes.depth, share);
+  contact.force = std::lerp(cells.force, shapes.force, share);
+  contact.pressure.flat_share =
+      std::lerp(cells.pressure.flat_share, shapes.pressure.flat_share, share);
+  contact.pressure.elongation =
+      std::lerp(cells.pressure.elongation, shapes.pressure.elongation, share);
+  contact.slide_stiffness = std::lerp(cells.slide_stiffness, shapes.slide_stiffness, share);
+  contact.turn_stiffness = std::lerp(cells.turn_stiffness, shapes.turn_stiffness, share);
+  contact.torque_share = std::lerp(cells.torque_share, shapes.torque_share, share);
+  return contact;
+}
+
+}  // namespace
+
+RoundContact round_contact(const World& world, std::uint32_t region) {
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
+  const SmoothContact& smooth = world.regions.at<SmoothContact>(region);
+  RoundContact contact;
+  if (smooth.share < 1.0) {
+    contact = contact_of_cells(world, region, elasticity);
+  }
+  if (smooth.share > 0.0) {
+    contact = mix(contact, contact_of_shapes(smooth, elasticity), smooth.share);
+  }
+  // A body model in series has the body's thickness itself.
+  const bool in_series = world.bodies.at<BodyModels>(identity.body).body == BodyModel::kCompliance;
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const double thickness =
+      in_series ? 0.0
+                : layer_thickness(world, identity.body, frame.normal,
+                                  world.regions.at<RegionGeometry>(region).rest_point);
+  if (thickness > 0.0) {
+    contact.force *= layer_force_share(contact.radius / thickness, elasticity.poisson_ratio);
+  }
+  return contact;
+}
+
+double normal_slope(const RoundContact& contact, double modulus) {
+  return 2.0 * modulus * contact.radius * contact.slide_stiffness;
+}
+
+RoundContact pressed_to(double depth, double modulus, RoundContact contact) {
+  const double power =
+      std::clamp(normal_slope(contact, modulus) * contact.depth / contact.force, 1.0, 2.0);
+  const double share = depth / contact.depth;
+  const double wider = std::pow(share, power - 1.0);
+  contact.depth = depth;
+  contact.force *= share * wider;
+  contact.radius *= wider;
+  return contact;
+}
+
+double layer_force_share(double chi, double poisson_ratio) {
+  const double nu = poisson_ratio;
+  const double x = std::clamp(chi, 0.0, 0.5);
+  const double a = -(1.2876 - 1.4678 * nu + 1.3442 * nu * nu) / (1.0 - nu);
+  const double b = (0.6387 - 1.0277 * nu + 1.5164 * nu * nu) / (1.0 - nu);
+  const double t = 2.0 / pi * x;
+  const double cube = a * a * a;
+  return 1.0 - a * t + a * a * t * t - (cube + 4.0 * pi * pi / 15.0 * b) * t * t * t -
+         a * (cube + 0.6 * pi * pi * b) * t * t * t * t;
+}
+
+}  // namespace torsion

@@ -1,0 +1,142 @@
+#include "systems/model/cache.hpp"
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <system_error>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+namespace torsion {
+namespace {
+
+constexpr std::array<char, 8> kMagic{'T', 'O', 'R', 'S', 'C', 'A', 'C', '1'};
+
+/// The start of every file of the cache.
+struct FileHeader {
+  std::array<char, 8> magic = kMagic;
+  std::uint64_t length = 0;  // bytes that follow
+  std::uint64_t hash_low = 0;
+  std::uint64_t hash_high = 0;
+};
+
+FileHeader header_of(std::span<const std::byte> bytes) {
+  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
+  return {kMagic, bytes.size(), hash.low64, hash.high64};
+}
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+bool write_file(int descriptor, std::span<const std::byte> bytes) {
+  File file(fdopen(descriptor, "wb"), std::fclose);
+  if (!file) {
+    close(descriptor);
+    return false;
+  }
+  // No fsync: a file torn by a power cut fails its checksum and is made anew.
+  const FileHeader header = header_of(bytes);
+  const bool written = std::fwrite(&header, sizeof(header), 1, file.get()) == 1 &&
+                       (bytes.empty() ||  // an empty span may have no address
+                        std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size());
+  return std::fclose(file.release()) == 0 && written;
+}
+
+}  // namespace
+
+CacheKey cache_key(std::string_view kind, std::uint32_t version,
+                   std::span<const std::span<const std::byte>> content) {
+  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
+                                                                              XXH3_freeState);
+  XXH3_128bits_reset(state.get());
+  XXH3_128bits_update(state.get(), &version, sizeof(version));
+  for (const std::span<const std::byte> piece : content) {
+    const std::uint64_t length = piece.size();
+    XXH3_128bits_update(state.get(), &length, sizeof(length));
+    XXH3_128bits_update(state.get(), piece.data(), piece.size());
+  }
+  const XXH128_hash_t hash = XXH3_128bits_digest(state.get());
+  std::array<char, 33> digits{};
+  std::snprintf(digits.data(), digits.size(), "%016llx%016llx",
+                static_cast<unsigned long long>(hash.high64),
+                static_cast<unsigned long long>(hash.low64));
+  return {std::string(kind) + "-" + digits.data()};
+}
+
+std::filesystem::path cache_folder() {
+  // Read at load time, before threads of the program change anything.
+  const auto variable = [](const char* name) -> std::filesystem::path {
+    const char* const value =
+        std::getenv(name);  // NOLINT(concurrency-mt-unsafe): nobody calls setenv
+    return value == nullptr ? "" : value;
+  };
+  if (std::filesystem::path chosen = variable("TORSION_CACHE_DIR"); !chosen.empty()) {
+    return chosen;
+  }
+  if (const std::filesystem::path base = variable("XDG_CACHE_HOME"); base.is_absolute()) {
+    return base /
+           "torsion";  // the XDG base directory specification: relative paths are to be ignored
+  }
+  if (const std::filesystem::path home = variable("HOME"); !home.empty()) {
+    return home / ".cache" / "torsion";
+  }
+  return {};
+}
+
+std::optional<std::vector<std::byte>> load_cached(const CacheKey& key) {
+  const std::filesystem::path folder = cache_folder();
+  if (folder.empty()) {
+    return std::nullopt;
+  }
+  const File file(std::fopen((folder / key.file_name).c_str(), "rbe"), std::fclose);
+  FileHeader header;
+  if (!file || std::fread(&header, sizeof(header), 1, file.get()) != 1 || header.magic != kMagic) {
+    return std::nullopt;
+  }
+  std::error_code failure;
+  const std::uintmax_t size = std::filesystem::file_size(folder / key.file_name, failure);
+  if (failure || size != sizeof(header) + header.length) {
+    return std::nullopt;
+  }
+  std::vector<std::byte> bytes(header.length);
+  if (!bytes.empty() && std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
+    return std::nullopt;
+  }
+  const FileHeader found = header_of(bytes);
+  if (found.hash_low != header.hash_low || found.hash_high != header.hash_high) {
+    return std::nullopt;
+  }
+  return bytes;
+}
+
+bool store_cached(const CacheKey& key, std::span<const std::byte> bytes) {
+  const std::filesystem::path folder = cache_folder();
+  if (folder.empty()) {
+    return false;
+  }
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure) {
+    return false;
+  }
+  std::string unfinished = folder / (key.file_name + ".part-XXXXXX");
+  const int descriptor = mkostemp(unfinished.data(), O_CLOEXEC);
+  if (descriptor < 0) {
+    return false;
+  }
+  if (write_file(descriptor, bytes)) {
+    std::filesystem::rename(unfinished, folder / key.file_name, failure);
+    if (!failure) {
+      return true;
+    }
+  }
+  std::filesystem::remove(unfinished, failure);
+  return false;
+}
+
+}  // namespace torsion

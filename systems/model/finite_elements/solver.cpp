@@ -1,0 +1,217 @@
+#include "systems/model/finite_elements/solver.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <glm/common.hpp>
+
+namespace torsion {
+namespace {
+
+constexpr std::size_t kLeafNodes = 24;  // fewer make more fronts than they save arithmetic
+
+/// Orders `nodes` after what is ordered already: both sides of a plane of the lattice, then the
+/// plane. Returns the rows of the fronts at the top of what it made.
+std::vector<std::uint32_t> dissect(const SolidGrid& grid, std::vector<std::uint32_t> nodes,
+                                   StiffnessFactor& factor) {
+  if (nodes.empty()) {
+    return {};
+  }
+  glm::uvec3 lowest = grid.lattice[nodes.front()];
+  glm::uvec3 highest = lowest;
+  for (const std::uint32_t node : nodes) {
+    lowest = glm::min(lowest, grid.lattice[node]);
+    highest = glm::max(highest, grid.lattice[node]);
+  }
+  const glm::uvec3 extent = highest - lowest;
+  StiffnessFront front;
+  if (nodes.size() > kLeafNodes) {
+    int axis = 0;
+    for (int k = 1; k < 3; ++k) {
+      axis = extent[k] > extent[axis] ? k : axis;
+    }
+    const std::uint32_t plane = (lowest[axis] + highest[axis] + 1) / 2;
+    std::vector<std::uint32_t> before;
+    std::vector<std::uint32_t> after;
+    std::vector<std::uint32_t> within;
+    for (const std::uint32_t node : nodes) {
+      const std::uint32_t at = grid.lattice[node][axis];
+      (at < plane ? before : at > plane ? after : within).push_back(node);
+    }
+    front.children = dissect(grid, std::move(before), factor);
+    const std::vector<std::uint32_t> more = dissect(grid, std::move(after), factor);
+    front.children.insert(front.children.end(), more.begin(), more.end());
+    nodes = std::move(within);
+    if (nodes.empty()) {
+      return front.children;
+    }
+  }
+  front.first = factor.free_nodes;
+  front.count = static_cast<std::uint32_t>(nodes.size());
+  for (const std::uint32_t node : nodes) {
+    factor.order[node] = factor.free_nodes++;
+  }
+  factor.fronts.push_back(std::move(front));
+  return {static_cast<std::uint32_t>(factor.fronts.size() - 1)};
+}
+
+/// For each front, the elements whose first eliminated node is its own.
+std::vector<std::vector<std::uint32_t>> elements_of_fronts(const SolidGrid& grid,
+                                                           const StiffnessFactor& factor) {
+  std::vector<std::uint32_t> front_of(factor.free_nodes);
+  for (std::size_t f = 0; f < factor.fronts.size(); ++f) {
+    const StiffnessFront& front = factor.fronts[f];
+    std::fill_n(front_of.begin() + front.first, front.count, static_cast<std::uint32_t>(f));
+  }
+  std::vector<std::vector<std::uint32_t>> elements(factor.fronts.size());
+  for (std::size_t element = 0; element < grid.elements.size(); ++element) {
+    std::uint32_t earliest = kNoRow;
+    for (const std::uint32_t node : grid.elements[element]) {
+      earliest = std::min(earliest, factor.order[node]);
+    }
+    if (earliest != kNoRow) {
+      elements[front_of[earliest]].push_back(static_cast<std::uint32_t>(element));
+    }
+  }
+  return elements;
+}
+
+void find_boundary(const SolidGrid& grid, const std::vector<std::uint32_t>& elements,
+                   StiffnessFactor& factor, StiffnessFront& front) {
+  const std::uint32_t end = front.first + front.count;
+  std::vector<std::uint32_t>& boundary = front.boundary;
+  for (const std::uint32_t element : elements) {
+    for (const std::uint32_t node : grid.elements[element]) {
+      if (factor.order[node] != kNoRow && factor.order[node] >= end) {
+        boundary.push_back(factor.order[node]);
+      }
+    }
+  }
+  for (const std::uint32_t child : front.children) {
+    std::copy_if(factor.fronts[child].boundary.begin(), factor.fronts[child].boundary.end(),
+                 std::back_inserter(boundary), [&](std::uint32_t node) { return node >= end; });
+  }
+  std::sort(boundary.begin(), boundary.end());
+  boundary.erase(std::unique(boundary.begin(), boundary.end()), boundary.end());
+}
+
+/// Where a node of the order is in a front's matrix.
+std::uint32_t place_in(const StiffnessFront& front, std::uint32_t node) {
+  if (node < front.first + front.count) {
+    return node - front.first;
+  }
+  const auto found = std::lower_bound(front.boundary.begin(), front.boundary.end(), node);
+  return front.count + static_cast<std::uint32_t>(found - front.boundary.begin());
+}
+
+/// Adds the 3 x 3 blocks of `part` to the lower triangle of `matrix` at `places`.
+template <class Part>
+void add_blocks(const Part& part, const std::vector<std::uint32_t>& places,
+                Eigen::MatrixXd& matrix) {
+  for (std::size_t j = 0; j < places.size(); ++j) {
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (places[j] == kNoRow || places[i] == kNoRow || places[i] < places[j]) {
+        continue;
+      }
+      matrix.block<3, 3>(rows_of(places[i]), rows_of(places[j])) +=
+          part.template block<3, 3>(rows_of(i), rows_of(j));
+    }
+  }
+}
+
+/// Eliminates a front's own nodes; leaves in the lower triangle of `rest` what that makes of its
+/// boundary. False when a pivot is not positive.
+bool eliminate(Eigen::MatrixXd& matrix, StiffnessFront& front, Eigen::MatrixXd& rest) {
+  const Eigen::Index own = rows_of(front.count);
+  const Eigen::Index outer = rows_of(front.boundary.size());
+  front.diagonal = matrix.topLeftCorner(own, own);
+  Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factored(front.diagonal);
+  if (factored.info() != Eigen::Success) {
+    return false;
+  }
+  front.below = matrix.bottomLeftCorner(outer, own);
+  rest = matrix.bottomRightCorner(outer, outer);
+  if (outer > 0) {
+    front.diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(
+        front.below);
+    rest.selfadjointView<Eigen::Lower>().rankUpdate(front.below, -1.0);
+  }
+  return true;
+}
+
+}  // namespace
+
+Result<StiffnessFactor> factor_stiffness(
+    const SolidGrid& grid, const std::function<ElementStiffness(std::size_t row)>& stiffness,
+    const std::function<void(double)>& progress) {
+  StiffnessFactor factor;
+  factor.order.assign(grid.nodes.size(), kNoRow);
+  std::vector<std::uint32_t> free;
+  for (std::size_t node = 0; node < grid.nodes.size(); ++node) {
+    if (grid.clamped[node] == 0) {
+      free.push_back(static_cast<std::uint32_t>(node));
+    }
+  }
+  dissect(grid, std::move(free), factor);
+  const std::vector<std::vector<std::uint32_t>> elements = elements_of_fronts(grid, factor);
+
+  std::vector<Eigen::MatrixXd> rests(factor.fronts.size());
+  std::vector<std::uint32_t> places;
+  for (std::size_t f = 0; f < factor.fronts.size(); ++f) {
+    StiffnessFront& front = factor.fronts[f];
+    find_boundary(grid, elements[f], factor, front);
+    const Eigen::Index size = rows_of(front.count + front.boundary.size());
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
+    for (const std::uint32_t element : elements[f]) {
+      places.clear();
+      for (const std::uint32_t node : grid.elements[element]) {
+        const std::uint32_t at = factor.order[node];
+        places.push_back(at == kNoRow ? kNoRow : place_in(front, at));
+      }
+      add_blocks(stiffness(element), places, matrix);
+    }
+    for (const std::uint32_t child : front.children) {
+      places.clear();
+      for (const std::uint32_t at : factor.fronts[child].boundary) {
+        places.push_back(place_in(front, at));
+      }
+      add_blocks(rests[child], places, matrix);
+      rests[child].resize(0, 0);
+    }
+    if (!eliminate(matrix, front, rests[f])) {
+      return Error{
+          "the body's stiffness is singular: a part of it hangs on by an edge only, or "
+          "nothing holds it"};
+    }
+    if (progress) {
+      progress(static_cast<double>(f + 1) / static_cast<double>(factor.fronts.size()));
+    }
+  }
+  return factor;
+}
+
+void solve_stiffness(const StiffnessFactor& factor, NodeColumns& columns) {
+  NodeColumns outer;
+  for (const StiffnessFront& front : factor.fronts) {
+    auto own = columns.middleRows(rows_of(front.first), rows_of(front.count));
+    front.diagonal.triangularView<Eigen::Lower>().solveInPlace(own);
+    outer.noalias() = front.below * own;
+    for (std::size_t k = 0; k < front.boundary.size(); ++k) {
+      columns.middleRows<3>(rows_of(front.boundary[k])) -= outer.middleRows<3>(rows_of(k));
+    }
+  }
+  for (std::size_t f = factor.fronts.size(); f-- > 0;) {
+    const StiffnessFront& front = factor.fronts[f];
+    auto own = columns.middleRows(rows_of(front.first), rows_of(front.count));
+    outer.resize(rows_of(front.boundary.size()), columns.cols());
+    for (std::size_t k = 0; k < front.boundary.size(); ++k) {
+      outer.middleRows<3>(rows_of(k)) = columns.middleRows<3>(rows_of(front.boundary[k]));
+    }
+    own.noalias() -= front.below.transpose() * outer;
+    front.diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+  }
+}
+
+}  // namespace torsion

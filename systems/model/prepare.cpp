@@ -1,0 +1,411 @@
+#include <algorithm>
+#include <numeric>
+
+#include "systems/contact/support/surface_bend.hpp"
+#include "systems/geometry/bounds.hpp"
+#include "systems/geometry/distance_field_build.hpp"
+#include "systems/geometry/sample_surface.hpp"
+#include "systems/geometry/unite_meshes.hpp"
+#include "systems/half_space/influence.hpp"
+#include "systems/half_space/layer_influence.hpp"
+#include "systems/half_space/layer_kernel.hpp"
+#include "systems/half_space/layer_thickness.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/model/choose_models.hpp"
+#include "systems/model/prepare_anchors.hpp"
+#include "systems/model/prepare_compliance.hpp"
+#include "systems/scratch.hpp"
+#include "systems/step.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr std::uint32_t kSamplesPerTool = 2000;
+// r_th over the mean distance to a sample's farthest neighbour: neighbours over one contact are
+// always linked, and two contacts a few samples apart are not.
+constexpr double kThresholdOverSpacing = 1.2;
+constexpr double kHighestRate = 1e6;  // Hz
+
+/// Everything that is computed before the tables' sizes are known.
+struct Built {
+  std::vector<BuiltField> fields;        // in the order of mesh parts: bodies', then tools'
+  std::vector<SampledSurface> surfaces;  // one for each tool
+};
+
+SurfaceMesh in_part_frame(const PartDescription& part, SurfaceMesh mesh) {
+  for (glm::dvec3& position : mesh.positions) {
+    position = to_inner(part.shape.pose, position);
+  }
+  return mesh;
+}
+
+Result<Done> build_fields(std::span<const PartDescription> parts, bool use_cache,
+                          std::vector<BuiltField>& fields) {
+  for (const PartDescription& part : parts) {
+    if (part.shape.kind != ShapeKind::kMesh) {
+      continue;
+    }
+    const SurfaceMesh mesh = in_part_frame(part, part.surface);
+    const SurfaceMesh solid =
+        part.solid != nullptr ? in_part_frame(part, *part.solid) : SurfaceMesh{};
+    const FieldOfMesh wanted{mesh, part.solid != nullptr ? solid : mesh};
+    Result<BuiltField> field =
+        use_cache ? load_or_build_distance_field(wanted) : build_distance_field(wanted);
+    if (!field) {
+      return Error{"node '" + part.node + "': " + field.error().text};
+    }
+    fields.push_back(std::move(field).value());
+  }
+  return Done{};
+}
+
+Result<Built> build(const SceneDescription& scene, const PrepareOptions& options) {
+  Built built;
+  for (const BodyDescription& body : scene.bodies) {
+    const Result<Done> done = build_fields(body.parts, options.use_cache, built.fields);
+    if (!done) {
+      return done.error();
+    }
+  }
+  for (const ToolDescription& tool : scene.tools) {
+    const Result<Done> done = build_fields(tool.parts, options.use_cache, built.fields);
+    if (!done) {
+      return done.error();
+    }
+    built.surfaces.push_back(sample_surface(tool.parts, kSamplesPerTool));
+  }
+  return built;
+}
+
+/// Of all tables but those that depend on the models.
+Capacities capacities_of(const SceneDescription& scene, const Built& built) {
+  Capacities needed;
+  needed.bodies = static_cast<std::uint32_t>(scene.bodies.size());
+  needed.tools = static_cast<std::uint32_t>(scene.tools.size());
+  for (const BodyDescription& body : scene.bodies) {
+    needed.parts += static_cast<std::uint32_t>(body.parts.size());
+    needed.fixed_volumes += static_cast<std::uint32_t>(body.fixed_volumes.size());
+  }
+  for (const ToolDescription& tool : scene.tools) {
+    needed.parts += static_cast<std::uint32_t>(tool.parts.size());
+  }
+  needed.fields = static_cast<std::uint32_t>(built.fields.size());
+  for (const BuiltField& field : built.fields) {
+    needed.field_nodes += static_cast<std::uint32_t>(field.nodes.size());
+    needed.field_bricks += static_cast<std::uint32_t>(field.bricks.size());
+  }
+  for (const SampledSurface& surface : built.surfaces) {
+    needed.samples += static_cast<std::uint32_t>(surface.samples.size());
+    needed.balls += static_cast<std::uint32_t>(surface.balls.size());
+  }
+  needed.anchors = needed.bodies * kAnchorsPerBody;
+  needed.regions = needed.bodies * kMaxRegionsPerBody;
+  return needed;
+}
+
+/// Appends `rows` to a table; the capacity was counted before, so they fit.
+template <class T, class AnyTable>
+Range append_rows(AnyTable& table, std::span<const T> rows) {
+  const std::optional<Range> range = table.append(static_cast<std::uint32_t>(rows.size()));
+  TORSION_ASSERT(range.has_value());
+  std::ranges::copy(rows, table.template rows<T>(*range).begin());
+  return *range;
+}
+
+std::uint32_t append_field(World& world, const BuiltField& built) {
+  DistanceField field = built.header;
+  const Range nodes = append_rows<DistanceNode>(world.field_nodes, built.nodes);
+  const Range bricks = append_rows<DistanceBrick>(world.field_bricks, built.bricks);
+  for (DistanceBrick& brick : world.field_bricks.rows<DistanceBrick>(bricks)) {
+    brick.first_node += brick.first_node == kNoRow ? 0 : nodes.first;
+  }
+  field.coarse_nodes.first += nodes.first;
+  field.bricks = bricks;
+  return append_rows<DistanceField>(world.fields, {&field, 1}).first;
+}
+
+/// @param next_field  which of the built fields the next mesh part uses; in and out
+Range append_parts(World& world, std::span<const PartDescription> parts, const Built& built,
+                   std::size_t& next_field) {
+  const Range range{world.parts.size(), static_cast<std::uint32_t>(parts.size())};
+  for (const PartDescription& part : parts) {
+    ShapePart shape = part.shape;
+    shape.field =
+        shape.kind == ShapeKind::kMesh ? append_field(world, built.fields[next_field++]) : kNoRow;
+    append_rows<ShapePart>(world.parts, {&shape, 1});
+  }
+  return range;
+}
+
+double default_threshold(const World& world) {
+  const auto samples = world.samples.column<SurfaceSample>();
+  const double sum =
+      std::transform_reduce(samples.begin(), samples.end(), 0.0, std::plus<>{},
+                            [](const SurfaceSample& sample) { return sample.spacing; });
+  return samples.empty() ? 0.0 : kThresholdOverSpacing * sum / static_cast<double>(samples.size());
+}
+
+void append_tool(World& world, const ToolDescription& tool, const SampledSurface& surface,
+                 const Built& built, std::size_t& next_field) {
+  OwnedRows owned;
+  owned.parts = append_parts(world, tool.parts, built, next_field);
+  owned.samples = append_rows<SurfaceSample>(world.samples, surface.samples);
+  owned.balls = append_rows<SurfaceBall>(world.balls, surface.balls);
+  const std::uint32_t row = world.tools.append()->first;
+  world.tools.at<Entity>(row) = *world.tool_handles.create(row);
+  world.tools.at<ToolPose>(row) = ToolPose{};
+  world.tools.at<ToolMotion>(row) = ToolMotion{};
+  world.tools.at<MassProperties>(row) = tool.mass;
+  world.tools.at<ToolWrench>(row) = ToolWrench{};
+  world.tools.at<OwnedRows>(row) = owned;
+  world.tools.at<Bounds>(row) = bounds_of(tool.parts);
+}
+
+void append_body(World& world, const BodyDescription& body, const Built& built,
+                 std::size_t& next_field) {
+  OwnedRows owned;
+  owned.parts = append_parts(world, body.parts, built, next_field);
+  FixedRegion fixed = body.fixed;
+  fixed.volumes = append_rows<FixedVolume>(world.fixed_volumes, body.fixed_volumes);
+  const std::uint32_t row = world.bodies.append()->first;
+  world.bodies.at<Entity>(row) = *world.body_handles.create(row);
+  world.bodies.at<Pose>(row) = body.pose;
+  world.bodies.at<Elasticity>(row) = body.elasticity;
+  world.bodies.at<Friction>(row) = body.friction;
+  world.bodies.at<FixedRegion>(row) = fixed;
+  world.bodies.at<BodyModels>(row) = body.models;
+  world.bodies.at<OwnedRows>(row) = owned;
+  world.bodies.at<Bounds>(row) = bounds_of(body.parts);
+}
+
+/// All that knows nothing of models: shapes, bodies, tools.
+void append_scene(World& world, const SceneDescription& scene, const Built& built) {
+  std::size_t next_field = 0;
+  for (const BodyDescription& body : scene.bodies) {
+    append_body(world, body, built, next_field);
+  }
+  for (std::size_t tool = 0; tool < scene.tools.size(); ++tool) {
+    append_tool(world, scene.tools[tool], built.surfaces[tool], built, next_field);
+  }
+  for (BodyModels& models : world.bodies.column<BodyModels>()) {
+    models.region_threshold = std::max(models.region_threshold, default_threshold(world));
+  }
+}
+
+std::vector<ModelChoice> choose_all(const World& world, const PrepareOptions& options) {
+  std::vector<ModelChoice> choices;
+  for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
+    choices.push_back(choose_models(world.bodies.at<BodyModels>(row), options,
+                                    expect_contact(world, row, options.expected_poses),
+                                    world.bodies.at<Elasticity>(row).poisson_ratio));
+  }
+  return choices;
+}
+
+/// Body model compliance's anchors and matrices of all bodies that have it; empty for the others.
+/// Where it cannot be had and nobody insists on it, the choice becomes skeleton.
+Result<std::vector<PreparedCompliance>> build_compliances(const World& world,
+                                                          const SceneDescription& scene,
+                                                          std::span<ModelChoice> choices,
+                                                          const PrepareOptions& options) {
+  std::vector<PreparedCompliance> all(choices.size());
+  const auto compliant =
+      static_cast<double>(std::ranges::count_if(choices, [](const ModelChoice& choice) {
+        return choice.models.body == BodyModel::kCompliance;
+      }));
+  double done = 0.0;  // bodies
+  const auto progress = [&](double share) {
+    if (options.progress) {
+      options.progress((done + share) / compliant);
+    }
+  };
+  for (std::uint32_t row = 0; row < choices.size(); ++row) {
+    if (choices[row].models.body == BodyModel::kCompliance) {
+      Result<PreparedCompliance> built = prepare_compliance(
+          scene.bodies[row], world, row, choices[row].place, options.use_cache, progress);
+      done += 1.0;
+      if (!built && choices[row].body_is_auto) {
+        choices[row].models.body = BodyModel::kSkeleton;
+        choices[row].body_why = "auto: " + built.error().text;
+        continue;
+      }
+      if (!built) {
+        return built.error();
+      }
+      all[row] = std::move(built).value();
+    }
+  }
+  return all;
+}
+
+/// Whether the contacts of the body see it as a layer.
+bool has_kernel(const World& world, std::uint32_t row, const BodyModels& models) {
+  return models.body == BodyModel::kCompliance && is_layer(world, row);
+}
+
+/// Whether regions of contact model `patch` may need tables of their own.
+bool has_own_tables(const World& world, std::uint32_t row, const BodyModels& models) {
+  return models.body == BodyModel::kCompliance && (is_layer(world, row) || may_bend(world, row));
+}
+
+/// Number of rows in `influences` that a body needs: patch's tables, then a layer's kernel.
+std::uint32_t influence_values(const World& world, std::uint32_t row, const BodyModels& models,
+                               std::uint32_t side) {
+  const std::size_t tables = models.contact == ContactModel::kPatch ? influence_count(side) : 0;
+  const std::size_t kernel = has_kernel(world, row, models) ? kLayerKernelSize : 0;
+  return static_cast<std::uint32_t>(tables + kernel);
+}
+
+void append_influences(World& world, std::uint32_t row, const BodyModels& models) {
+  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  const double poisson_ratio = world.bodies.at<Elasticity>(row).poisson_ratio;
+  const std::size_t tables = models.contact == ContactModel::kPatch ? influence_count(side) : 0;
+  std::vector<double> values(influence_values(world, row, models, side));
+  if (tables > 0) {
+    fill_influences(poisson_ratio, side, std::span(values).first(tables));
+  }
+  if (values.size() > tables) {
+    fill_layer_kernel(poisson_ratio, std::span(values).subspan(tables));
+  }
+  const Range rows = *world.influences.append(static_cast<std::uint32_t>(values.size()));
+  world.bodies.at<OwnedRows>(row).influences = rows;
+  std::ranges::transform(values, world.influences.rows<Influence>(rows).begin(),
+                         [](double value) { return Influence{value}; });
+}
+
+/// What the chosen models of a body need.
+void append_models(World& world, std::uint32_t row, const BodyDescription& body,
+                   const PreparedCompliance& compliant, ModelChoice& choice) {
+  OwnedRows& owned = world.bodies.at<OwnedRows>(row);
+  if (!compliant.anchors.empty()) {
+    owned.anchors = append_rows<AnchorRest>(world.anchors, compliant.anchors);
+    owned.ports = append_rows<CompliancePort>(world.ports, compliant.ports);
+    owned.compliance = append_rows<ComplianceValue>(world.compliance, compliant.values);
+    const auto sections = static_cast<std::uint32_t>(compliant.anchors.size()) * kBeamStations;
+    TORSION_ASSERT(world.sections.append(sections).has_value());
+  } else if (choice.models.body == BodyModel::kCompliance) {
+    choice.models.body = BodyModel::kNone;
+    choice.body_why = "hardly any of the body is free";
+  }
+  if (choice.models.body == BodyModel::kSkeleton) {
+    const Range volumes = world.bodies.at<FixedRegion>(row).volumes;
+    const PreparedAnchors prepared = prepare_anchors(body, world, owned.parts, volumes);
+    if (prepared.anchors.empty()) {
+      choice.models.body = BodyModel::kNone;
+      choice.body_why = "all of the body is fixed";
+    }
+    owned.anchors = append_rows<AnchorRest>(world.anchors, prepared.anchors);
+    append_rows<BeamSection>(world.sections, prepared.sections);
+  }
+  append_influences(world, row, choice.models);
+  world.bodies.at<BodyModels>(row) = choice.models;
+}
+
+/// Chooses models and fills all tables that depend on them.
+Result<Done> append_choices(Simulation& simulation, const SceneDescription& scene,
+                            const PrepareOptions& options, Capacities capacities) {
+  World& world = simulation.world;
+  simulation.choices = choose_all(world, options);
+  Settings settings = options.settings;
+  settings.grid_side =
+      settings.grid_side == 0 ? choose_grid_side(simulation.choices) : settings.grid_side;
+  for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
+    const BodyModels& models = simulation.choices[row].models;
+    capacities.influences += influence_values(world, row, models, settings.grid_side);
+    capacities.patch_bodies += models.contact == ContactModel::kPatch ? 1U : 0U;
+    capacities.mdr_bodies += models.contact == ContactModel::kMdr ? 1U : 0U;
+    if (models.contact == ContactModel::kPatch && has_own_tables(world, row, models)) {
+      capacities.layer_influences =
+          static_cast<std::uint32_t>(layer_influence_count(settings.grid_side));
+    }
+  }
+  const Result<std::vector<PreparedCompliance>> compliances =
+      build_compliances(world, scene, simulation.choices, options);
+  if (!compliances) {
+    return compliances.error();
+  }
+  for (const PreparedCompliance& compliant : compliances.value()) {
+    capacities.ports += static_cast<std::uint32_t>(compliant.ports.size());
+    capacities.compliance_values += static_cast<std::uint32_t>(compliant.values.size());
+  }
+  world.reserve_models(capacities, settings);
+  for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
+    append_models(world, row, scene.bodies[row], compliances.value()[row], simulation.choices[row]);
+  }
+  TORSION_ASSERT(world.cells.append(world.cells.capacity()).has_value());
+  TORSION_ASSERT(world.layer_influences.append(world.layer_influences.capacity()).has_value());
+  TORSION_ASSERT(world.footings.append(world.footings.capacity()).has_value());
+  TORSION_ASSERT(world.couplings.append(world.couplings.capacity()).has_value());
+  TORSION_ASSERT(world.mdr_layers.append(world.mdr_layers.capacity()).has_value());
+  TORSION_ASSERT(world.patch_cells.append(world.patch_cells.capacity()).has_value());
+  return Done{};
+}
+
+}  // namespace
+
+namespace {
+
+/// The scene with one solid in place of meshes that overlap.
+/// @param united  out: nodes of those meshes
+Result<SceneDescription> with_unions(const SceneDescription& scene,
+                                     std::vector<std::string>& united) {
+  SceneDescription solid = scene;
+  const auto unite = [&united](std::vector<PartDescription>& parts,
+                               bool with_others) -> Result<Done> {
+    Result<std::vector<std::string>> nodes = unite_parts(parts, with_others);
+    if (!nodes) {
+      return nodes.error();
+    }
+    united.insert(united.end(), nodes.value().begin(), nodes.value().end());
+    return Done{};
+  };
+  for (BodyDescription& body : solid.bodies) {
+    if (const Result<Done> done = unite(body.parts, true); !done) {
+      return done.error();
+    }
+  }
+  for (ToolDescription& tool : solid.tools) {
+    if (const Result<Done> done = unite(tool.parts, false); !done) {
+      return done.error();
+    }
+  }
+  return solid;
+}
+
+}  // namespace
+
+Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options) {
+  if (!(options.rate > 0.0 && options.rate <= kHighestRate)) {
+    return Error{"the rate must be above 0 and at most 1e6 Hz, it is " +
+                 std::to_string(options.rate)};
+  }
+  if (options.settings.grid_side > kMaxGridSide) {
+    return Error{"the grid must have 1 to " + std::to_string(kMaxGridSide) +
+                 " cells along a side, it has " + std::to_string(options.settings.grid_side)};
+  }
+  Simulation simulation;
+  const Result<SceneDescription> united = with_unions(scene, simulation.united_nodes);
+  if (!united) {
+    return united.error();
+  }
+  const SceneDescription& solid = united.value();
+  const Result<Built> built = build(solid, options);
+  if (!built) {
+    return built.error();
+  }
+  World& world = simulation.world;
+  const Capacities capacities = capacities_of(solid, built.value());
+  world.reserve(capacities, Settings{1, 0});
+  world.clock.at<Clock>(0).dt = 1.0 / options.rate;
+  append_scene(world, solid, built.value());
+  const Result<Done> done = append_choices(simulation, solid, options, capacities);
+  if (!done) {
+    return done.error();
+  }
+  simulation.scratch->reserve(world);
+  simulation.schedule = Schedule<StepContext>(step_systems(1.0 / options.rate),
+                                              StepContext{world, {}, *simulation.scratch});
+  return simulation;
+}
+
+}  // namespace torsion

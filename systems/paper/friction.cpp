@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "systems/contact/friction_decay.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/paper/brush.hpp"
+#include "systems/paper/paper.hpp"
+
+namespace torsion {
+namespace {
+
+/// Projected distance to what is fixed as a linear function over the grid (the paper's l_i, physics
+/// C2 point 4).
+void set_levers(const FixedRegion& fixed, const RegionFrame& frame, const RegionMotion& motion,
+                double radius, BrushState& brush) {
+  glm::dvec3 direction = glm::dot(motion.axis, motion.axis) > 0.0 ? motion.axis : frame.normal;
+  if (fixed.kind == FixedKind::kFace) {
+    direction = fixed.normal / std::max(std::abs(glm::dot(direction, fixed.normal)), 0.1);
+  }
+  brush.lever_origin = glm::dot(frame.origin - fixed.point, direction);
+  brush.lever_slope = body_to_grid_direction(frame, direction);
+  brush.least_lever = radius;
+}
+
+/// True when another region of the same tool lies on the same body.
+bool has_siblings(const World& world, std::uint32_t region) {
+  const RegionIdentity& self = world.regions.at<RegionIdentity>(region);
+  return std::ranges::any_of(world.regions.column<RegionIdentity>(), [&](const auto& other) {
+    return other.body == self.body && other.tool == self.tool && !(other.self == self.self);
+  });
+}
+
+BrushState brush_of(const World& world, std::uint32_t region) {
+  const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
+  const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+  const RegionMotion& motion = world.regions.at<RegionMotion>(region);
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const Elasticity& elasticity = world.bodies.at<Elasticity>(body);
+  const double normal_force = world.regions.at<RegionNormal>(region).force;
+  BrushState brush;
+  brush.friction = world.bodies.at<Friction>(body);
+  brush.falls = brush.friction.static_friction != brush.friction.dynamic_friction;
+  brush.shear_modulus = elasticity.shear_modulus();
+  brush.pressure = geometry.area > 0.0 ? normal_force / geometry.area : 0.0;
+  const double stiffness =
+      8.0 * brush.shear_modulus * geometry.radius / (2.0 - elasticity.poisson_ratio);
+  brush.translation_stiffness = geometry.area > 0.0 ? stiffness / geometry.area : 0.0;
+  brush.inverse_slip_displacement = inverse_of(
+      stiffness > 0.0 ? brush.friction.dynamic_friction * normal_force / stiffness : 0.0);
+  brush.inverse_limit = inverse_of(brush.pressure * brush.friction.static_friction);
+  brush.several = has_siblings(world, region);
+  brush.pivot = motion.pivot;
+  brush.center = glm::dvec2(body_to_grid(frame, geometry.equivalent_point));
+  brush.slide = motion.slide;
+  brush.spin = motion.spin;
+  brush.kinetic_share = world.regions.at<RegionFriction>(region).kinetic_share;
+  set_levers(world.bodies.at<FixedRegion>(body), frame, motion, geometry.radius, brush);
+  return brush;
+}
+
+/// @param place  in the block
+void put(const BrushState& brush, const BrushBlock& block, std::size_t place, CellTraction& cell) {
+  cell.traction = {block.traction_x[place], block.traction_y[place]};
+  cell.pressure = brush.pressure;
+  cell.kinetic_share = block.kinetic_share[place];
+  cell.sticks = block.sticks[place] > 0.0 ? 1U : 0U;
+}
+
+/// The region's cells in contact, kBrushBlock at a time: out of the tables, through the return map,
+/// back. Cells without contact carry nothing.
+BrushSums update_cells(World& world, std::uint32_t region, const BrushState& brush) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const Range rows = world.regions.at<RegionIdentity>(region).cells;
+  const auto cells = world.cells.rows<CellGeometry>(rows);
+  const auto tractions = world.cells.rows<CellTraction>(rows);
+  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  const double cell_size = cell_area(frame, side);
+  BrushLanes lanes;
+  BrushBlock block{};
+  std::array<std::uint32_t, kBrushBlock> owner{};
+  std::size_t count = 0;
+  const auto finish_block = [&] {
+    std::fill(block.area.begin() + static_cast<std::ptrdiff_t>(count), block.area.end(), 0.0);
+    update_brushes(brush, block, lanes);
+    for (std::size_t k = 0; k < count; ++k) {
+      put(brush, block, k, tractions[owner[k]]);
+    }
+    count = 0;
+  };
+  std::uint32_t cell = 0;
+  std::array<double, kMaxGridSide> x;
+  for (std::uint32_t i = 0; i < side; ++i) {
+    x[i] = cell_center(frame, side, i, 0).x;
+  }
+  for (std::uint32_t j = 0; j < side; ++j) {
+    const double y = cell_center(frame, side, 0, j).y;
+    for (std::uint32_t i = 0; i < side; ++i, ++cell) {
+      if (cells[cell].coverage <= 0.0) {
+        tractions[cell] = CellTraction{};
+        continue;
+      }
+      block.x[count] = x[i];
+      block.y[count] = y;
+      block.height[count] = cells[cell].height;
+      block.area[count] = cells[cell].coverage * cell_size;
+      block.traction_x[count] = tractions[cell].traction.x;
+      block.traction_y[count] = tractions[cell].traction.y;
+      block.kinetic_share[count] = tractions[cell].kinetic_share;
+      owner[count++] = cell;
+      if (count == kBrushBlock) {
+        finish_block();
+      }
+    }
+  }
+  if (count > 0) {
+    finish_block();
+  }
+  return total(lanes);
+}
+
+/// How far the region has gone over to sliding: by the path it slid, back by the path it moved
+/// elastically. With a second region on the same pair every motion of the region that the axis goes
+/// through counts as sliding (14).
+double next_kinetic_share(const BrushState& brush, const BrushSums& sums, double axis_share) {
+  const double stiffness = brush.translation_stiffness * sums.area;
+  // Mean translation that the elastic limit cut off, m.
+  const glm::dvec2 plastic = stiffness > 0.0 ? -sums.cut / stiffness : glm::dvec2(0.0);
+  const double slid = glm::length(plastic);
+  const double elastic = glm::length(brush.slide - plastic);
+  const double forced = brush.several ? axis_share * sums.moved : 0.0;
+  double share = brush.kinetic_share;
+  share += (1.0 - share) * travelled(std::max(slid, forced), brush.inverse_slip_displacement);
+  if (forced == 0.0) {
+    share *= 1.0 - travelled(elastic, brush.inverse_slip_displacement);
+  }
+  return share;
+}
+
+/// r_m and phi_m of (6), (11)-(13): inside r_m the surface turns with the tool by phi_m; outside,
+/// the limit traction stands for a turn that falls as 1/r.
+void set_stick_radius(const BrushState& brush, const BrushSums& sums,
+                      const RegionGeometry& geometry, const RegionMotion& motion,
+                      RegionFriction& friction) {
+  const double kinetic = friction.kinetic_share;
+  const double limit = brush.pressure * ((1.0 - kinetic) * brush.friction.static_friction +
+                                         kinetic * brush.friction.dynamic_friction);
+  const double limit_arc =
+      limit * motion.lever / brush.shear_modulus;  // m: r phi that the limit stands for
+  if (sums.stuck_stiffness > 0.0) {
+    // What the springs of the cells that stick are turned by, all together: of tractions that the
+    // region's sliding left in them little is left.
+    friction.stick_turn = -sums.stuck_couple / sums.stuck_stiffness;
+    const double twist = std::abs(friction.stick_turn);
+    friction.stick_radius =
+        twist * geometry.radius > limit_arc ? limit_arc / twist : geometry.radius;
+    return;
+  }
+  const double largest = 2.0 / 3.0 * limit * geometry.area * geometry.radius;
+  const double used = largest > 0.0 ? std::clamp(-friction.couple / largest, -1.0, 1.0) : 0.0;
+  friction.stick_radius = geometry.radius;
+  friction.stick_turn = geometry.radius > 0.0 ? used * limit_arc / geometry.radius : 0.0;
+}
+
+}  // namespace
+
+void paper_friction_forces(StepContext& context) {
+  World& world = context.world;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    if (world.bodies.at<BodyModels>(world.regions.at<RegionIdentity>(region).body).contact !=
+        ContactModel::kPaper) {
+      continue;
+    }
+    const BrushState brush = brush_of(world, region);
+    const BrushSums sums = update_cells(world, region, brush);
+    const RegionMotion& motion = world.regions.at<RegionMotion>(region);
+    RegionFriction& friction = world.regions.at<RegionFriction>(region);
+    friction.force = sums.force;
+    // An axis that misses the region leaves T = r x F alone (1).
+    friction.couple = motion.axis_share * sums.couple;
+    friction.stick_share = sums.area > 0.0 ? sums.stuck_area / sums.area : 0.0;
+    friction.kinetic_share = next_kinetic_share(brush, sums, motion.axis_share);
+    set_stick_radius(brush, sums, world.regions.at<RegionGeometry>(region), motion, friction);
+  }
+}
+
+}  // namespace torsion

@@ -1,0 +1,63 @@
+#include <algorithm>
+#include <cmath>
+
+#include "systems/body/skeleton/skeleton.hpp"
+#include "systems/paper/paper.hpp"
+#include "systems/scratch.hpp"
+
+namespace torsion {
+namespace {
+
+// Of the body's smallest side and of the beam's length: beyond it no small-strain law means
+// anything, and the cubic term would grow without bound.
+constexpr double kDeepestOfSide = 0.5;
+
+double deepest_allowed(const Bounds& bounds, const BeamSummary& beam) {
+  const glm::dvec3 size = bounds.highest - bounds.lowest;
+  const double side = std::min({size.x, size.y, size.z});
+  return kDeepestOfSide * (beam.length > 0.0 ? std::min(side, beam.length) : side);
+}
+
+}  // namespace
+
+PaperNormalLaw paper_normal_law(double contact_modulus, double radius, double axial_stiffness,
+                                double length) {
+  PaperNormalLaw law;
+  if (radius <= 0.0) {
+    return law;
+  }
+  const double punch = 2.0 * contact_modulus * radius;  // Boussinesq's flat punch (physics B3)
+  if (axial_stiffness <= 0.0) {
+    law.linear = punch;
+    return law;
+  }
+  law.linear = punch * axial_stiffness / (punch + axial_stiffness);
+  law.cubic = 4.0 / 3.0 * axial_stiffness / (length * length);
+  return law;
+}
+
+void paper_normal_forces(StepContext& context) {
+  World& world = context.world;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+    const std::uint32_t body = identity.body;
+    if (world.bodies.at<BodyModels>(body).contact != ContactModel::kPaper) {
+      continue;
+    }
+    const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+    const Elasticity& elasticity = world.bodies.at<Elasticity>(body);
+    BeamSummary beam;
+    if (world.bodies.at<BodyModels>(body).body == BodyModel::kSkeleton) {
+      beam = beam_summary(context.scratch.main_beams[block_of(identity)], elasticity);
+    }
+    const double deepest = deepest_allowed(world.bodies.at<Bounds>(body), beam);
+    const double depth = std::min(geometry.mean_depth, deepest);
+    const PaperNormalLaw law = paper_normal_law(elasticity.contact_modulus(), geometry.radius,
+                                                beam.axial_stiffness, beam.length);
+    RegionNormal& normal = world.regions.at<RegionNormal>(region);
+    normal.force = law.linear * depth + law.cubic * depth * depth * depth;
+    normal.stiffness = law.linear + 3.0 * law.cubic * depth * depth;
+  }
+}
+
+}  // namespace torsion

@@ -1,0 +1,417 @@
+#include "systems/patch/cells.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "systems/contact/rim_cells.hpp"
+#include "systems/geometry/distance_shapes.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/math/widest.hpp"
+#include "systems/patch/passes.hpp"
+#include "systems/patch/sums.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kLeastBearing = 0.01;  // with less a cell cannot touch
+
+template <class T>
+std::span<double> values_of(std::span<T> rows) {
+  static_assert(sizeof(T) == sizeof(double));
+  return {&rows.front().value, rows.size()};
+}
+
+TORSION_WIDEST
+void go_with_tool(std::size_t count, const RegionMotion& motion, const double* __restrict x,
+                  const double* __restrict y, const double* __restrict from_x,
+                  const double* __restrict from_y, double* __restrict target_x,
+                  double* __restrict target_y) {
+  const double slide_x = motion.slide.x + motion.spin * motion.pivot.y;
+  const double slide_y = motion.slide.y - motion.spin * motion.pivot.x;
+  const double spin = motion.spin;
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    target_x[cell] = from_x[cell] + (slide_x - spin * y[cell]);
+    target_y[cell] = from_y[cell] + (slide_y + spin * x[cell]);
+  }
+}
+
+TORSION_WIDEST
+void take_off(std::size_t count, const double* __restrict known, const double* __restrict support,
+              double* __restrict target) {
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    target[cell] -= known[cell] * support[cell];
+  }
+}
+
+/// Where cells start from: where they are held, or where they have moved to.
+TORSION_WIDEST
+void find_starts(std::size_t count, const double* __restrict known, const double* __restrict held,
+                 const double* __restrict moved, double* __restrict from) {
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    from[cell] = known[cell] != 0.0 ? held[cell] : moved[cell];
+  }
+}
+
+/// to = values, and `share` of what they have changed by.
+TORSION_WIDEST
+void carry_on(std::size_t count, double share, const double* __restrict values,
+              const double* __restrict change, double* __restrict to) {
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    to[cell] = values[cell] + share * change[cell];
+  }
+}
+
+/// values = now, change = what that changes.
+TORSION_WIDEST
+void take_over(std::size_t count, const double* __restrict now, double* __restrict values,
+               double* __restrict change) {
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    change[cell] = now[cell] - values[cell];
+    values[cell] = now[cell];
+  }
+}
+
+/// Where friction holds a cell that sticks, or has left one that slips.
+TORSION_WIDEST
+void find_held(std::size_t count, const double* __restrict slips, const double* __restrict target,
+               const double* __restrict moved, double* __restrict held) {
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    held[cell] = slips[cell] == 0.0 ? target[cell] : moved[cell];
+  }
+}
+
+/// to += share * change.
+/// @param sums  of the changes' sizes, out
+TORSION_WIDEST
+void foresee(std::size_t count, double share, const double* __restrict change,
+             double* __restrict to, Wide& __restrict sums) {
+  Wide total{};
+  std::size_t cell = 0;
+  for (; cell + kPatchLanes <= count; cell += kPatchLanes) {
+    const Wide by = lanes_at(change + cell).all;
+    lanes_at(to + cell).all += share * by;
+    total += by < 0.0 ? -by : by;
+  }
+  for (std::size_t lane = 0; cell < count; ++cell, ++lane) {
+    to[cell] += share * change[cell];
+    total[lane] += std::abs(change[cell]);
+  }
+  sums = total;
+}
+
+/// Of the complementary energy along a change.
+struct Slope {
+  double slope = 0.0;      // Pa m, downhill
+  double stiffness = 0.0;  // Pa m
+};
+
+TORSION_WIDEST
+void add_slope(std::size_t count, const double* __restrict target, const double* __restrict moved,
+               const double* __restrict change, const double* __restrict moves,
+               Wide& __restrict slopes, Wide& __restrict stiffnesses) {
+  Wide slope{};
+  Wide stiffness{};
+  std::size_t cell = 0;
+  for (; cell + kPatchLanes <= count; cell += kPatchLanes) {
+    const Wide to = lanes_at(target + cell).all;
+    const Wide by = lanes_at(change + cell).all;
+    slope += by * (to > kNoContact ? to - lanes_at(moved + cell).all : Wide{});
+    stiffness += by * lanes_at(moves + cell).all;
+  }
+  for (std::size_t lane = 0; cell < count; ++cell, ++lane) {
+    slope[lane] += change[cell] * (target[cell] > kNoContact ? target[cell] - moved[cell] : 0.0);
+    stiffness[lane] += change[cell] * moves[cell];
+  }
+  slopes = slope;
+  stiffnesses = stiffness;
+}
+
+/// @param target, moved  m: what is asked for, and what there is
+/// @param change, moves  Pa, and m that it moves: of the last step
+void add_slope(std::span<const double> target, std::span<const double> moved,
+               std::span<const double> change, std::span<const double> moves, Slope& along) {
+  Wide slopes;
+  Wide stiffnesses;
+  add_slope(target.size(), target.data(), moved.data(), change.data(), moves.data(), slopes,
+            stiffnesses);
+  along.slope += sum_of(slopes);
+  along.stiffness += sum_of(stiffnesses);
+}
+
+/// @return the sum of the changes' sizes
+double foresee(double share, std::span<const double> change, std::span<double> to) {
+  Wide sums;
+  foresee(change.size(), share, change.data(), to.data(), sums);
+  return sum_of(sums);
+}
+
+/// What sum_cells adds up, in this order.
+enum Sum : std::size_t {
+  kPressure,
+  kPlaceX,  // what is named like PatchSums' numbers but for the pressure, times the pressure
+  kPlaceY,
+  kHeight,
+  kDepth,
+  kMovedX,
+  kMovedY,
+  kMoment,        // of the displacements about the origin
+  kSecondMoment,  // of the pressure about the origin
+  kTractionX,
+  kTractionY,
+  kCouple,
+  kLoaded,
+  kMiddle,   // weights of PatchSums::middle
+  kMiddleX,  // times the place
+  kMiddleY,
+  kStuck,
+  kSums
+};
+
+TORSION_WIDEST
+void add_up(std::size_t count, const PatchColumns& columns, const PatchPlaces& places,
+            double reference, std::array<Wide, kSums>& totals) {
+  const Wide one = Wide{} + 1.0;
+  const Wide none{};
+  const Wide half = none + reference;
+  std::array<Wide, kSums> sums{};
+  for (std::size_t cell = 0; cell < count; cell += kPatchLanes) {
+    const Wide pressure = lanes_at(&columns.pressure[cell]).all;
+    const Wide x = lanes_at(&places.x[cell]).all;
+    const Wide y = lanes_at(&places.y[cell]).all;
+    const Wide moved_x = lanes_at(&columns.moved_x[cell]).all;
+    const Wide moved_y = lanes_at(&columns.moved_y[cell]).all;
+    const Wide traction_x = lanes_at(&columns.traction_x[cell]).all;
+    const Wide traction_y = lanes_at(&columns.traction_y[cell]).all;
+    const Wide by_x = pressure * x;
+    const Wide by_y = pressure * y;
+    const Wide loaded = pressure > 0.0 ? one : none;
+    const Wide covered = loaded * lanes_at(&places.share[cell]).all;
+    sums[kPressure] += pressure;
+    sums[kPlaceX] += by_x;
+    sums[kPlaceY] += by_y;
+    sums[kHeight] += pressure * lanes_at(&places.height[cell]).all;
+    sums[kDepth] += pressure * lanes_at(&columns.depth[cell]).all;
+    sums[kMovedX] += pressure * moved_x;
+    sums[kMovedY] += pressure * moved_y;
+    sums[kMoment] += by_x * moved_y - by_y * moved_x;
+    sums[kSecondMoment] += by_x * x + by_y * y;
+    sums[kTractionX] += loaded * traction_x;
+    sums[kTractionY] += loaded * traction_y;
+    sums[kCouple] += x * traction_y - y * traction_x;
+    sums[kLoaded] += covered;
+    const Wide weight = covered * (pressure / (pressure + half));
+    sums[kMiddle] += weight;
+    sums[kMiddleX] += weight * x;
+    sums[kMiddleY] += weight * y;
+    sums[kStuck] += covered * (one - lanes_at(&columns.slips[cell]).all);
+  }
+  totals = sums;
+}
+
+/// The pressures, and how many there are.
+TORSION_WIDEST
+void add_up(std::size_t count, const double* __restrict pressures, Wide& __restrict total,
+            Wide& __restrict loaded) {
+  Wide sums{};
+  Wide counts{};
+  for (std::size_t cell = 0; cell < count; cell += kPatchLanes) {
+    const Wide pressure = lanes_at(pressures + cell).all;
+    sums += pressure;
+    counts += pressure > 0.0 ? Wide{} + 1.0 : Wide{};
+  }
+  total = sums;
+  loaded = counts;
+}
+
+}  // namespace
+
+PatchRows patch_rows(World& world, Range cells) {
+  PatchCellTable& table = world.patch_cells;
+  return {world.cells.rows<CellGeometry>(cells),
+          world.cells.rows<CellTraction>(cells),
+          {values_of(table.rows<PatchMovedX>(cells)), values_of(table.rows<PatchMovedY>(cells)),
+           values_of(table.rows<PatchDepression>(cells)), values_of(table.rows<PatchHeldX>(cells)),
+           values_of(table.rows<PatchHeldY>(cells)), values_of(table.rows<PatchKnown>(cells))},
+          {values_of(table.rows<PatchChangeX>(cells)), values_of(table.rows<PatchChangeY>(cells)),
+           values_of(table.rows<PatchChangePressure>(cells)),
+           values_of(table.rows<PatchChangeMovedX>(cells)),
+           values_of(table.rows<PatchChangeMovedY>(cells)),
+           values_of(table.rows<PatchChangeDepression>(cells))}};
+}
+
+bool load_cells(const PatchRows& rows, const Friction& friction, const PatchColumns& columns,
+                const PatchPlaces& places) {
+  const std::size_t count = rows.geometry.size();
+  const PatchColumns to = columns;
+  const PatchPlaces at = places;
+  const double fall = friction.dynamic_friction - friction.static_friction;
+  bool rims = false;
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    const CellGeometry& geometry = rows.geometry[cell];
+    const CellTraction& traction = rows.tractions[cell];
+    const bool bears = geometry.bearing > kLeastBearing;
+    rims |= bears && geometry.bearing < 1.0;
+    to.depth[cell] = bears ? geometry.depth : kNoContact;
+    at.share[cell] = geometry.coverage;
+    at.height[cell] = geometry.height;
+    to.friction[cell] = friction.static_friction + traction.kinetic_share * fall;
+    to.pressure[cell] = traction.pressure;
+    to.traction_x[cell] = -traction.traction.x;
+    to.traction_y[cell] = -traction.traction.y;
+  }
+  for (std::size_t cell = 0; rims && cell < count; ++cell) {
+    const double bearing = rows.geometry[cell].bearing;
+    const double softness = bearing > kLeastBearing ? kRimSoftness * (1.0 / bearing - 1.0) : 0.0;
+    at.softness[cell] = softness;
+    at.root[cell] = 1.0 / std::sqrt(1.0 + softness);
+  }
+  return rims;
+}
+
+void find_starts(const PatchRows& rows, const PatchPlaces& places) {
+  const std::size_t count = rows.geometry.size();
+  const PatchSurface& from = rows.surface;
+  find_starts(count, from.known.data(), from.held_x.data(), from.moved_x.data(),
+              places.from_x.data());
+  find_starts(count, from.known.data(), from.held_y.data(), from.moved_y.data(),
+              places.from_y.data());
+}
+
+void add_rims(const PatchProblem& problem, const PatchColumns& columns, const PatchRows& rows,
+              double sign) {
+  const PatchSurface& surface = rows.surface;
+  const PatchChange& change = rows.change;
+  add_rims(problem, InfluenceKind::kXX, sign, columns.traction_x, surface.moved_x);
+  add_rims(problem, InfluenceKind::kYY, sign, columns.traction_y, surface.moved_y);
+  add_rims(problem, InfluenceKind::kZZ, sign, columns.pressure, surface.depression);
+  add_rims(problem, InfluenceKind::kXX, sign, change.traction_x, change.moved_x);
+  add_rims(problem, InfluenceKind::kYY, sign, change.traction_y, change.moved_y);
+  add_rims(problem, InfluenceKind::kZZ, sign, change.pressure, change.depression);
+}
+
+ForeseenShares best_shares(const PatchRows& rows, const PatchColumns& columns, bool coupled,
+                           double most) {
+  const PatchSurface& from = rows.surface;
+  const PatchChange& change = rows.change;
+  Slope normal;
+  add_slope(columns.depth, from.depression, change.pressure, change.depression, normal);
+  Slope tangential;
+  add_slope(columns.target_x, from.moved_x, change.traction_x, change.moved_x, tangential);
+  add_slope(columns.target_y, from.moved_y, change.traction_y, change.moved_y, tangential);
+  if (coupled) {
+    normal.slope += tangential.slope;
+    normal.stiffness += tangential.stiffness;
+    tangential = normal;
+  }
+  const auto share = [most](const Slope& along) {
+    return along.stiffness > 0.0 ? std::clamp(along.slope / along.stiffness, 0.0, most) : 0.0;
+  };
+  return {share(normal), share(tangential)};
+}
+
+void foresee_cells(const PatchRows& rows, const ForeseenShares& shares, const PatchColumns& columns,
+                   PatchProblem& problem) {
+  const auto [normal, tangential] = shares;
+  const std::size_t count = rows.geometry.size();
+  const PatchSurface& from = rows.surface;
+  const PatchChange& change = rows.change;
+  const PatchColumns to = columns;
+  carry_on(count, tangential, from.moved_x.data(), change.moved_x.data(), to.moved_x.data());
+  carry_on(count, tangential, from.moved_y.data(), change.moved_y.data(), to.moved_y.data());
+  carry_on(count, normal, from.depression.data(), change.depression.data(), to.depression.data());
+  if (normal > 0.0) {
+    problem.foreseen_pressure = normal * foresee(normal, change.pressure, to.pressure);
+  }
+  if (tangential > 0.0) {
+    problem.foreseen_traction =
+        tangential * (foresee(tangential, change.traction_x, to.traction_x) +
+                      foresee(tangential, change.traction_y, to.traction_y));
+  }
+}
+
+void store_cells(const PatchColumns& columns, std::span<const double> support_x,
+                 std::span<const double> support_y, const PatchRows& rows) {
+  const std::size_t count = rows.tractions.size();
+  const PatchColumns from = columns;
+  const PatchChange to = rows.change;
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    CellTraction& traction = rows.tractions[cell];
+    const double x = from.traction_x[cell];
+    const double y = from.traction_y[cell];
+    const double pressure = from.pressure[cell];
+    to.traction_x[cell] = x + traction.traction.x;
+    to.traction_y[cell] = y + traction.traction.y;
+    to.pressure[cell] = pressure - traction.pressure;
+    traction.traction = {-x, -y};
+    traction.pressure = pressure;
+    // No branches, which a contact's ragged rim would often take the other way.
+    traction.coverage = static_cast<double>(pressure > 0.0);
+    traction.sticks = static_cast<std::uint32_t>(from.slips[cell] == 0.0);
+  }
+  const PatchSurface& surface = rows.surface;
+  take_over(count, from.moved_x.data(), surface.moved_x.data(), to.moved_x.data());
+  take_over(count, from.moved_y.data(), surface.moved_y.data(), to.moved_y.data());
+  take_over(count, from.depression.data(), surface.depression.data(), to.depression.data());
+  const double* const slips = from.slips.data();
+  find_held(count, slips, from.target_x.data(), from.moved_x.data(), surface.held_x.data());
+  find_held(count, slips, from.target_y.data(), from.moved_y.data(), surface.held_y.data());
+  add_scaled(support_x.size(), 1.0, support_x.data(), surface.held_x.data());
+  add_scaled(support_y.size(), 1.0, support_y.data(), surface.held_y.data());
+  std::ranges::fill(surface.known, 1.0);
+}
+
+void set_targets(const RegionMotion& motion, const PatchPlaces& places,
+                 const PatchColumns& columns) {
+  go_with_tool(columns.target_x.size(), motion, places.x.data(), places.y.data(),
+               places.from_x.data(), places.from_y.data(), columns.target_x.data(),
+               columns.target_y.data());
+}
+
+void take_off_support(std::span<const double> known, std::span<const double> support_x,
+                      std::span<const double> support_y, const PatchColumns& columns) {
+  take_off(known.size(), known.data(), support_x.data(), columns.target_x.data());
+  take_off(known.size(), known.data(), support_y.data(), columns.target_y.data());
+}
+
+PatchSums sum_cells(const PatchColumns& columns, const PatchPlaces& places, double cell_area,
+                    double reference) {
+  std::array<Wide, kSums> totals;
+  add_up(whole_lanes(columns.pressure.size()), columns, places, reference, totals);
+  PatchSums sums;
+  const double pressure = sum_of(totals[kPressure]);
+  if (pressure <= 0.0) {
+    return sums;
+  }
+  sums.force = pressure * cell_area;
+  sums.center = glm::dvec2(sum_of(totals[kPlaceX]), sum_of(totals[kPlaceY])) / pressure;
+  sums.height = sum_of(totals[kHeight]) / pressure;
+  sums.depth = sum_of(totals[kDepth]) / pressure;
+  sums.moved = glm::dvec2(sum_of(totals[kMovedX]), sum_of(totals[kMovedY])) / pressure;
+  const double moment = sum_of(totals[kMoment]) -
+                        pressure * (sums.center.x * sums.moved.y - sums.center.y * sums.moved.x);
+  const double second_moment =
+      sum_of(totals[kSecondMoment]) - pressure * glm::dot(sums.center, sums.center);
+  sums.turn = second_moment > 0.0 ? moment / second_moment : 0.0;
+  // The columns' tractions are on the body.
+  sums.friction = -cell_area * glm::dvec2(sum_of(totals[kTractionX]), sum_of(totals[kTractionY]));
+  sums.couple = -cell_area * sum_of(totals[kCouple]);
+  sums.loaded_cells = sum_of(totals[kLoaded]);
+  const double weights = sum_of(totals[kMiddle]);
+  sums.middle = weights > 0.0
+                    ? glm::dvec2(sum_of(totals[kMiddleX]), sum_of(totals[kMiddleY])) / weights
+                    : sums.center;
+  sums.stuck_cells = sum_of(totals[kStuck]);
+  return sums;
+}
+
+double mean_pressure(const PatchColumns& columns) {
+  Wide total;
+  Wide loaded;
+  add_up(whole_lanes(columns.pressure.size()), columns.pressure.data(), total, loaded);
+  return sum_of(total) / larger(sum_of(loaded), 1.0);
+}
+
+}  // namespace torsion

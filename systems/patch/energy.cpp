@@ -1,0 +1,280 @@
+#include "systems/patch/energy.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "systems/contact/region_motion.hpp"
+#include "systems/contact/stuck_stiffness.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/math/widest.hpp"
+#include "systems/patch/passes.hpp"
+
+namespace torsion {
+namespace {
+
+// At most, of the elastic change of a step and of the normal force; what is lacking beyond that is
+// charged later.
+constexpr double kMostCharge = 0.25;
+constexpr double kMostDrag = 0.02;
+// Of what is held: grids laid anew lend up to 0.2 % of it.
+constexpr double kMostLent = 0.01;
+// Likewise, where a grid moves: the longer a tool rolls in steps so small that little drag comes of
+// them, the more it would owe.
+constexpr double kMostOwed = 0.01;
+
+struct EnergySums {
+  Wide stored{};  // Pa m: twice the energy of the tractions
+  Wide left{};    // Pa m: the tractions times what is left to do
+};
+
+/// @param sunk  m: PatchSolution::sunk
+/// @param left_x, left_y, left_z  m: the displacements beyond what was asked for, out
+TORSION_WIDEST
+void add_up(std::size_t count, const PatchColumns& columns, const double* __restrict sunk,
+            double* __restrict left_x, double* __restrict left_y, double* __restrict left_z,
+            EnergySums& sums) {
+  EnergySums total;
+  const Wide none{};
+  const Wide one = none + 1.0;
+  for (std::size_t cell = 0; cell < count; cell += kPatchLanes) {
+    const Wide pressure = lanes_at(&columns.pressure[cell]).all;
+    const Wide traction_x = lanes_at(&columns.traction_x[cell]).all;
+    const Wide traction_y = lanes_at(&columns.traction_y[cell]).all;
+    const Wide down = lanes_at(&columns.depression[cell]).all;
+    const Wide moved_x = lanes_at(&columns.moved_x[cell]).all;
+    const Wide moved_y = lanes_at(&columns.moved_y[cell]).all;
+    const Wide sticks = one - lanes_at(&columns.slips[cell]).all;
+    const Wide gap = down + lanes_at(sunk + cell).all - lanes_at(&columns.depth[cell]).all;
+    // No choice within a choice, which the compiler makes cell by cell.
+    const Wide overlap = gap < 0.0 ? gap : none;
+    const Wide apart = pressure > 0.0 ? gap - overlap : none;
+    const Wide z = overlap + apart;
+    const Wide x = sticks * (moved_x - lanes_at(&columns.target_x[cell]).all);
+    const Wide y = sticks * (moved_y - lanes_at(&columns.target_y[cell]).all);
+    total.stored += pressure * down + traction_x * moved_x + traction_y * moved_y;
+    total.left += pressure * z + traction_x * x + traction_y * y;
+    lanes_at(left_x + cell).all = x;
+    lanes_at(left_y + cell).all = y;
+    lanes_at(left_z + cell).all = z;
+  }
+  sums = total;
+}
+
+/// What is left to do times what it asks for, Pa m.
+double asked_for(const PatchProblem& problem, const LocalInverse& inverse,
+                 const std::vector<double>& left, PatchWork& work) {
+  const std::uint32_t side = problem.influences.side;
+  to_border(side, left.data(), work.bordered.data());
+  return wanted_by_asked(inverse, 1.0 / problem.compliance, side, work.bordered.data());
+}
+
+/// The energy that the cells hold, and the body as a whole, J.
+double held_energy(const PatchSolution& solution, double cell_area) {
+  const PatchProblem& problem = solution.problem;
+  PatchWork& work = solution.work;
+  EnergySums sums;
+  add_up(whole_lanes(solution.columns.pressure.size()), solution.columns, solution.sunk.data(),
+         work.moves_x.data(), work.moves_y.data(), work.residual_x.data(), sums);
+  const double asked = asked_for(problem, work.inverses.x, work.moves_x, work) +
+                       asked_for(problem, work.inverses.y, work.moves_y, work) +
+                       asked_for(problem, work.inverses.z, work.residual_x, work);
+  const double stiffest = problem.coupled ? kStiffestCoupled : kStiffest;
+  return solution.held_by_body +
+         cell_area * (0.5 * sum_of(sums.stored) - sum_of(sums.left) + 0.5 * stiffest * asked);
+}
+
+/// A step's motion as the region's stiffness sees it.
+struct Drag {
+  glm::dvec2 slide{0.0};  // m, grid
+  double deepened = 0.0;  // m
+  glm::dvec2 roll{0.0};   // rad, grid
+  double spin = 0.0;      // rad
+  double size = 0.0;      // m, with the turn at the radius
+  double work = 0.0;      // J: of the stiffness over it, twice the energy
+};
+
+/// @param shift, turn  m and rad, body, at the contact's middle
+Drag drag_of(const StuckStiffness& stiffness, const RegionFrame& frame, double radius,
+             const glm::dvec3& shift, const glm::dvec3& turn) {
+  Drag drag;
+  const glm::dvec3 along = body_to_grid_direction(frame, shift);
+  const glm::dvec3 about = body_to_grid_direction(frame, turn);
+  drag.slide = glm::dvec2(along);
+  drag.deepened = -along.z;
+  drag.roll = glm::dvec2(about);
+  drag.spin = about.z;
+  drag.size = std::sqrt(glm::dot(shift, shift) + glm::dot(turn, turn) * radius * radius);
+  drag.work = stiffness.along_tangents * glm::dot(drag.slide, drag.slide) +
+              stiffness.along_normal * along.z * along.z +
+              glm::dot(stiffness.about_tangents, drag.roll * drag.roll) +
+              stiffness.about_normal * about.z * about.z;
+  return drag;
+}
+
+/// The drag against rolling moves the pressure's centre ahead.
+void charge(World& world, std::uint32_t region, const glm::dvec3& shift, const glm::dvec3& turn,
+            double lacking) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+  RegionNormal& normal = world.regions.at<RegionNormal>(region);
+  RegionFriction& friction = world.regions.at<RegionFriction>(region);
+  const StuckStiffness stiffness = stuck_stiffness(world, region, geometry.radius);
+  const Drag drag = drag_of(stiffness, frame, geometry.radius, shift, turn);
+  if (drag.work <= 0.0) {
+    return;
+  }
+  const double most = std::min(kMostCharge, kMostDrag * normal.force * drag.size / drag.work);
+  // By the mean of the wrenches before and after, so that half of it counts.
+  const double share = std::min(2.0 * lacking / drag.work, most);
+  friction.force -= share * stiffness.along_tangents * drag.slide;
+  friction.couple -= share * stiffness.about_normal * drag.spin;
+  const glm::dvec2 couple = share * stiffness.about_tangents * drag.roll;
+  normal.force = std::max(normal.force + share * stiffness.along_normal * drag.deepened, 0.0);
+  if (normal.force > 0.0) {
+    geometry.equivalent_point +=
+        tangent_to_body(frame, glm::dvec2(couple.y, -couple.x) / normal.force);
+  }
+}
+
+/// By the other regions, at a point, m.
+glm::dvec3 translation_by_others(const RegionSupport& support, const glm::dvec3& point) {
+  return support.translation_by_others +
+         glm::cross(support.rotation_by_others, point - support.about);
+}
+
+/// Writes what the next step's work is reckoned by.
+void note_forces(const World& world, std::uint32_t region, PatchEnergy& energy) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const RegionNormal& normal = world.regions.at<RegionNormal>(region);
+  const RegionFriction& friction = world.regions.at<RegionFriction>(region);
+  const RegionSupport& support = world.regions.at<RegionSupport>(region);
+  energy.depth = world.regions.at<RegionGeometry>(region).largest_depth;
+  energy.force = frame.normal * normal.force + tangent_to_body(frame, friction.force);
+  energy.couple = frame.normal * friction.couple;
+  energy.point = world.regions.at<RegionGeometry>(region).equivalent_point;
+  energy.translation_by_others = translation_by_others(support, energy.point);
+  energy.rotation_by_others = support.rotation_by_others;
+}
+
+/// How the tool moves over what the region holds. Where that is the whole body's motion under its
+/// own load, too, only the other regions' share of it carries the material.
+MotionOverBody motion_over_held(const World& world, std::uint32_t region, bool holds_body,
+                                const PatchEnergy& before) {
+  MotionOverBody motion = motion_over_body(world, region);
+  if (holds_body) {
+    const RegionSupport& support = world.regions.at<RegionSupport>(region);
+    motion.carried_about = before.point;
+    motion.carried_by = translation_by_others(support, before.point) - before.translation_by_others;
+    motion.carried_turn = support.rotation_by_others - before.rotation_by_others;
+  }
+  return motion;
+}
+
+/// The holder's work over a step by the mean of the forces before and after, J. The normal force is
+/// bent over it: by Hertz' law, F ~ d^(3/2), the trapezoidal rule's first correction is that of its
+/// slope, F h^2 (d1 - d0) / (16 d^2), which is nothing in small steps.
+double work_between(const PatchEnergy& before, const PatchEnergy& after,
+                    const MotionOverBody& motion, const glm::dvec3& normal) {
+  const glm::dvec3 shift = shift_after(motion, after.point);
+  const double twice = glm::dot(before.force, shift_before(motion, before.point)) +
+                       glm::dot(after.force, shift) +
+                       glm::dot(before.couple + after.couple, turn_of(motion));
+  const double depths = before.depth + after.depth;
+  const double share = depths > 0.0 ? glm::dot(normal, shift) / depths : 0.0;
+  const double bent = 0.125 * glm::dot(normal, before.force + after.force) * share * share *
+                      (after.depth - before.depth);
+  return -0.5 * twice - bent;
+}
+
+/// While the tool lifts off the force is less in the proportion of what was lent to what is held,
+/// so that both come to an end together.
+/// @param lifted  m, in this step
+/// @param taken   N, in the step before
+void take_back(World& world, std::uint32_t region, double lifted, double taken,
+               PatchEnergy& energy) {
+  RegionNormal& normal = world.regions.at<RegionNormal>(region);
+  const double radius = world.regions.at<RegionGeometry>(region).radius;
+  const double change =
+      kMostCharge * stuck_stiffness(world, region, radius).along_normal * std::abs(lifted);
+  const double share =
+      lifted > 0.0 && energy.held > 0.0 ? std::min(energy.lent / energy.held, kMostLent) : 0.0;
+  const double wanted = std::clamp(share * normal.force, taken - change, taken + change);
+  energy.taken = std::min(wanted, normal.force);
+  energy.lent = std::max(energy.lent - 0.5 * (taken + energy.taken) * lifted, 0.0);
+  normal.force -= energy.taken;
+}
+
+}  // namespace
+
+void settle_energy(World& world, std::uint32_t region, const PatchSolution& solution,
+                   SolutionStart start) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const PatchEnergy before = world.regions.at<PatchEnergy>(region);
+  const MotionOverBody motion =
+      motion_over_held(world, region, solution.problem.support.response != nullptr, before);
+  PatchEnergy now;
+  note_forces(world, region, now);
+  now.held = held_energy(solution, cell_area(frame, solution.problem.influences.side));
+  now.lent = before.lent;
+  const double grown = before.owed + now.held - before.held;
+  double lacking = grown - work_between(before, now, motion, frame.normal);
+  if (start == SolutionStart::kNone) {
+    lacking = 0.0;
+  } else if (start == SolutionStart::kOtherGrid) {
+    now.lent += lacking;
+    lacking = 0.0;
+  } else if (lacking > 0.0) {
+    charge(world, region, shift_after(motion, now.point), turn_of(motion), lacking);
+    note_forces(world, region, now);
+    lacking = grown - work_between(before, now, motion, frame.normal);
+  }
+  now.owed = std::max(lacking, 0.0);
+  if (start == SolutionStart::kMovedGrid) {
+    now.owed = std::min(now.owed, kMostOwed * now.held);
+  }
+  // What friction takes beyond that pays for what was lent, too.
+  now.lent = std::max(now.lent + std::min(lacking, 0.0), 0.0);
+  take_back(world, region, glm::dot(frame.normal, shift_after(motion, now.point)), before.taken,
+            now);
+  world.regions.at<PatchEnergy>(region) = now;
+}
+
+void split_energy(World& world, std::uint32_t from, std::uint32_t region, double share) {
+  const PatchEnergy before = world.regions.at<PatchEnergy>(from);
+  for (const std::uint32_t each : {from, region}) {
+    const double part = each == region ? share : 1.0 - share;
+    const RegionSupport& support = world.regions.at<RegionSupport>(each);
+    PatchEnergy& energy = world.regions.at<PatchEnergy>(each);
+    energy.held = part * before.held;
+    energy.owed = part * before.owed;
+    energy.lent = part * before.lent;
+    energy.taken = part * before.taken;
+    energy.depth = world.regions.at<RegionGeometry>(each).largest_depth;
+    energy.force = part * before.force;
+    energy.couple = part * before.couple;
+    energy.point = world.regions.at<RegionGeometry>(each).equivalent_point;
+    energy.translation_by_others = translation_by_others(support, energy.point);
+    energy.rotation_by_others = support.rotation_by_others;
+  }
+}
+
+void retell_others(World& world, std::uint32_t region, const RegionSupport& before) {
+  const RegionSupport& now = world.regions.at<RegionSupport>(region);
+  PatchEnergy& energy = world.regions.at<PatchEnergy>(region);
+  energy.translation_by_others +=
+      translation_by_others(now, energy.point) - translation_by_others(before, energy.point);
+  energy.rotation_by_others += now.rotation_by_others - before.rotation_by_others;
+}
+
+void join_energies(const PatchEnergy& ended, PatchEnergy& heir) {
+  heir.held += ended.held;
+  heir.owed += ended.owed;
+  heir.lent += ended.lent;
+  heir.taken += ended.taken;
+  heir.force += ended.force;
+  heir.couple += ended.couple + glm::cross(ended.point - heir.point, ended.force);
+}
+
+}  // namespace torsion

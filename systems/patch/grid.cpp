@@ -1,0 +1,331 @@
+#include "systems/patch/grid.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "systems/contact/contact_axes.hpp"
+#include "systems/contact/grid_cells.hpp"
+#include "systems/contact/region_wrenches.hpp"
+#include "systems/half_space/influence.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/patch/layout.hpp"
+#include "systems/patch/resampling.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kSmallestFill = 0.74;       // over a new grid's: below it it is laid anew, smaller
+constexpr double kOtherShape = 1.25;         // of a doubling: so far cells may be from their shape
+constexpr std::uint32_t kSettlingSteps = 8;  // on other axes
+constexpr double kMostly = 0.5;  // share of a rim's cell that has to be in contact for it to count
+constexpr double kSure = 1.3;    // over the point load's far field: what certainly touches
+
+/// A box of cells; `end` is one past the last.
+struct CellBox {
+  glm::ivec2 first{0};
+  glm::ivec2 end{0};
+};
+
+/// The cells with pressure, of rims those of which most are in contact.
+struct LoadedArea {
+  CellBox box;  // empty when there are none
+  CellMoments moments;
+};
+
+/// Whether a cell carries pressure and counts for the contact's extent.
+/// @param least  share of it that is in contact
+bool is_loaded(const CellTraction& traction, const CellGeometry& geometry, double least) {
+  return traction.pressure > 0.0 && geometry.coverage >= least;
+}
+
+/// @param least  share of a cell that is in contact
+LoadedArea loaded_cells(const Grid& grid, double least) {
+  const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
+  const auto side = static_cast<int>(grid.side);
+  LoadedArea loaded{{{side, side}, {0, 0}}, {}};
+  for (int j = 0; j < side; ++j) {
+    const CellTraction* const row = &tractions[static_cast<std::size_t>(j * side)];
+    const CellGeometry* const places = &grid.cells[static_cast<std::size_t>(j * side)];
+    std::uint64_t bits = 0;
+    for (int i = 0; i < side; ++i) {
+      bits |= static_cast<std::uint64_t>(is_loaded(row[i], places[i], least)) << i;
+    }
+    for (std::uint64_t left = bits; left != 0;) {
+      const int first = std::countr_zero(left);
+      const int count = std::countr_one(left >> first);
+      const int end = first + count;
+      loaded.moments.add_run(first, count, j);
+      loaded.box.first = glm::min(loaded.box.first, glm::ivec2(first, j));
+      loaded.box.end = glm::max(loaded.box.end, glm::ivec2(end, j + 1));
+      left = end < 64 ? left >> end << end : 0;
+    }
+  }
+  return loaded;
+}
+
+glm::dvec2 cell_size(const Grid& grid) {
+  return 2.0 * cell_half_size(grid);
+}
+
+bool reaches_edge(const Grid& grid, const CellBox& box) {
+  const auto side = static_cast<int>(grid.side);
+  const auto spare = static_cast<int>(patch_spare(grid.side));
+  return box.first.x < 1 + spare || box.first.y < 1 || box.end.x > side - 1 || box.end.y > side - 1;
+}
+
+/// Takes in the contact points outside the grid that lie deeper than the pressure can have pushed
+/// the surface away there.
+void include_lobes(const Grid& grid, std::uint32_t region, const RegionPoints& contact,
+                   CellBox& box) {
+  const World& world = grid.world;
+  const double force = world.regions.at<RegionNormal>(region).force;
+  const double modulus = world.bodies.at<Elasticity>(grid.identity.body).contact_modulus();
+  const glm::dvec2 center(
+      body_to_grid(grid.frame, world.regions.at<RegionGeometry>(region).equivalent_point));
+  const RegionSupport& support = world.regions.at<RegionSupport>(region);
+  const CellFinder finder = finder_of(grid);
+  for (const ContactPoint& point : points_of(grid.scratch, contact)) {
+    if (point.cluster != contact.cluster) {
+      continue;
+    }
+    const glm::dvec2 place = finder.place(point.position);
+    if (std::abs(place.x) < grid.frame.half_size.x && std::abs(place.y) < grid.frame.half_size.y) {
+      continue;
+    }
+    const double distance = glm::length(place - center);
+    // Points are found against the rest shape: what the whole body has sunk there is no overlap.
+    const double sunk = -glm::dot(
+        grid.frame.normal,
+        support.translation + glm::cross(support.rotation, point.position - support.about));
+    // Far field of a point load, F / (pi E* r): Johnson, Contact Mechanics, 1985, (3.22a).
+    if ((point.depth - sunk) * std::numbers::pi * modulus * distance > kSure * force) {
+      const glm::dvec2 at =
+          (place / grid.frame.half_size + 1.0) * 0.5 * static_cast<double>(grid.side);
+      const glm::ivec2 cell(glm::floor(at));
+      box.first = glm::min(box.first, cell);
+      box.end = glm::max(box.end, cell + 1);
+    }
+  }
+}
+
+/// The box in m, from the grid's origin.
+PlaneBox extent_of(const Grid& grid, const CellBox& box) {
+  const glm::dvec2 half_side(0.5 * static_cast<double>(grid.side));
+  return {cell_size(grid) * (glm::dvec2(box.first) - half_side),
+          cell_size(grid) * (glm::dvec2(box.end) - half_side)};
+}
+
+glm::dmat2 rotation_by(double angle) {
+  return {std::cos(angle), std::sin(angle), -std::sin(angle), std::cos(angle)};
+}
+
+/// The loaded cells' extent along axes that are turned from the grid's. Their rim runs between
+/// cells, so that askew to the axes the outermost of many centres lies nearer to it than half a
+/// cell.
+PlaneBox extent_along(const Grid& grid, double least, double angle) {
+  const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
+  const glm::dmat2 turn = rotation_by(angle);
+  const glm::dvec2 half = cell_half_size(grid);
+  const glm::dvec2 beside = glm::max(glm::min(half.x * glm::abs(glm::dvec2(turn[0].x, turn[1].x)),
+                                              half.y * glm::abs(glm::dvec2(turn[0].y, turn[1].y))),
+                                     glm::dvec2(0.5 * std::min(half.x, half.y)));
+  PlaneBox extent;
+  std::size_t cell = 0;
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
+      if (is_loaded(tractions[cell], grid.cells[cell], least)) {
+        const glm::dvec2 at = cell_center(grid.frame, grid.side, i, j) * turn;
+        extent.include(at - beside, at + beside);
+      }
+    }
+  }
+  return extent;
+}
+
+/// Moves the grid by whole cells where that brings the box well into it.
+/// @return false where it does not: nothing has changed
+bool shift_frame(const Grid& grid, const CellBox& box, CellMove& move) {
+  const double side = static_cast<double>(grid.side);
+  const glm::dvec2 half = 0.5 * cell_size(grid) * glm::dvec2(box.end - box.first);
+  const glm::dvec2 growth = patch_half_size(half / fill_of_new(grid.side)) / grid.frame.half_size;
+  // With a free row or column on either side, or the next step would lay it anew.
+  const glm::ivec2 room = glm::ivec2(static_cast<int>(grid.side)) - (box.end - box.first) -
+                          glm::ivec2(static_cast<int>(patch_spare(grid.side)), 0);
+  if (growth.x != growth.y || growth.x <= 0.8 || growth.x >= 1.2 || std::min(room.x, room.y) < 2) {
+    return false;
+  }
+  const glm::dvec2 off = patch_middle(grid.side) - 0.5 * side;
+  move.origin = glm::round(0.5 * glm::dvec2(box.first + box.end) - off - 0.5 * side);
+  shift_origin(grid, move.origin * cell_size(grid));
+  return true;
+}
+
+/// How the loaded cells lie in their grid.
+struct GridFit {
+  double least = kMostly;    // share of a cell that is in contact, with which it counts
+  CellBox box;               // of them, and of lobes outside of the grid
+  bool has_lobes = false;    // there are some
+  bool cut = false;          // the box comes to the grid's edge
+  bool too_small = false;    // it leaves much of the grid empty
+  bool other_shape = false;  // cells of another shape would suit it
+  bool has_rims = false;     // a long one with straight rims
+  ContactAxes axes;
+
+  /// Whether the grid is to follow the contact's axes: then what slips keeps its way.
+  [[nodiscard]] bool takes_axes() const { return has_rims || axes.angle != 0.0; }
+};
+
+/// Whether the contact goes from one edge of the grid to the other, so that both may cut it off:
+/// over most of its width, for of one that lies askew two corners come to the edges together.
+bool fills_side(const Grid& grid, double least, const CellBox& box) {
+  constexpr double kMost = 0.5;
+  const auto side = static_cast<int>(grid.side);
+  const auto spare = static_cast<int>(patch_spare(grid.side));
+  const glm::ivec2 first = glm::clamp(box.first, glm::ivec2(0), glm::ivec2(side));
+  const glm::ivec2 end = glm::clamp(box.end, glm::ivec2(0), glm::ivec2(side));
+  const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
+  const auto loaded = [&](int i, int j) {
+    const auto cell = static_cast<std::size_t>(j * side + i);
+    return is_loaded(tractions[cell], grid.cells[cell], least) ? 1 : 0;
+  };
+  glm::ivec2 lowest(0);   // cells in the first column and row
+  glm::ivec2 highest(0);  // in the last ones
+  for (int j = first.y; j < end.y; ++j) {
+    lowest.x += loaded(spare, j);
+    highest.x += loaded(side - 1, j);
+  }
+  for (int i = first.x; i < end.x; ++i) {
+    lowest.y += loaded(i, 0);
+    highest.y += loaded(i, side - 1);
+  }
+  const glm::dvec2 both(glm::min(lowest, highest));
+  return both.x > kMost * (end.y - first.y) || both.y > kMost * (end.x - first.x);
+}
+
+/// Whether so many loaded cells fill their box along axes that are turned by `angle`, as those of a
+/// punch with straight rims do.
+bool fill_their_box(const Grid& grid, double least, double loaded, double angle) {
+  constexpr double kRectangular = 0.9;  // of an ellipse 0.79
+  const PlaneBox box = extent_along(grid, least, angle);
+  const glm::dvec2 size = box.highest - box.lowest;
+  return loaded * cell_area(grid.frame, grid.side) > kRectangular * size.x * size.y;
+}
+
+GridFit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& contact) {
+  GridFit fit;
+  LoadedArea loaded = loaded_cells(grid, fit.least);
+  if (loaded.box.end.x == 0) {
+    // Not one: an edge or a corner, finer than the cells.
+    fit.least = 0.0;
+    loaded = loaded_cells(grid, fit.least);
+  }
+  fit.box = loaded.box;
+  if (fit.box.end.x == 0) {
+    return fit;
+  }
+  fit.cut = reaches_edge(grid, fit.box);
+  if (!fit.cut) {
+    // Only then: a contact that has outgrown its grid has points outside of it anyway, and which
+    // ones is chance.
+    include_lobes(grid, region, contact, fit.box);
+    fit.has_lobes = fit.box.first != loaded.box.first || fit.box.end != loaded.box.end;
+    fit.cut = reaches_edge(grid, fit.box);
+  }
+  const glm::ivec2 cells = fit.box.end - fit.box.first;
+  fit.too_small =
+      std::max(cells.x, cells.y) <
+      static_cast<int>(kSmallestFill * fill_of_new(grid.side) * static_cast<double>(grid.side));
+  const glm::dvec2 size = cell_size(grid) * glm::dvec2(cells);
+  const double ratio =
+      std::clamp(std::log2(size.x / size.y), -1.0 * kMostAspect, 1.0 * kMostAspect);
+  fit.other_shape = std::abs(ratio - patch_aspect(grid.frame.half_size)) > kOtherShape;
+  if (!fit.has_lobes) {
+    fit.axes = contact_axes(grid, loaded.moments);
+    fit.has_rims = fit.axes.is_long() && !(fit.cut && fills_side(grid, fit.least, fit.box)) &&
+                   fill_their_box(grid, fit.least, loaded.moments.weight, fit.axes.angle);
+    // A contact whose pressure ends smoothly gains nothing from axes that are a little better.
+    const double enough = (fit.has_rims ? kAligned : 1.0) * fit.axes.allowance;
+    if (std::abs(fit.axes.angle) <= enough) {
+      fit.axes.angle = 0.0;
+    }
+  }
+  return fit;
+}
+
+/// Lays the grid along the loaded cells' axes and around them.
+void lay_frame(const Grid& grid, const RegionPoints& contact, const GridFit& fit, double depth) {
+  const PlaneBox loaded = fit.axes.angle == 0.0 ? extent_of(grid, fit.box)
+                                                : extent_along(grid, fit.least, fit.axes.angle);
+  turn_axes(grid.frame, fit.axes.angle);
+  const GridLayout layout = layout_around(loaded, grid.side);
+  shift_origin(grid, layout.shift);
+  grid.frame.half_size = layout.half_size;
+  if (fit.has_rims) {
+    lay_along_contact(grid, contact, depth, loaded.highest - loaded.lowest);
+  }
+}
+
+}  // namespace
+
+bool has_patch(const World& world, const RegionIdentity& region) {
+  return world.bodies.at<BodyModels>(region.body).contact == ContactModel::kPatch;
+}
+
+std::int32_t patch_aspect(const glm::dvec2& half_size) {
+  const double ratio = std::log2(half_size.x / half_size.y);
+  return static_cast<std::int32_t>(
+      std::clamp(std::round(ratio), -1.0 * kMostAspect, 1.0 * kMostAspect));
+}
+
+glm::dvec2 patch_middle(std::uint32_t side) {
+  const double half = 0.5 * static_cast<double>(side);
+  return {half + 0.5 * patch_spare(side), half};
+}
+
+std::uint32_t patch_spare(std::uint32_t side) {
+  constexpr std::uint32_t kCoarsest = 6;
+  return side % 2 == 0 && side >= kCoarsest ? 1 : 0;
+}
+
+glm::dvec2 patch_half_size(const glm::dvec2& least, std::int32_t aspect) {
+  const double ratio = std::ldexp(1.0, aspect);
+  const double half = std::max(least.x, least.y * ratio);
+  return {half, half / ratio};
+}
+
+glm::dvec2 patch_half_size(const glm::dvec2& least) {
+  return patch_half_size(least, patch_aspect(least));
+}
+
+void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
+  const Grid grid = grid_of(context, region);
+  const GridFit fit = fit_of(grid, region, contact);
+  if (fit.box.end.x == 0 || !(fit.cut || fit.too_small || fit.other_shape || fit.axes.is_askew())) {
+    return;
+  }
+  const double depth = context.world.regions.at<RegionGeometry>(region).largest_depth;
+  CellMove move;
+  if (fit.axes.is_askew() || fit.other_shape || !shift_frame(grid, fit.box, move)) {
+    const RegionFrame before = grid.frame;
+    lay_frame(grid, contact, fit, depth);
+    move = move_between(before, grid.frame, grid.side);
+  }
+  const double reach = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
+  move_cells(grid, move, depth, fit.takes_axes() ? reach : 0.0);
+  std::uint32_t& event = context.world.regions.at<RegionWrench>(region).event_now;
+  if (event == 0 && !move.keeps_cells()) {
+    event = static_cast<std::uint32_t>(RegionEvent::kGridLaidAnew);
+  }
+  PatchState& state = context.world.regions.at<PatchState>(region);
+  state.moved = 1;
+  state.resized = move.keeps_cells() ? 0 : 1;
+  if (!move.keeps_cells() && fit.takes_axes()) {
+    state.settling = kSettlingSteps;
+  }
+  state.slide = state.slide * move.turn;
+}
+
+}  // namespace torsion

@@ -1,0 +1,269 @@
+#include "systems/patch/passes.hpp"
+
+#include <cmath>
+
+#include "systems/geometry/distance_shapes.hpp"
+#include "systems/math/widest.hpp"
+
+namespace torsion {
+namespace {
+
+/// A row's share of what is asked for, at eight cells.
+struct AskedOfRow {
+  Wide here;    // in the row itself
+  Wide beside;  // in the rows below and above
+};
+
+/// @param wanted  at the first of the cells
+TORSION_LANES AskedOfRow ask_row(const LocalInverse& inverse, const double* wanted) {
+  const Wide middle = lanes_at(wanted).all;
+  // Sums in pairs, so that a mirror image has the same bits.
+  const Wide sides = lanes_at(wanted - 1).all + lanes_at(wanted + 1).all;
+  return {inverse.here * middle + inverse.along_x * sides,
+          inverse.along_y * middle + inverse.corner * sides};
+}
+
+/// The inverse at eight columns of all rows.
+TORSION_LANES void ask_columns(const LocalInverse& inverse, std::uint32_t side,
+                               const double* wanted, double* asked) {
+  const std::size_t width = std::size_t{side} + 2;
+  AskedOfRow low = ask_row(inverse, wanted - width);
+  AskedOfRow middle = ask_row(inverse, wanted);
+  for (std::size_t row = 0; row < side; ++row) {
+    const AskedOfRow high = ask_row(inverse, wanted + (row + 1) * width);
+    lanes_at(asked + row * side).all = middle.here + (low.beside + high.beside);
+    low = middle;
+    middle = high;
+  }
+}
+
+LocalInverse scaled(const LocalInverse& inverse, double scale) {
+  return {inverse.here * scale, inverse.along_x * scale, inverse.along_y * scale,
+          inverse.corner * scale};
+}
+
+}  // namespace
+
+TORSION_WIDEST
+double dot(std::size_t count, const double* a, const double* b) {
+  Wide sums{};
+  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+    sums += lanes_at(a + k).all * lanes_at(b + k).all;
+  }
+  return sum_of(sums);
+}
+
+TORSION_WIDEST
+double dot(std::size_t count, const double* a_x, const double* a_y, const double* b_x,
+           const double* b_y) {
+  Wide sums{};
+  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+    sums += lanes_at(a_x + k).all * lanes_at(b_x + k).all +
+            lanes_at(a_y + k).all * lanes_at(b_y + k).all;
+  }
+  return sum_of(sums);
+}
+
+TORSION_WIDEST
+double largest(std::size_t count, const double* values) {
+  Wide most{};
+  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+    const Wide value = lanes_at(values + k).all;
+    most = value > most ? value : most;
+  }
+  return largest_of(most);
+}
+
+TORSION_WIDEST
+void add_scaled(std::size_t count, double scale, const double* __restrict values,
+                double* __restrict to) {
+  for (std::size_t k = 0; k < count; ++k) {
+    to[k] += scale * values[k];
+  }
+}
+
+TORSION_WIDEST
+void multiply(std::size_t count, const double* a, const double* b, double* product) {
+  for (std::size_t k = 0; k < count; ++k) {
+    product[k] = a[k] * b[k];
+  }
+}
+
+TORSION_WIDEST
+void to_border(std::uint32_t side, const double* __restrict cells, double* __restrict bordered) {
+  const std::size_t width = std::size_t{side} + 2;
+  for (std::size_t row = 0; row < side; ++row) {
+    const double* const from = cells + row * side;
+    double* const to = bordered + (row + 1) * width + 1;
+    if (side < kPatchLanes) {
+      for (std::size_t i = 0; i < side; ++i) {
+        to[i] = from[i];
+      }
+      continue;
+    }
+    for (std::size_t i = 0; i < side; i += kPatchLanes) {
+      // The last eight end with the row: some are copied twice.
+      const std::size_t at = i + kPatchLanes <= side ? i : side - kPatchLanes;
+      lanes_at(to + at).all = lanes_at(from + at).all;
+    }
+  }
+}
+
+TORSION_WIDEST
+void apply_local_inverse(const LocalInverse& inverse, double scale, std::uint32_t side,
+                         const double* __restrict wanted, double* __restrict asked) {
+  const std::size_t width = std::size_t{side} + 2;
+  const LocalInverse by = scaled(inverse, scale);
+  for (std::size_t row = 0; side < kPatchLanes && row < side; ++row) {
+    const double* const low = wanted + row * width;
+    const double* const middle = low + width;
+    const double* const high = middle + width;
+    double* const to = asked + row * side;
+    for (std::size_t i = 0; i < side; ++i) {
+      to[i] = by.here * middle[i + 1] + by.along_x * (middle[i] + middle[i + 2]) +
+              by.along_y * (low[i + 1] + high[i + 1]) +
+              by.corner * ((low[i] + high[i + 2]) + (low[i + 2] + high[i]));
+    }
+  }
+  for (std::size_t i = 0; side >= kPatchLanes && i < side; i += kPatchLanes) {
+    // The last eight end with the row: some are asked twice, for the same.
+    const std::size_t at = i + kPatchLanes <= side ? i : side - kPatchLanes;
+    ask_columns(by, side, wanted + width + 1 + at, asked + at);
+  }
+}
+
+TORSION_WIDEST
+double wanted_by_asked(const LocalInverse& inverse, double scale, std::uint32_t side,
+                       const double* __restrict wanted) {
+  const std::size_t width = std::size_t{side} + 2;
+  const std::size_t count = whole_lanes(side * width);
+  // Every pair of neighbours once, and half of each cell itself. The border is zero, so that the
+  // end of a row and the beginning of the next are no neighbours.
+  const double here = 0.5 * inverse.here;
+  const double along_x = inverse.along_x;
+  const double along_y = inverse.along_y;
+  const double corner = inverse.corner;
+  Wide sums{};
+  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+    const double* const at = wanted + width + k;
+    sums +=
+        lanes_at(at).all * (here * lanes_at(at).all + along_x * lanes_at(at + 1).all +
+                            along_y * lanes_at(at + width).all +
+                            corner * (lanes_at(at + width - 1).all + lanes_at(at + width + 1).all));
+  }
+  return 2.0 * scale * sum_of(sums);
+}
+
+TORSION_WIDEST
+void find_overlaps(std::size_t count, const double* __restrict depth,
+                   const double* __restrict depression, const double* __restrict pressure,
+                   double* __restrict residual) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const double overlap = depth[k] - depression[k];
+    residual[k] = larger(pressure[k], overlap) > 0.0 ? overlap : 0.0;
+  }
+}
+
+TORSION_WIDEST
+PressureResidual pressure_residual(std::size_t count, const double* __restrict depth,
+                                   const double* __restrict depression,
+                                   const double* __restrict pressure) {
+  Wide lacking{};
+  Wide scale{};
+  const Wide none{};
+  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+    const Wide has = lanes_at(pressure + k).all;
+    const Wide all = lanes_at(depth + k).all;
+    const Wide deep = all > 0.0 ? all : none;
+    const Wide overlap = all - lanes_at(depression + k).all;
+    const Wide positive = overlap > 0.0 ? overlap : none;
+    const Wide left = has > 0.0 ? overlap : positive;
+    lacking += left * left;
+    scale += deep * deep;
+  }
+  return {sum_of(lacking), sum_of(scale)};
+}
+
+TORSION_WIDEST
+double keep_asked(std::size_t count, const double* __restrict residual, double* __restrict asked) {
+  Wide sums{};
+  const Wide none{};
+  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+    const Wide left = lanes_at(residual + k).all;
+    const Wide all = lanes_at(asked + k).all;
+    const Wide kept = left != 0.0 ? all : none;
+    lanes_at(asked + k).all = kept;
+    sums += left * kept;
+  }
+  return sum_of(sums);
+}
+
+TORSION_WIDEST
+double mix_pressures(std::size_t count, const double* __restrict residual,
+                     const double* __restrict asked, double kept, double* __restrict step) {
+  Wide sums{};
+  const Wide none{};
+  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+    const Wide wants = lanes_at(asked + k).all;
+    const Wide mixed = wants + kept * lanes_at(step + k).all;
+    const Wide way = wants != 0.0 ? mixed : none;
+    lanes_at(step + k).all = way;
+    sums += lanes_at(residual + k).all * way;
+  }
+  return sum_of(sums);
+}
+
+TORSION_WIDEST
+SweepChange change_pressures(std::size_t count, double length, const double* __restrict moves,
+                             double* __restrict step, double* __restrict pressure,
+                             double* __restrict depression, double& pull) {
+  Wide most{};
+  Wide sums{};
+  Wide least{};
+  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+    const Wide way = length * lanes_at(step + k).all;
+    const Wide to = lanes_at(pressure + k).all + way;
+    lanes_at(step + k).all = way;
+    lanes_at(pressure + k).all = to;
+    lanes_at(depression + k).all += length * lanes_at(moves + k).all;
+    const Wide size = way < 0.0 ? -way : way;
+    most = size > most ? size : most;
+    sums += size;
+    least = to < least ? to : least;
+  }
+  pull = largest_of(-least);
+  return {largest_of(most), sum_of(sums)};
+}
+
+TORSION_WIDEST
+void find_pulls(std::size_t count, const double* __restrict pressure, double* __restrict step) {
+  for (std::size_t k = 0; k < count; ++k) {
+    step[k] = larger(-pressure[k], 0.0);
+  }
+}
+
+TORSION_WIDEST
+bool lose_cells(std::size_t count, double least_depth, const double* __restrict depth,
+                double* __restrict pressure, double* __restrict traction_x,
+                double* __restrict traction_y, double* __restrict change_pressure,
+                double* __restrict change_x, double* __restrict change_y) {
+  const Wide none{};
+  Wide lost{};
+  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+    const Wide has = lanes_at(pressure + k).all;
+    const Wide has_x = lanes_at(traction_x + k).all;
+    const Wide has_y = lanes_at(traction_y + k).all;
+    const Wide deep = lanes_at(depth + k).all > least_depth ? has : none;
+    const Wide keeps = deep > 0.0 ? none + 1.0 : none;
+    lanes_at(pressure + k).all = has * keeps;
+    lanes_at(traction_x + k).all = has_x * keeps;
+    lanes_at(traction_y + k).all = has_y * keeps;
+    lanes_at(change_pressure + k).all = has * (keeps - 1.0);
+    lanes_at(change_x + k).all = has_x * (keeps - 1.0);
+    lanes_at(change_y + k).all = has_y * (keeps - 1.0);
+    lost += (1.0 - keeps) * (has * has + has_x * has_x + has_y * has_y);
+  }
+  return sum_of(lost) > 0.0;
+}
+
+}  // namespace torsion

@@ -1,0 +1,338 @@
+#include "systems/patch/patch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "systems/contact/contact_axes.hpp"
+#include "systems/contact/friction_decay.hpp"
+#include "systems/contact/grid_cells.hpp"
+#include "systems/contact/region_motion.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/patch/cells.hpp"
+#include "systems/patch/energy.hpp"
+#include "systems/patch/grid.hpp"
+#include "systems/patch/passes.hpp"
+#include "systems/patch/region.hpp"
+#include "systems/scratch.hpp"
+
+namespace torsion {
+namespace {
+
+// Of a region that begins or whose grid moved, at most: sweeps of either, of both in all rounds and
+// regions together, and rounds of pressures and tractions in turn. What is left to do then is done
+// in the next steps, of which each has its own sweeps. Where there are more such regions in a step,
+// or many others, they share out what there is, or the step would be long.
+constexpr std::uint32_t kSweepsAnew = 8;
+constexpr std::uint32_t kSweepsOfAll = 16;
+constexpr std::uint32_t kSweepsOfStep = 24;  // with those of the other regions
+constexpr std::uint32_t kRoundsAnew = 8;
+constexpr double kSkipAnew = 1e-5;  // the residual that will do then
+// Of the last step's change. Steps that end early must not foresee more: an error that a step's
+// sweeps leave to the share r comes back as r (1 + s) and -r s of the last two, with s what is
+// foreseen; the roots of x^2 = r (1 + s) x - r s are within 1 for every r < 1 only where s <= 1.
+constexpr double kMostForesight = 1.0;
+// A contact that rolls: material comes in that no earlier step tells of, and leaves with what is
+// known of it. With two sweeps a step the friction of rolling with spin was 2.3 % off the largest,
+// with these 0.8 %, as with any more (patch_steady_rolling_test.cpp). A contact rolls where the
+// tool tilts over it in a step by so much that its rim's depth changes by this share of the mean,
+// and more.
+constexpr std::uint32_t kSweepsOfRolling = 8;  // at most
+constexpr double kRolls = 2e-3;
+
+/// The motion of this step along that of the last one, as a share of it: 1 in steady motion, -1
+/// where it turns back.
+double share_of_last(const Patch& patch, double deepened) {
+  const double radius = patch.world.regions.at<RegionGeometry>(patch.region).radius;
+  const PatchState& last = patch.state;
+  const double spin = last.spin * radius;
+  const double square =
+      glm::dot(last.slide, last.slide) + spin * spin + last.deepened * last.deepened;
+  const double along = glm::dot(last.slide, patch.motion.slide) +
+                       spin * patch.motion.spin * radius + last.deepened * deepened;
+  return square > 0.0 ? std::clamp(along / square, -1.0, 1.0) : 0.0;
+}
+
+/// How much of the last step's change to expect again.
+ForeseenShares foreseen_shares(const Patch& patch) {
+  if (has_support(patch)) {
+    const double share = std::clamp(patch.state.along_last, 0.0, kMostForesight);
+    return {share, share};
+  }
+  return best_shares(patch.rows, patch.columns, patch.problem.coupled, kMostForesight);
+}
+
+/// Whether the contact rolls in this step (kRolls).
+bool rolls(const Patch& patch) {
+  const RegionGeometry& geometry = patch.world.regions.at<RegionGeometry>(patch.region);
+  const glm::dvec3 turn = turn_of(motion_over_body(patch.world, patch.region));
+  const glm::dvec3 tilt = turn - patch.frame.normal * glm::dot(turn, patch.frame.normal);
+  return glm::length(tilt) * geometry.radius > kRolls * geometry.mean_depth;
+}
+
+/// As a step solves whose pressures have far to go.
+/// @param sweeps  at most
+void solve_longer(Patch& patch, std::uint32_t sweeps) {
+  const std::uint32_t least = patch.world.settings.at<Settings>(0).sweeps;
+  patch.problem.sweeps = std::max(least, std::min(kSweepsAnew, sweeps));
+  patch.problem.sweeps_of_rounds = std::max(least, sweeps);
+  patch.problem.rounds = kRoundsAnew;
+  patch.problem.skip = kSkipAnew;
+  patch.problem.settled = 0.0;
+}
+
+/// After the grid has moved, or at a region's beginning: displacements of the tractions that are
+/// there.
+/// @param sweeps  at most
+void start_anew(Patch& patch, std::uint32_t sweeps) {
+  const PatchColumns& columns = patch.columns;
+  for (std::size_t cell = 0; cell < patch.rows.tractions.size(); ++cell) {
+    if (columns.pressure[cell] <= 0.0 || columns.depth[cell] == kNoContact) {
+      columns.pressure[cell] = 0.0;
+      columns.traction_x[cell] = 0.0;
+      columns.traction_y[cell] = 0.0;
+    }
+  }
+  displace_patch(patch.problem, columns, patch.work);
+  const PatchSurface& surface = patch.rows.surface;
+  std::ranges::copy(columns.moved_x, surface.moved_x.begin());
+  std::ranges::copy(columns.moved_y, surface.moved_y.begin());
+  std::ranges::copy(columns.depression, surface.depression.begin());
+  for (std::size_t cell = 0; cell < patch.rows.tractions.size(); ++cell) {
+    if (surface.known[cell] == 0.0) {
+      patch.places.from_x[cell] = columns.moved_x[cell];
+      patch.places.from_y[cell] = columns.moved_y[cell];
+    }
+    patch.rows.tractions[cell].pressure = columns.pressure[cell];
+    patch.rows.tractions[cell].traction =
+        -glm::dvec2(columns.traction_x[cell], columns.traction_y[cell]);
+  }
+  solve_longer(patch, sweeps);
+}
+
+/// A pressure to measure changes by: the mean of what is there, or what the depth will ask for.
+double reference_pressure(const Patch& patch, double depth) {
+  const double mean = mean_pressure(patch.columns);
+  if (mean > 0.0) {
+    return mean;
+  }
+  const double reach = std::max(patch.frame.half_size.x, patch.frame.half_size.y);
+  return depth / (reach * patch.problem.compliance * static_cast<double>(patch.side)) * reach;
+}
+
+/// That of the disc of the loaded cells' area, m.
+double contact_radius(const Patch& patch, const PatchSums& sums) {
+  return std::sqrt(sums.loaded_cells * cell_area(patch.frame, patch.side) / std::numbers::pi);
+}
+
+/// Static friction gives way to dynamic with the path slipped, and comes back with the elastic
+/// path.
+/// @param radius  m, of the contact
+void update_kinetic_shares(const Patch& patch, double force, double radius) {
+  const RegionIdentity& identity = patch.world.regions.at<RegionIdentity>(patch.region);
+  const Friction& friction = patch.world.bodies.at<Friction>(identity.body);
+  if (friction.static_friction == friction.dynamic_friction) {
+    return;
+  }
+  const Elasticity& elasticity = patch.world.bodies.at<Elasticity>(identity.body);
+  // Displacement of a disc at its friction limit: stiffness 8 G a / (2 - nu).
+  const double stiffness =
+      8.0 * elasticity.shear_modulus() * radius / (2.0 - elasticity.poisson_ratio);
+  const double inverse =
+      inverse_of(stiffness > 0.0 ? friction.static_friction * force / stiffness : 0.0);
+  const PatchColumns& columns = patch.columns;
+  for (std::size_t cell = 0; cell < patch.rows.tractions.size(); ++cell) {
+    double& share = patch.rows.tractions[cell].kinetic_share;
+    const glm::dvec2 moved(columns.moved_x[cell], columns.moved_y[cell]);
+    if (columns.pressure[cell] <= 0.0) {
+      share = 0.0;
+    } else if (columns.slips[cell] != 0.0) {
+      const glm::dvec2 target(columns.target_x[cell], columns.target_y[cell]);
+      share += (1.0 - share) * travelled(glm::distance(target, moved), inverse / kSlipLength);
+    } else if (share > 0.0) {
+      const glm::dvec2 was(patch.rows.surface.moved_x[cell], patch.rows.surface.moved_y[cell]);
+      share *= 1.0 - travelled(glm::distance(moved, was), inverse);
+    }
+  }
+}
+
+/// What the region's components become.
+void summarize(const Patch& patch, const PatchSums& sums) {
+  World& world = patch.world;
+  RegionFriction& friction = world.regions.at<RegionFriction>(patch.region);
+  RegionNormal& normal = world.regions.at<RegionNormal>(patch.region);
+  RegionCarrier& carrier = world.regions.at<RegionCarrier>(patch.region);
+  friction = RegionFriction{};
+  normal = RegionNormal{};
+  if (sums.force <= 0.0) {
+    carrier = RegionCarrier{};
+    return;
+  }
+  RegionGeometry& geometry = world.regions.at<RegionGeometry>(patch.region);
+  const std::uint32_t body = world.regions.at<RegionIdentity>(patch.region).body;
+  const glm::dvec3 center(sums.center, sums.height);
+  const double cell = cell_area(patch.frame, patch.side);
+  geometry.equivalent_point = grid_to_body(patch.frame, center);
+  geometry.area = sums.loaded_cells * cell;
+  geometry.radius = contact_radius(patch, sums);
+  geometry.mean_depth = sums.depth;
+  geometry.rest_point = geometry.equivalent_point + patch.frame.normal * geometry.mean_depth;
+  normal.force = sums.force;
+  normal.stiffness = 2.0 * world.bodies.at<Elasticity>(body).contact_modulus() * geometry.radius;
+  friction.force = sums.friction;
+  friction.couple = sums.couple - (center.x * sums.friction.y - center.y * sums.friction.x);
+  friction.stick_share = sums.stuck_cells / sums.loaded_cells;
+  friction.stick_radius = std::sqrt(sums.stuck_cells * cell / std::numbers::pi);
+  friction.stick_turn = sums.turn;
+  const double turn = friction.stick_turn;
+  // As a rotation about the contact's middle, so that it does not matter where the grid has its
+  // origin; displacements turn by a cross product, however far. Not about the pressure's centre:
+  // the grid would follow that, and the contact's rim over its cells would move the centre in turn.
+  const glm::dvec2 about = sums.middle;
+  const glm::dvec2 from_center = about - sums.center;
+  const glm::dvec2 moved = sums.moved + turn * glm::dvec2(-from_center.y, from_center.x);
+  const glm::dvec2 turned(std::cos(turn) * about.x - std::sin(turn) * about.y,
+                          std::sin(turn) * about.x + std::cos(turn) * about.y);
+  const glm::dvec2 of_origin = moved - (turned - about);
+  carrier.translation = tangent_to_body(patch.frame, of_origin);
+  carrier.rotation = patch.frame.normal * turn;
+}
+
+/// While a region settles on a grid with other axes its displacements are found on other cells, and
+/// differ a little from those before, as if the material had moved under the tool that has not:
+/// fresh cells would come into contact that carry no traction, less traction would let the material
+/// spring back farther, and so on. It is the grid that goes back by as much instead, to where the
+/// material under it stands as it stood.
+/// @param before  when the cells' depths were found
+void keep_place(const Patch& patch, const RegionCarrier& before) {
+  RegionFrame& frame = patch.world.regions.at<RegionFrame>(patch.region);
+  RegionCarrier& carrier = patch.world.regions.at<RegionCarrier>(patch.region);
+  turn_axes(frame, glm::dot(before.rotation - carrier.rotation, frame.normal));
+  const glm::dvec3 shift = before.translation - carrier.translation;
+  frame.origin += shift - frame.normal * glm::dot(shift, frame.normal);
+}
+
+/// True where the last step's displacements are no start.
+bool is_anew(const PatchState& state) {
+  return state.started == 0 || state.moved != 0;
+}
+
+SolutionStart start_of(const Patch& patch) {
+  if (patch.state.started == 0) {
+    return SolutionStart::kNone;
+  }
+  if (patch.state.resized != 0 || patch.problem.support.laid_anew) {
+    return SolutionStart::kOtherGrid;
+  }
+  return patch.state.moved != 0 ? SolutionStart::kMovedGrid : SolutionStart::kLastStep;
+}
+
+/// How many sweeps a region gets in this step at most.
+struct SweepLimits {
+  std::uint32_t anew = 0;  // one that is_anew or settles
+  std::uint32_t of_rolling = 0;
+};
+
+void solve_region(StepContext& context, std::uint32_t region, const SweepLimits& sweeps) {
+  const RegionCarrier carrier = context.world.regions.at<RegionCarrier>(region);
+  Patch patch = patch_of(context, region);
+  const bool anew = is_anew(patch.state);
+  const std::uint32_t settling = patch.state.settling;
+  const std::uint32_t body = patch.world.regions.at<RegionIdentity>(region).body;
+  if (load_cells(patch.rows, patch.world.bodies.at<Friction>(body), patch.columns, patch.places)) {
+    patch.problem.rims = {patch.places.softness, patch.places.root};
+  }
+  add_rims(patch.problem, patch.columns, patch.rows, 1.0);
+  find_starts(patch.rows, patch.places);
+  const double depth = largest(whole_lanes(patch.columns.depth.size()), patch.columns.depth.data());
+  const double deepened = depth - patch.state.depth;
+  patch.state.along_last = share_of_last(patch, deepened);
+  if (anew) {
+    foresee_cells(patch.rows, {}, patch.columns, patch.problem);
+    start_anew(patch, sweeps.anew);
+    set_targets(patch.motion, patch.places, patch.columns);
+  } else {
+    set_targets(patch.motion, patch.places, patch.columns);
+    foresee_cells(patch.rows, foreseen_shares(patch), patch.columns, patch.problem);
+    let_go_cells(patch.problem, patch.columns, patch.work, kNoContact);
+    if (settling > 0) {
+      solve_longer(patch, sweeps.anew);
+    } else if (rolls(patch)) {
+      patch.problem.sweeps = std::max(patch.problem.sweeps, sweeps.of_rolling);
+    }
+  }
+  if (has_support(patch)) {
+    find_support(patch);
+    take_off_support(patch.rows.surface.known, patch.support.x, patch.support.y, patch.columns);
+    add_motion_of_body(patch, 1.0);
+  }
+  patch.problem.reference = reference_pressure(patch, depth);
+  const PatchOutcome outcome = solve_patch(patch.problem, patch.columns, patch.work);
+  const double held_by_body = find_support(patch);
+  if (has_support(patch)) {
+    add_motion_of_body(patch, -1.0);
+  }
+  const SolutionStart start = start_of(patch);
+  const PatchSums sums = sum_cells(patch.columns, patch.places, cell_area(patch.frame, patch.side),
+                                   patch.problem.reference);
+  update_kinetic_shares(patch, sums.force, contact_radius(patch, sums));
+  const std::span<const double> none;
+  store_cells(patch.columns, has_support(patch) ? patch.support.x : none,
+              has_support(patch) ? patch.support.y : none, patch.rows);
+  if (start == SolutionStart::kNone) {
+    const PatchChange& change = patch.rows.change;
+    for (const std::span<double>& each : {change.traction_x, change.traction_y, change.pressure,
+                                          change.moved_x, change.moved_y, change.depression}) {
+      std::ranges::fill(each, 0.0);
+    }
+  }
+  patch.state = {patch.motion.slide,
+                 patch.motion.spin,
+                 deepened,
+                 patch.state.along_last,
+                 depth,
+                 outcome.residual,
+                 outcome.sweeps,
+                 1,
+                 0,
+                 0,
+                 settling > 0 ? settling - 1 : 0,
+                 0};
+  summarize(patch, sums);
+  settle_energy(patch.world, region,
+                {patch.problem, patch.columns, patch.support.z, held_by_body, patch.work}, start);
+  add_rims(patch.problem, patch.columns, patch.rows, -1.0);
+  if (settling > 0 && sums.force > 0.0) {
+    keep_place(patch, carrier);
+  }
+}
+
+SweepLimits sweep_limits(const World& world) {
+  std::uint32_t all = 0;
+  std::uint32_t anew = 0;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    if (has_patch(world, world.regions.at<RegionIdentity>(region))) {
+      ++all;
+      const PatchState& state = world.regions.at<PatchState>(region);
+      anew += is_anew(state) || state.settling > 0 ? 1U : 0U;
+    }
+  }
+  const std::uint32_t of_others = (all - anew) * world.settings.at<Settings>(0).sweeps;
+  const std::uint32_t left = kSweepsOfStep - std::min(kSweepsOfStep, of_others);
+  return {std::min(kSweepsOfAll, left) / std::max(anew, 1U),
+          std::min(kSweepsOfRolling, kSweepsOfStep / std::max(all, 1U))};
+}
+
+}  // namespace
+
+void patch_forces(StepContext& context) {
+  World& world = context.world;
+  const SweepLimits sweeps = sweep_limits(world);
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    if (has_patch(world, world.regions.at<RegionIdentity>(region))) {
+      solve_region(context, region, sweeps);
+    }
+  }
+}
+
+}  // namespace torsion

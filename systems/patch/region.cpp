@@ -1,0 +1,109 @@
+#include "systems/patch/region.hpp"
+
+#include <algorithm>
+
+#include "systems/contact/grid_cells.hpp"
+#include "systems/contact/region_motion.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/patch/influences.hpp"
+#include "systems/patch/passes.hpp"
+
+namespace torsion {
+namespace {
+
+// A body that gives way takes more sweeps: its motions have compliances of their own, beside those
+// that the local inverse knows.
+constexpr std::uint32_t kSweepsOnSoftBody = 4;  // times the settings'
+constexpr std::uint32_t kRoundsOnSoftBody = 3;  // at most: pressing moves it sideways, too
+// Where the body as a whole gives way, what a step leaves undone builds up, under a hand that is
+// not steady the more so: by ends as early as elsewhere, played-back recordings went 7 % astray.
+constexpr double kSettledOnBody = 0.01;  // PatchProblem::settled
+
+/// As the tool goes over cells that stay where they are, while RegionMotion's pivot goes with it.
+RegionMotion motion_over_cells(const World& world, std::uint32_t region, const RegionFrame& frame) {
+  RegionMotion motion = world.regions.at<RegionMotion>(region);
+  const MotionOverBody over = motion_over_body(world, region);
+  motion.slide +=
+      glm::dvec2(body_to_grid_direction(frame, 0.5 * glm::cross(over.turn, over.shift)));
+  return motion;
+}
+
+}  // namespace
+
+Patch patch_of(StepContext& context, std::uint32_t region) {
+  World& world = context.world;
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const Settings& settings = world.settings.at<Settings>(0);
+  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const RegionInfluences influences = region_influences(world, region);
+  if (influences.changed) {
+    world.regions.at<PatchState>(region).moved = 1;
+  }
+  PatchProblem problem;
+  problem.influences = influences.tables;
+  problem.compliance = 2.0 * frame.half_size.x /
+                       (static_cast<double>(settings.grid_side) * elasticity.shear_modulus());
+  problem.coupled = influences.coupled;
+  const PatchPlaces& places = context.scratch.patch_places;
+  cell_centers(frame, settings.grid_side, places.x, places.y);
+  problem.support = patch_support(world, region, context.scratch.disc_stiffness,
+                                  {places.x, places.y}, context.scratch.patch_support);
+  problem.sweeps = settings.sweeps;
+  if (problem.support.soft) {
+    problem.sweeps *= kSweepsOnSoftBody;
+    problem.rounds = kRoundsOnSoftBody;
+  }
+  if (problem.support.response != nullptr) {
+    problem.settled = kSettledOnBody;
+  }
+  return {world,
+          context.scratch.patch_columns,
+          context.scratch.patch_places,
+          context.scratch.support_columns,
+          context.scratch.patch_work,
+          region,
+          settings.grid_side,
+          frame,
+          motion_over_cells(world, region, frame),
+          patch_rows(world, identity.cells),
+          world.regions.at<PatchState>(region),
+          problem};
+}
+
+bool has_support(const Patch& patch) {
+  return patch.problem.support.response != nullptr;
+}
+
+double find_support(const Patch& patch) {
+  const PatchColumns& columns = patch.columns;
+  const PatchField moved{patch.support.x, patch.support.y, patch.support.z};
+  for (const std::span<double>& each : {moved.x, moved.y, moved.z}) {
+    std::ranges::fill(each, 0.0);
+  }
+  if (!has_support(patch)) {
+    return 0.0;
+  }
+  SupportMotion motion = support_by(
+      patch.problem.support, {columns.traction_x, columns.traction_y, columns.pressure}, false);
+  const SupportPolynomials known = known_support(patch.world, patch.region);
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    motion.polynomials[k] -= known[k];
+  }
+  add_polynomials(patch.problem.support, motion.polynomials, moved);
+  return motion.energy;
+}
+
+void add_motion_of_body(const Patch& patch, double sign) {
+  const PatchColumns& columns = patch.columns;
+  const auto add = [sign](std::span<const double> motion, std::span<double> to) {
+    add_scaled(motion.size(), sign, motion.data(), to.data());
+  };
+  add(patch.support.x, columns.moved_x);
+  add(patch.support.y, columns.moved_y);
+  add(patch.support.x, columns.target_x);
+  add(patch.support.y, columns.target_y);
+  add(patch.support.z, columns.depression);
+}
+
+}  // namespace torsion

@@ -1,0 +1,77 @@
+#pragma once
+
+// What the whole body's own compliance adds to the displacements of a grid's cells.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/mat3x3.hpp>
+
+#include "ecs/world.hpp"
+#include "systems/patch/definite_response.hpp"
+
+namespace torsion {
+
+/// A linear map from tractions of the cells to displacements of them, of as many dimensions as
+/// there are terms: displacement = Q M Q' force, with Q the terms at the cells and M the footing's
+/// response. Tractions and displacements are those of PatchColumns: on the body, z into it.
+struct PatchSupport {
+  const FootingResponse* response = nullptr;  // null: the body gives way as a half-space does
+  const Footing* footing = nullptr;
+  const RegionReaction* reaction = nullptr;  // null: other regions do not answer within the step
+  glm::dmat3 to_body{1.0};                   // from x, y, z of the columns
+  double area = 0.0;                         // m^2, of a cell
+  bool soft = false;                         // gives way by much beside the contact itself
+  bool laid_anew = false;                    // the response is not that of the last step
+  std::size_t cells = 0;    // rows of a term: those of the cells and zeros up to whole lanes, which
+                            // all columns that tractions come from or displacements go to have, too
+  std::span<double> terms;  // (kSupportTerms x cells)
+  std::span<const double> place_x, place_y;  // m, grid: the cells' centres
+  // Of what is soft: what moves the cells as one, and yields, m/N times a cell's area: along z by
+  // the moments of tractions along z with 1, x, y; and along the surface by those of the sideways
+  // ones, x, y, turning about the grid's origin.
+  glm::dmat3 sinks{0.0};
+  glm::dmat3 slides{0.0};
+};
+
+/// The cells' centres.
+struct PatchCenters {
+  std::span<const double> x, y;  // m, grid, (side x side)
+};
+
+/// One grid's tractions or displacements; an empty column is zero or not asked for.
+struct PatchField {
+  std::span<double> x, y, z;
+};
+
+/// The polynomials of the three axes, kSupportColumn each, body axes.
+using SupportPolynomials = std::array<double, std::size_t{3} * kSupportColumn>;
+
+/// What tractions move, and the energy that the body holds of it.
+struct SupportMotion {
+  SupportPolynomials polynomials{};  // m
+  double energy = 0.0;               // J
+};
+
+/// The region's, or none. Finds the footing's response anew when it has been laid anew.
+/// @param terms  (kSupportTerms x whole lanes of cells) out
+PatchSupport patch_support(World& world, std::uint32_t region, const DiscStiffness& disc,
+                           const PatchCenters& centers, std::span<double> terms);
+
+/// @param change  tractions are a change: of the other regions' answer only that to them
+SupportMotion support_by(const PatchSupport& support, const PatchField& tractions, bool change);
+
+/// The motion that the region's RegionSupport has of it already.
+SupportPolynomials known_support(const World& world, std::uint32_t region);
+
+/// displacements += what tractions move; nothing without a response.
+void add_support(const PatchSupport& support, const PatchField& tractions,
+                 const PatchField& displacements);
+
+/// displacements += the polynomials at the cells.
+void add_polynomials(const PatchSupport& support, const SupportPolynomials& polynomials,
+                     const PatchField& displacements);
+
+}  // namespace torsion

@@ -1,0 +1,259 @@
+#include "systems/patch/traction_passes.hpp"
+
+#include <cmath>
+
+#include "systems/geometry/distance_shapes.hpp"
+#include "systems/math/widest.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr double kLeastSum = 1e-300;    // keeps 0 / 0 away
+constexpr double kInside = 1.0 + 1e-9;  // of a limit's square
+
+TORSION_WIDEST
+void ways(std::size_t count, double stiffness, const double* __restrict traction_x,
+          const double* __restrict traction_y, const double* __restrict target_x,
+          const double* __restrict target_y, const double* __restrict moved_x,
+          const double* __restrict moved_y, const double* __restrict limits,
+          double* __restrict slips, double* __restrict residual_x, double* __restrict residual_y,
+          double* __restrict along_x, double* __restrict along_y, double* __restrict softened) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const double left_x = target_x[k] - moved_x[k];
+    const double left_y = target_y[k] - moved_y[k];
+    const double trial_x = traction_x[k] + stiffness * left_x;
+    const double trial_y = traction_y[k] + stiffness * left_y;
+    const double limit = limits[k];
+    const bool at_limit = (trial_x * trial_x + trial_y * trial_y > limit * limit) | (limit <= 0.0);
+    const double held =
+        traction_x[k] * traction_x[k] + traction_y[k] * traction_y[k] - 0.25 * limit * limit;
+    const double x = held > 0.0 ? traction_x[k] : trial_x;
+    const double y = held > 0.0 ? traction_y[k] : trial_y;
+    const double inverse = 1.0 / std::sqrt(larger(x * x + y * y, kLeastSum));
+    const double unit_x = x * inverse;
+    const double unit_y = y * inverse;
+    const double slip = larger(left_x * unit_x + left_y * unit_y, 0.0);
+    // sqrt(limit / (limit + slip stiffness)): 0 where the limit is
+    const double soft = std::sqrt(limit / (larger(limit, kLeastSum) + slip * stiffness));
+    const double across = (unit_x * left_y - unit_y * left_x) * soft;
+    slips[k] = at_limit ? 1.0 : 0.0;
+    residual_x[k] = at_limit ? -across * unit_y : left_x;
+    residual_y[k] = at_limit ? across * unit_x : left_y;
+    along_x[k] = unit_x;
+    along_y[k] = unit_y;
+    softened[k] = at_limit ? soft : 1.0;
+  }
+}
+
+TORSION_WIDEST
+void across(std::size_t count, const double* __restrict slips, const double* __restrict along_x,
+            const double* __restrict along_y, const double* __restrict softened,
+            double* __restrict x, double* __restrict y) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const bool slip = slips[k] != 0.0;
+    const double answer = softened[k] * (along_x[k] * y[k] - along_y[k] * x[k]);
+    const double answer_x = -answer * along_y[k];
+    const double answer_y = answer * along_x[k];
+    x[k] = slip ? answer_x : x[k];
+    y[k] = slip ? answer_y : y[k];
+  }
+}
+
+/// What every cell comes to, and whether that is on the rim of its disc.
+TORSION_WIDEST
+void mix_ways(std::size_t count, const Mix& mix, const double* __restrict traction_x,
+              const double* __restrict traction_y, const double* __restrict limits,
+              const double* __restrict slips, const double* __restrict asked_x,
+              const double* __restrict asked_y, const double* __restrict along_x,
+              const double* __restrict along_y, const double* __restrict softened,
+              double* __restrict step_x, double* __restrict step_y, double* __restrict clips) {
+  const double share = mix.asked;
+  const double kept = mix.kept;
+  for (std::size_t k = 0; k < count; ++k) {
+    const bool slip = slips[k] != 0.0;
+    const double limit = limits[k];
+    const double new_x = share * asked_x[k];
+    const double new_y = share * asked_y[k];
+    const double across = softened[k] * (along_x[k] * new_y - along_y[k] * new_x) +
+                          kept * (along_x[k] * step_y[k] - along_y[k] * step_x[k]);
+    const double from_x = slip ? limit * along_x[k] - across * along_y[k]
+                               : traction_x[k] + (new_x + kept * step_x[k]);
+    const double from_y = slip ? limit * along_y[k] + across * along_x[k]
+                               : traction_y[k] + (new_y + kept * step_y[k]);
+    const double square = from_x * from_x + from_y * from_y;
+    const bool outside = square > limit * limit;
+    const double scale = limit / std::sqrt(larger(square, kLeastSum));
+    const double to_x = (slip | outside) ? from_x * scale : from_x;
+    const double to_y = (slip | outside) ? from_y * scale : from_y;
+    step_x[k] = to_x - traction_x[k];
+    step_y[k] = to_y - traction_y[k];
+    clips[k] = outside ? 1.0 : 0.0;
+  }
+}
+
+TORSION_WIDEST
+void add_up_step(const TractionColumns& cells, TractionStep& __restrict step) {
+  Wide slope{};
+  Wide slipped{};
+  Wide clipped{};
+  const Wide none{};
+  for (std::size_t k = 0; k < cells.count; k += kPatchLanes) {
+    const Wide left_x = lanes_at(cells.target_x + k).all - lanes_at(cells.moved_x + k).all;
+    const Wide left_y = lanes_at(cells.target_y + k).all - lanes_at(cells.moved_y + k).all;
+    const Wide slips = lanes_at(cells.slips + k).all;
+    const Wide clips = lanes_at(cells.clips + k).all;
+    const Wide ends = slips > clips ? slips : clips;
+    slope += left_x * lanes_at(cells.step_x + k).all + left_y * lanes_at(cells.step_y + k).all;
+    slipped += lanes_at(cells.limit + k).all > 0.0 ? ends : none;
+    clipped += (1.0 - slips) * clips;
+  }
+  step = {sum_of(slope), sum_of(slipped), sum_of(clipped)};
+}
+
+TORSION_WIDEST
+double slope_of(const TractionColumns& cells, const double* x, const double* y) {
+  Wide slope{};
+  for (std::size_t k = 0; k < cells.count; k += kPatchLanes) {
+    // What is left of the way is small beside the way: the difference first.
+    const Wide left_x = lanes_at(cells.target_x + k).all - lanes_at(cells.moved_x + k).all;
+    const Wide left_y = lanes_at(cells.target_y + k).all - lanes_at(cells.moved_y + k).all;
+    slope += left_x * lanes_at(x + k).all + left_y * lanes_at(y + k).all;
+  }
+  return sum_of(slope);
+}
+
+/// @return the most that the square of a traction is over that of its limit, Pa^2
+TORSION_WIDEST
+double limits(std::size_t count, const double* __restrict pressure,
+              const double* __restrict friction, const double* __restrict traction_x,
+              const double* __restrict traction_y, double* __restrict limit) {
+  Wide most{};
+  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+    const Wide x = lanes_at(traction_x + k).all;
+    const Wide y = lanes_at(traction_y + k).all;
+    const Wide radius = lanes_at(friction + k).all * lanes_at(pressure + k).all;
+    const Wide over = (x * x + y * y) - kInside * radius * radius;
+    lanes_at(limit + k).all = radius;
+    most = over > most ? over : most;
+  }
+  return largest_of(most);
+}
+
+TORSION_WIDEST
+void change_both(const TractionColumns& cells, double length, SweepChange& __restrict change) {
+  Wide most{};
+  Wide sums{};
+  const auto go = [&most, &sums, length](double* step, double* to) {
+    const Wide way = length * lanes_at(step).all;
+    lanes_at(step).all = way;
+    lanes_at(to).all += way;
+    const Wide size = way < 0.0 ? -way : way;
+    most = size > most ? size : most;
+    sums += size;
+  };
+  for (std::size_t k = 0; k < cells.count; k += kPatchLanes) {
+    go(cells.step_x + k, cells.traction_x + k);
+    go(cells.step_y + k, cells.traction_y + k);
+  }
+  change = {largest_of(most), sum_of(sums)};
+}
+
+TORSION_WIDEST
+void keep_slips(std::size_t count, const double* __restrict traction_x,
+                const double* __restrict traction_y, const double* __restrict target_x,
+                const double* __restrict target_y, const double* __restrict moved_x,
+                const double* __restrict moved_y, double* __restrict slips) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const double along =
+        traction_x[k] * (target_x[k] - moved_x[k]) + traction_y[k] * (target_y[k] - moved_y[k]);
+    slips[k] = along < 0.0 ? 0.0 : slips[k];
+  }
+}
+
+/// (q - P(q + k s)) / k, by which a cell's traction is not what its slip asks for.
+TORSION_WIDEST
+void find_lacking(std::size_t count, double stiffness, const double* __restrict limits,
+                  const double* __restrict traction_x, const double* __restrict traction_y,
+                  const double* __restrict target_x, const double* __restrict target_y,
+                  const double* __restrict moved_x, const double* __restrict moved_y,
+                  double* __restrict lacking_x, double* __restrict lacking_y) {
+  const double compliance = 1.0 / stiffness;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double trial_x = traction_x[k] + stiffness * (target_x[k] - moved_x[k]);
+    const double trial_y = traction_y[k] + stiffness * (target_y[k] - moved_y[k]);
+    const double square = trial_x * trial_x + trial_y * trial_y;
+    const double limit = limits[k];
+    const double rim = limit / std::sqrt(larger(square, kLeastSum));
+    const double share = square > limit * limit ? rim : 1.0;
+    lacking_x[k] = compliance * (traction_x[k] - share * trial_x);
+    lacking_y[k] = compliance * (traction_y[k] - share * trial_y);
+  }
+}
+
+/// Sum of (friction's coefficient times depth)^2 where there is pressure.
+TORSION_WIDEST
+double slip_scale(std::size_t count, const double* __restrict pressure,
+                  const double* __restrict friction, const double* __restrict depth) {
+  Wide sums{};
+  const Wide none{};
+  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+    const Wide deep = lanes_at(pressure + k).all > 0.0 ? lanes_at(depth + k).all : none;
+    const Wide slip = lanes_at(friction + k).all * deep;
+    sums += slip * slip;
+  }
+  return sum_of(sums);
+}
+
+}  // namespace
+
+bool find_limits(const TractionColumns& cells) {
+  return limits(cells.count, cells.pressure, cells.friction, cells.traction_x, cells.traction_y,
+                cells.limit) > 0.0;
+}
+
+void find_ways(const TractionColumns& cells, double stiffness) {
+  ways(cells.count, stiffness, cells.traction_x, cells.traction_y, cells.target_x, cells.target_y,
+       cells.moved_x, cells.moved_y, cells.limit, cells.slips, cells.residual_x, cells.residual_y,
+       cells.along_x, cells.along_y, cells.softened);
+}
+
+void keep_answered(const TractionColumns& cells, double* x, double* y) {
+  across(cells.count, cells.slips, cells.along_x, cells.along_y, cells.softened, x, y);
+}
+
+TractionStep mix_tractions(const TractionColumns& cells, const Mix& mix) {
+  mix_ways(cells.count, mix, cells.traction_x, cells.traction_y, cells.limit, cells.slips,
+           cells.asked_x, cells.asked_y, cells.along_x, cells.along_y, cells.softened, cells.step_x,
+           cells.step_y, cells.clips);
+  TractionStep step;
+  add_up_step(cells, step);
+  return step;
+}
+
+double slope_along(const TractionColumns& cells, const double* x, const double* y) {
+  return slope_of(cells, x, y);
+}
+
+SweepChange change_tractions(const TractionColumns& cells, double length) {
+  SweepChange change;
+  change_both(cells, length, change);
+  add_scaled(cells.count, length, cells.moves_x, cells.moved_x);
+  add_scaled(cells.count, length, cells.moves_y, cells.moved_y);
+  return change;
+}
+
+TractionResidual traction_residual(const TractionColumns& cells, const double* depth,
+                                   double stiffness) {
+  find_lacking(cells.count, stiffness, cells.limit, cells.traction_x, cells.traction_y,
+               cells.target_x, cells.target_y, cells.moved_x, cells.moved_y, cells.residual_x,
+               cells.residual_y);
+  return {dot(cells.count, cells.residual_x, cells.residual_y, cells.residual_x, cells.residual_y),
+          slip_scale(cells.count, cells.pressure, cells.friction, depth)};
+}
+
+void keep_what_is_no_slip(const TractionColumns& cells) {
+  keep_slips(cells.count, cells.traction_x, cells.traction_y, cells.target_x, cells.target_y,
+             cells.moved_x, cells.moved_y, cells.slips);
+}
+
+}  // namespace torsion

@@ -1,0 +1,180 @@
+#include <algorithm>
+#include <limits>
+
+#include <glm/geometric.hpp>
+
+#include "systems/surface/anchor_interpolation.hpp"
+#include "systems/surface/surface_field.hpp"
+
+namespace torsion {
+namespace {
+
+constexpr std::uint32_t kHeldPoints =
+    12;  // how many points of the fixed region the interpolation keeps in place
+
+/// Points spread over the body's fixed vertices, clear of its anchors: each next one is the
+/// farthest from all before.
+std::vector<glm::dvec3> held_points(const BodyDescription& body, const FixedRegion& fixed,
+                                    const Bounds& bounds, std::span<const AnchorRest> anchors) {
+  std::vector<glm::dvec3> candidates;
+  for (std::size_t i = 0; i < body.draw.fixed.size(); ++i) {
+    if (body.draw.fixed[i]) {
+      candidates.emplace_back(body.draw.positions[i]);
+    }
+  }
+  if (fixed.kind == FixedKind::kPoint || candidates.empty()) {
+    candidates.push_back(fixed.point);
+  }
+  const double clearance = 0.01 * glm::length(bounds.highest - bounds.lowest);
+  std::vector<double> nearest(candidates.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    for (const AnchorRest& anchor : anchors) {
+      nearest[i] = std::min(nearest[i], glm::distance(candidates[i], anchor.position));
+    }
+  }
+  std::vector<glm::dvec3> points;
+  while (points.size() < kHeldPoints) {
+    const auto farthest = std::max_element(nearest.begin(), nearest.end());
+    if (*farthest < clearance) {
+      break;
+    }
+    points.push_back(candidates[static_cast<std::size_t>(farthest - nearest.begin())]);
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      nearest[i] = std::min(nearest[i], glm::distance(candidates[i], points.back()));
+    }
+  }
+  return points;
+}
+
+/// Centers of the interpolation of one body: its anchors, then points that stay put.
+struct BodyCenters {
+  std::vector<glm::dvec3> held;
+  std::vector<InterpolationRow> inverse;
+};
+
+BodyCenters centers_of(const BodyDescription& body, const World& world, std::uint32_t row) {
+  BodyCenters centers;
+  const auto anchors = world.anchors.rows<AnchorRest>(world.bodies.at<OwnedRows>(row).anchors);
+  if (anchors.empty()) {
+    return centers;
+  }
+  centers.held =
+      held_points(body, world.bodies.at<FixedRegion>(row), world.bodies.at<Bounds>(row), anchors);
+  std::vector<glm::dvec3> all;
+  for (const AnchorRest& anchor : anchors) {
+    all.push_back(anchor.position);
+  }
+  all.insert(all.end(), centers.held.begin(), centers.held.end());
+  centers.inverse = invert_interpolation(all);
+  return centers;
+}
+
+template <class AnyTable>
+Range append_rows(AnyTable& table, std::size_t count) {
+  const std::optional<Range> range = table.append(static_cast<std::uint32_t>(count));
+  TORSION_ASSERT(range.has_value());
+  return *range;
+}
+
+/// Copies a drawn mesh into the vertex and triangle tables of its kind.
+template <class VertexTable>
+DrawRange append_mesh(const DrawMesh& mesh, VertexTable& vertices, Table<Triangle>& triangles) {
+  DrawRange range;
+  range.vertices = append_rows(vertices, mesh.positions.size());
+  range.triangles = append_rows(triangles, mesh.triangles.size());
+  range.color = mesh.color;
+  const auto rest = vertices.template rows<VertexRest>(range.vertices);
+  const auto normals = vertices.template rows<VertexNormal>(range.vertices);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const bool fixed = i < mesh.fixed.size() && mesh.fixed[i];
+    rest[i].position = glm::vec4(mesh.positions[i], fixed ? 1.0F : 0.0F);
+    normals[i].normal =
+        i < mesh.normals.size() ? glm::vec4(mesh.normals[i], 0.0F) : glm::vec4(0.0F);
+  }
+  const auto corners = triangles.rows<Triangle>(range.triangles);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    corners[i].vertices = mesh.triangles[i];
+  }
+  return range;
+}
+
+void reserve(const SceneDescription& scene, const World& world,
+             const std::vector<BodyCenters>& centers, FrameWorld& frame) {
+  std::size_t body_vertices = 0;
+  std::size_t body_triangles = 0;
+  std::size_t tool_vertices = 0;
+  std::size_t tool_triangles = 0;
+  std::size_t held = 0;
+  std::size_t interpolation = 0;
+  for (const BodyDescription& body : scene.bodies) {
+    body_vertices += body.draw.positions.size();
+    body_triangles += body.draw.triangles.size();
+  }
+  for (const ToolDescription& tool : scene.tools) {
+    tool_vertices += tool.draw.positions.size();
+    tool_triangles += tool.draw.triangles.size();
+  }
+  for (const BodyCenters& center : centers) {
+    held += center.held.size();
+    interpolation += center.inverse.size();
+  }
+  const auto rows = [](std::size_t count) {
+    return static_cast<std::uint32_t>(count);
+  };
+  frame.bodies.reserve(rows(scene.bodies.size()));
+  frame.tools.reserve(rows(scene.tools.size()));
+  frame.body_vertices.reserve(rows(body_vertices));
+  frame.twist.reserve(rows(body_vertices * kMaxRegionsPerBody));
+  frame.axes.reserve(rows(scene.bodies.size() * kMaxRegionsPerBody));
+  frame.body_triangles.reserve(rows(body_triangles));
+  frame.tool_vertices.reserve(rows(tool_vertices));
+  frame.tool_triangles.reserve(rows(tool_triangles));
+  frame.anchor_rest.reserve(world.anchors.size() + rows(held));
+  frame.interpolation.reserve(rows(interpolation));
+}
+
+void append_body(const BodyDescription& body, const World& world, const BodyCenters& centers,
+                 FrameWorld& frame) {
+  const std::uint32_t row = append_rows(frame.bodies, 1).first;
+  const DrawRange drawn = append_mesh(body.draw, frame.body_vertices, frame.body_triangles);
+  FrameBody data;
+  data.anchors = centers.inverse.empty() ? Range{} : world.bodies.at<OwnedRows>(row).anchors;
+  data.held_points = append_rows(frame.anchor_rest, centers.held.size());
+  for (std::size_t i = 0; i < centers.held.size(); ++i) {
+    frame.anchor_rest.rows<AnchorRest>(data.held_points)[i].position = centers.held[i];
+  }
+  data.interpolation = append_rows(frame.interpolation, centers.inverse.size());
+  std::ranges::copy(centers.inverse,
+                    frame.interpolation.rows<InterpolationRow>(data.interpolation).begin());
+  data.twist = append_rows(frame.twist, std::size_t{drawn.vertices.count} * kMaxRegionsPerBody);
+  data.axes = append_rows(frame.axes, kMaxRegionsPerBody);
+  frame.bodies.at<Pose>(row) = world.bodies.at<Pose>(row);
+  frame.bodies.at<DrawRange>(row) = drawn;
+  frame.bodies.at<FrameBody>(row) = data;
+}
+
+}  // namespace
+
+FrameWorld prepare_frame(const SceneDescription& scene, const World& world) {
+  std::vector<BodyCenters> centers;
+  for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
+    centers.push_back(centers_of(scene.bodies[row], world, row));
+  }
+  FrameWorld frame;
+  reserve(scene, world, centers, frame);
+  const Range anchors = append_rows(frame.anchor_rest, world.anchors.size());
+  std::ranges::copy(world.anchors.column<AnchorRest>(),
+                    frame.anchor_rest.rows<AnchorRest>(anchors).begin());
+  for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
+    append_body(scene.bodies[body], world, centers[body], frame);
+  }
+  for (const ToolDescription& tool : scene.tools) {
+    const std::uint32_t row = append_rows(frame.tools, 1).first;
+    frame.tools.at<Pose>(row) = world.tools.at<ToolPose>(row).now;
+    frame.tools.at<DrawRange>(row) =
+        append_mesh(tool.draw, frame.tool_vertices, frame.tool_triangles);
+  }
+  return frame;
+}
+
+}  // namespace torsion

@@ -1,0 +1,198 @@
+#include "systems/surface/region_fields.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "systems/contact/friction_decay.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/scratch.hpp"
+#include "systems/surface/ring_turns.hpp"
+
+namespace torsion {
+namespace {
+
+// A square load of width b sinks in its middle as deep as a point load spread over b / (4 ln(1 +
+// sqrt(2))) (Johnson, 1985, eq. 3.25).
+constexpr double kSpreadOverBlock = 0.2837;
+
+/// By trying on a ball's partial slip, 8 to 24 cells a side: less lets single cells show, more
+/// bends the field.
+double calm_of(std::uint32_t side) {
+  const double share = 0.12 / static_cast<double>(side);
+  return share * share;
+}
+
+/// One region at work.
+struct Source {
+  const RegionFrame& frame;
+  std::uint32_t side;
+  double cell_area;  // m^2
+  std::span<const CellTraction> tractions;
+};
+
+/// Shares `force` among the blocks as the cells press; the pressure centre.
+glm::dvec2 press_blocks(const Source& source, double force_in_all, RegionField& field) {
+  glm::dvec2 center(0.0);
+  double total = 0.0;
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < source.side; ++j) {
+    for (std::uint32_t i = 0; i < source.side; ++i, ++cell) {
+      const CellTraction& traction = source.tractions[cell];
+      const double force = traction.pressure * traction.coverage * source.cell_area;
+      if (force <= 0.0) {
+        continue;
+      }
+      const glm::dvec2 place = cell_center(source.frame, source.side, i, j);
+      PressedBlock& block = field.blocks[j * kFieldBlocks / source.side * kFieldBlocks +
+                                         i * kFieldBlocks / source.side];
+      block.force += force;
+      block.place += place * force;
+      center += place * force;
+      total += force;
+    }
+  }
+  for (PressedBlock& block : field.blocks) {
+    block.place = block.force > 0.0 ? block.place / block.force : glm::dvec2(0.0);
+    block.force *= total > 0.0 ? force_in_all / total : 0.0;
+  }
+  return total > 0.0 ? center / total : glm::dvec2(0.0);
+}
+
+/// That of the disc with the second moment of the loaded cells about the centre, m: what turns lies
+/// farther out in a blade than in a disc of its area.
+double radius_of_moment(const Source& source, const glm::dvec2& center) {
+  double squares = 0.0;
+  double count = 0.0;
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < source.side; ++j) {
+    for (std::uint32_t i = 0; i < source.side; ++i, ++cell) {
+      if (source.tractions[cell].pressure > 0.0) {
+        const glm::dvec2 arm = cell_center(source.frame, source.side, i, j) - center;
+        squares += glm::dot(arm, arm);
+        count += 1.0;
+      }
+    }
+  }
+  return std::sqrt(2.0 * squares * inverse_of(count));  // of a disc: a^2 / 2
+}
+
+/// The region's couple on the material, about the field's centre, N m.
+double couple_of(const Source& source, const RegionField& field) {
+  double couple = 0.0;
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < source.side; ++j) {
+    for (std::uint32_t i = 0; i < source.side; ++i, ++cell) {
+      const CellTraction& traction = source.tractions[cell];
+      const glm::dvec2 arm = cell_center(source.frame, source.side, i, j) - field.center;
+      couple -= traction.coverage * source.cell_area *
+                (arm.x * traction.traction.y - arm.y * traction.traction.x);
+    }
+  }
+  return couple;
+}
+
+/// How far the cells have gone around the field's centre, all of the grid's, in contact or not.
+RingTurns turns_of_cells(World& world, std::uint32_t region, const Source& source,
+                         const RegionField& field) {
+  const Range cells = world.regions.at<RegionIdentity>(region).cells;
+  const std::span<const PatchMovedX> moved_x = world.patch_cells.rows<PatchMovedX>(cells);
+  const std::span<const PatchMovedY> moved_y = world.patch_cells.rows<PatchMovedY>(cells);
+  glm::dvec2 drift(0.0);  // of all that is pressed
+  double pressure = 0.0;
+  for (std::uint32_t cell = 0; cell < cells.count; ++cell) {
+    const double pressed = source.tractions[cell].pressure;
+    drift += pressed * glm::dvec2(moved_x[cell].value, moved_y[cell].value);
+    pressure += pressed;
+  }
+  drift *= inverse_of(pressure);
+  RingTurns rings;
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < source.side; ++j) {
+    for (std::uint32_t i = 0; i < source.side; ++i, ++cell) {
+      const glm::dvec2 arm =
+          (cell_center(source.frame, source.side, i, j) - field.center) / field.radius;
+      const glm::dvec2 moved = glm::dvec2(moved_x[cell].value, moved_y[cell].value) - drift;
+      const double r = glm::length(arm);
+      rings.add(r, (arm.x * moved.y - arm.y * moved.x) * inverse_of(r * field.radius));
+    }
+  }
+  return rings;
+}
+
+/// Puts a disc of any radius on the two nearest of the field's, with its angle and its couple.
+void add_disc(RegionField& field, double radius_share, double turn) {
+  const double place = std::clamp(radius_share * kFieldDiscs, 1.0, double{kFieldDiscs});
+  const auto lower = std::min(static_cast<std::size_t>(place), std::size_t{kFieldDiscs - 1});
+  const auto cube = [](double x) {
+    return x * x * x;
+  };
+  const auto low = static_cast<double>(lower);
+  const double share = (cube(place) - cube(low)) / (cube(low + 1.0) - cube(low));
+  field.turn[lower - 1] += (1.0 - share) * turn;
+  field.turn[lower] += share * turn;
+}
+
+/// The springs' deflections grow inwards; each growth is a disc.
+void discs_of_layers(const MdrFoundation& foundation, std::span<const MdrLayer> layers,
+                     RegionField& field) {
+  double place = 1.0;
+  double turn = 0.0;
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    add_disc(field, 0.5 * (place + foundation.place[k]), layers[k].turn - turn);
+    place = foundation.place[k];
+    turn = layers[k].turn;
+  }
+}
+
+void fill_field(StepContext& context, std::uint32_t region, ContactModel model) {
+  World& world = context.world;
+  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  const glm::dvec2 cell = 2.0 * frame.half_size / static_cast<double>(side);
+  const Source source{frame, side, cell.x * cell.y, world.cells.rows<CellTraction>(identity.cells)};
+  RegionField& field = world.regions.at<RegionField>(region);
+  field = RegionField{};
+  field.frame = frame;
+  field.radius = world.regions.at<RegionGeometry>(region).radius;
+  if (field.radius <= 0.0) {
+    return;
+  }
+  field.spread = kSpreadOverBlock * 2.0 * std::min(frame.half_size.x, frame.half_size.y) /
+                 static_cast<double>(kFieldBlocks);
+  field.center = press_blocks(source, world.regions.at<RegionNormal>(region).force, field);
+  if (model == ContactModel::kPatch) {
+    field.radius = std::max(field.radius, radius_of_moment(source, field.center));
+  }
+  if (model == ContactModel::kMdr) {
+    const std::uint32_t block = block_of(identity);
+    const MdrState& state = world.regions.at<MdrState>(region);
+    const MdrPlaces places =
+        places_of(context.scratch.mdr_tables, {state.flat_share, state.elongation});
+    discs_of_layers(places.turn, world.mdr_layers.rows<MdrLayer>({block * kMdrLayers, kMdrLayers}),
+                    field);
+    return;
+  }
+  const double shear_modulus = world.bodies.at<Elasticity>(identity.body).shear_modulus();
+  const double stiffness = 16.0 / 3.0 * shear_modulus * field.radius * field.radius * field.radius;
+  discs_of_ring_turns(context.scratch.ring_profiles, turns_of_cells(world, region, source, field),
+                      couple_of(source, field) / stiffness, calm_of(side), field.turn);
+}
+
+}  // namespace
+
+void region_fields(StepContext& context) {
+  const World& world = context.world;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
+    const ContactModel model = world.bodies.at<BodyModels>(body).contact;
+    if (model == ContactModel::kMdr || model == ContactModel::kPatch) {
+      fill_field(context, region, model);
+    }
+  }
+}
+
+}  // namespace torsion

@@ -1,0 +1,292 @@
+// Tools on bodies that give way by far more than their contacts do, and what bounds a force
+// whatever goes wrong.
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <Eigen/Core>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "systems/contact/fault.hpp"
+#include "systems/contact/region_wrenches.hpp"
+#include "systems/contact/support/support_field.hpp"
+#include "systems/half_space/influence.hpp"
+#include "systems/patch/definite_response.hpp"
+#include "systems/scratch.hpp"
+#include "tests/support/contact_scenes.hpp"
+#include "tests/support/dense_algebra.hpp"
+#include "tests/support/studies.hpp"
+
+namespace torsion::test {
+namespace {
+
+/// Two balls that pinch a column of this width at its upper third, 1 mm deep each.
+SceneDescription pinched(double width, ContactModel contact) {
+  constexpr double kHeight = 0.1;
+  SceneDescription scene;
+  BodyDescription body = make_body({make_part(
+      ShapeKind::kBox, {0.5 * width, 0.5 * kHeight, 0.5 * width}, {{0.0, 0.5 * kHeight, 0.0}})});
+  body.elasticity = {1e6, 0.3, 1100.0};
+  body.friction = {0.8, 0.8};
+  body.fixed.kind = FixedKind::kFace;
+  body.fixed.point = glm::dvec3(0.0);
+  body.fixed.normal = {0.0, 1.0, 0.0};
+  body.models.contact = contact;
+  body.models.body = BodyModel::kCompliance;
+  scene.bodies = {body};
+  for (int tool = 0; tool < 2; ++tool) {
+    scene.tools.push_back(make_tool({make_part(ShapeKind::kSphere, glm::dvec3(0.02))}));
+  }
+  return scene;
+}
+
+std::vector<Pose> pinch_poses(double width, double depth) {
+  const double x = 0.5 * width + 0.02 - depth;
+  return {{{-x, 0.08, 0.0}, glm::dquat(1, 0, 0, 0)}, {{x, 0.08, 0.0}, glm::dquat(1, 0, 0, 0)}};
+}
+
+/// How nearly equal both sides' forces are to be, of the force. What one force F does to the column
+/// alone, F l^3 / (3 E I), and what the other takes back of it are both some hundred to a thousand
+/// times the depth (k l^3 / (3 E I) with k the contact's stiffness, 14 N/mm here), and the table of
+/// the body's compliance has them to 1e-5 each.
+double balance_of(double width) {
+  constexpr double kTable = 1e-5;
+  constexpr double kStiffness = 1.4e4;
+  const double second_moment = std::pow(width, 4.0) / 12.0;
+  const double sway = kStiffness * std::pow(0.08, 3.0) / (3.0 * 1e6 * second_moment);
+  return std::max(1e-3, 2.0 * kTable * sway);
+}
+
+class PinchTest : public testing::TestWithParam<double> {};
+
+TEST_P(PinchTest, ComesToRestWithTheSameForceFromBothSides) {
+  const bool extreme = GetParam() == 0.36 || GetParam() == 0.15;
+  if (test::is_left_out(extreme)) {
+    GTEST_SKIP() << test::kLeftOut;
+  }
+  const double width = GetParam() * 0.1;
+  const auto held_force = [width](ContactModel contact) {
+    Hand hand(pinched(width, contact));
+    for (int step = 0; step <= 200; ++step) {
+      hand.step_to(pinch_poses(width, 1e-3 * step / 200.0 - 5e-5));
+    }
+    double least = 1e300;
+    double most = 0.0;
+    for (int step = 0; step < 400; ++step) {
+      hand.step_to(pinch_poses(width, 1e-3 - 5e-5));
+      const double force = glm::length(hand.wrench(0).force);
+      if (step >= 200) {
+        least = std::min(least, force);
+        most = std::max(most, force);
+        EXPECT_NEAR(hand.wrench(0).force.x, -hand.wrench(1).force.x, balance_of(width) * force);
+      }
+    }
+    EXPECT_EQ(hand.clock().faults_ever, 0U);
+    EXPECT_LT(most - least, 1e-6 * most);
+    return most;
+  };
+  const double force = held_force(ContactModel::kPatch);
+  // Springs know nothing of how the material bends under the contact: a few percent.
+  EXPECT_NEAR(held_force(ContactModel::kMdr), force, 0.06 * force);
+}
+
+INSTANTIATE_TEST_SUITE_P(WidthOverHeight, PinchTest,
+                         testing::Values(0.36, 0.32, 0.3, 0.25, 0.2, 0.15));
+
+// Taps of a ball on a half-space, a hundred a second: what the tool's own way makes of a new
+// contact is no jump. The cells' first steps are coarse, so 5 % of the peak.
+TEST(TapTest, AQuickTapIsFeltAsHertzHasIt) {
+  constexpr double kRadius = 0.02;
+  constexpr double kDepth = 3e-4;
+  for (const ContactModel contact : {ContactModel::kMdr, ContactModel::kPatch}) {
+    SceneDescription scene = ball_on_cube();
+    scene.tools[0] = make_tool({make_part(ShapeKind::kSphere, glm::dvec3(kRadius))});
+    BodyDescription& body = scene.bodies[0];
+    body.models.contact = contact;
+    body.models.body = BodyModel::kNone;
+    body.elasticity = {1e6, 0.45, 1100.0};
+    const double modulus = body.elasticity.contact_modulus();
+    const auto hertz = [modulus](double depth) {
+      return depth > 0.0 ? 4.0 / 3.0 * modulus * std::sqrt(kRadius) * std::pow(depth, 1.5) : 0.0;
+    };
+    Hand hand(scene);
+    double farthest = 0.0;
+    for (int step = 0; step < 100; ++step) {
+      const double depth = -kDepth * std::cos(2.0 * 3.14159265358979 * step / 10.0);
+      hand.step_to({{{0.0, 0.1 + kRadius - depth, 0.0}, glm::dquat(1, 0, 0, 0)}});
+      farthest = std::max(farthest, std::abs(hand.wrench().force.y - hertz(depth)));
+    }
+    EXPECT_LT(farthest, 0.05 * hertz(kDepth)) << static_cast<int>(contact);
+  }
+}
+
+/// The whole compliance of squares on a disc under pressure, half-space and body: its least
+/// eigenvalue over the half-space's own, by other squares than the stiffness was made with.
+double least_share(const FootingResponse& response, const Footing& footing,
+                   const Elasticity& elasticity) {
+  constexpr std::uint32_t kSide = 13;
+  std::vector<double> values(influence_count(kSide));
+  fill_influences(elasticity.poisson_ratio, kSide, values);
+  const InfluenceTables tables = influence_tables(values, kSide, 0);
+  const double length = 2.0 * footing.extent / kSide;
+  std::vector<std::array<std::uint32_t, 2>> cells;
+  for (std::uint32_t j = 0; j < kSide; ++j) {
+    for (std::uint32_t i = 0; i < kSide; ++i) {
+      if (std::hypot(2.0 * i + 1.0 - kSide, 2.0 * j + 1.0 - kSide) < kSide) {
+        cells.push_back({i, j});
+      }
+    }
+  }
+  const auto count = static_cast<Eigen::Index>(cells.size());
+  Eigen::MatrixXd half_space(count, count);
+  Eigen::MatrixXd terms(count, static_cast<Eigen::Index>(kSupportTerms));
+  for (Eigen::Index row = 0; row < count; ++row) {
+    const auto& [i, j] = cells[static_cast<std::size_t>(row)];
+    const glm::dvec2 at = length * (glm::dvec2(i, j) + 0.5 - 0.5 * kSide) / footing.reach;
+    const auto of_cell = support_terms(at);
+    for (std::size_t k = 0; k < kSupportTerms; ++k) {
+      terms(row, static_cast<Eigen::Index>(k)) = of_cell[k];
+    }
+    for (Eigen::Index from = 0; from < count; ++from) {
+      const auto& source = cells[static_cast<std::size_t>(from)];
+      half_space(row, from) =
+          tables.of(InfluenceKind::kZZ)[tables.index(source[0], source[1], i, j)] /
+          (length * elasticity.shear_modulus());
+    }
+  }
+  Eigen::MatrixXd normal(terms.cols(), terms.cols());
+  for (Eigen::Index column = 0; column < terms.cols(); ++column) {
+    for (Eigen::Index row = 0; row < terms.cols(); ++row) {
+      normal(row, column) = response.terms[static_cast<std::size_t>(
+          ((2 * kSupportColumn + column) * 3 + 2) * kSupportColumn + row)];
+    }
+  }
+  const Eigen::MatrixXd whole = half_space + terms * normal * terms.transpose();
+  return test::generalized_eigenvalues(whole, 0.5 * (half_space + half_space.transpose()))[0];
+}
+
+TEST(DefiniteResponseTest, LeavesAQuarterOfTheHalfSpaceAndTouchesNothingElse) {
+  const DiscStiffness disc = make_disc_stiffness();
+  const Elasticity elasticity{3e6, 0.5, 1100.0};
+  Footing footing;
+  footing.tangent_x = {1.0, 0.0, 0.0};
+  footing.tangent_y = {0.0, 1.0, 0.0};
+  footing.normal = {0.0, 0.0, 1.0};
+  footing.reach = 0.02;
+  footing.extent = 0.01;
+  std::mt19937 random(7);
+  std::normal_distribution<double> value;
+  for (const double size : {1e-7, 1e-5, 1e-3}) {
+    for (const double sign : {1.0, -1.0}) {
+      // Of every rank and kind: x x' of random x, all three axes.
+      FootingResponse response;
+      for (int k = 0; k < 20; ++k) {
+        std::array<double, 3 * kSupportTerms> x{};
+        std::ranges::generate(x, [&] { return value(random); });
+        for (std::size_t column = 0; column < x.size(); ++column) {
+          for (std::size_t row = 0; row < x.size(); ++row) {
+            const std::size_t at =
+                ((column / kSupportTerms * kSupportColumn + column % kSupportTerms) * 3 +
+                 row / kSupportTerms) *
+                    kSupportColumn +
+                row % kSupportTerms;
+            response.terms[at] += sign * size * x[column] * x[row];
+          }
+        }
+      }
+      const FootingResponse before = response;
+      const bool changed = make_definite(disc, elasticity, footing, response);
+      const double least = least_share(response, footing, elasticity);
+      // The disc's squares are others than the contact's: 5 %.
+      EXPECT_GT(least, 0.95 * (1.0 + kLeastResponse)) << size << " " << sign;
+      if (sign > 0.0) {
+        EXPECT_FALSE(changed) << size;
+      } else if (least_share(before, footing, elasticity) < 0.0) {
+        EXPECT_TRUE(changed) << size;
+      }
+      if (!changed) {
+        EXPECT_EQ(before.terms, response.terms);
+      }
+    }
+  }
+}
+
+TEST(ForceBoundTest, AForceBeyondARigidPunchIsAFaultAndFades) {
+  Hand hand(ball_on_cube());
+  hand.step_to({{glm::dvec3(0.0, 0.151, 0.0), glm::dquat(1, 0, 0, 0)}});
+  hand.move({0.0, -0.0015, 0.0}, {0.0, 1.0, 0.0}, 0.0, 100);
+  ASSERT_EQ(hand.clock().faults_ever, 0U);
+  const double before = hand.wrench().force.y;
+  ASSERT_GT(before, 1.0);
+  Simulation& simulation = hand.simulation();
+  StepContext context{simulation.world, hand.poses, *simulation.scratch};
+  simulation.world.bodies.at<BodyModels>(0).contact = ContactModel::kMdr;
+  simulation.world.regions.at<RegionNormal>(0).force = 1e4;
+  region_wrenches(context);
+  sum_wrenches(context);
+  EXPECT_TRUE(raised(hand.clock().faults, Fault::kForceTooLarge));
+  EXPECT_LT(hand.wrench().force.y, before);
+  EXPECT_GT(hand.wrench().force.y, 0.8 * before);
+}
+
+// A ball's force takes 2/5 of force times depth to reach (Hertz). Five times that force at the same
+// place is still less than a rigid punch would have that holds the samples in contact, but needs
+// 25 times the energy.
+TEST(ForceBoundTest, AForceForWhichNobodyHasWorkedIsAFault) {
+  SceneDescription scene = ball_on_cube();
+  scene.bodies[0].models.contact = ContactModel::kMdr;
+  scene.bodies[0].models.body = BodyModel::kNone;
+  Hand hand(scene);
+  hand.step_to({{glm::dvec3(0.0, 0.151, 0.0), glm::dquat(1, 0, 0, 0)}});
+  hand.move({0.0, -0.0025, 0.0}, {0.0, 1.0, 0.0}, 0.0, 100);
+  ASSERT_EQ(hand.clock().faults_ever, 0U);
+  Simulation& simulation = hand.simulation();
+  StepContext context{simulation.world, hand.poses, *simulation.scratch};
+  RegionNormal& normal = simulation.world.regions.at<RegionNormal>(0);
+  normal.force *= 5.0;
+  region_wrenches(context);
+  EXPECT_TRUE(raised(hand.clock().faults, Fault::kForceTooLarge));
+}
+
+// A step with a wrong force leaves no work behind by which the next wrong one would be allowed.
+TEST(ForceBoundTest, AWrongForceHasDoneNoWork) {
+  SceneDescription scene = ball_on_cube();
+  scene.bodies[0].models.contact = ContactModel::kMdr;
+  scene.bodies[0].models.body = BodyModel::kNone;
+  Hand hand(scene);
+  hand.step_to({{glm::dvec3(0.0, 0.151, 0.0), glm::dquat(1, 0, 0, 0)}});
+  hand.move({0.0, -0.0025, 0.0}, {0.0, 1.0, 0.0}, 0.0, 100);
+  Simulation& simulation = hand.simulation();
+  StepContext context{simulation.world, hand.poses, *simulation.scratch};
+  for (const double times : {1000.0, 5.0}) {
+    simulation.world.regions.at<RegionNormal>(0).force *= times;
+    region_wrenches(context);
+    EXPECT_TRUE(raised(hand.clock().faults, Fault::kForceTooLarge)) << times;
+    hand.move({0.0, -2.5e-5, 0.0}, {0.0, 1.0, 0.0}, 0.0, 1);
+    EXPECT_FALSE(raised(hand.clock().faults, Fault::kForceTooLarge)) << times;
+  }
+}
+
+// Pressed in, dragged about and let go a hundred times: what the sum of the work drifts by is no
+// fault.
+TEST(ForceBoundTest, ALongSessionHasNoFault) {
+  for (const ContactModel model : {ContactModel::kMdr, ContactModel::kPatch}) {
+    SceneDescription scene = ball_on_cube();
+    scene.bodies[0].models.contact = model;
+    scene.bodies[0].models.body = BodyModel::kNone;
+    Hand hand(scene);
+    hand.step_to({{glm::dvec3(0.0, 0.149, 0.0), glm::dquat(1, 0, 0, 0)}});
+    for (int k = 0; k < 100; ++k) {
+      const double side = k % 2 == 0 ? 1.0 : -1.0;
+      hand.move({1e-3 * side, -0.0015, 0.0}, {0.0, 1.0, 0.0}, 0.1 * side, 10);
+      hand.move({0.0, 0.0015, 0.0}, {0.0, 1.0, 0.0}, 0.0, 10);
+    }
+    EXPECT_EQ(hand.clock().faults_ever, 0U);
+  }
+}
+
+}  // namespace
+}  // namespace torsion::test

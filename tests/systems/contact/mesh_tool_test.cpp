@@ -1,0 +1,172 @@
+// Any closed mesh is a tool: a mesh of a ball gives the ball's forces but for its facets, meshes
+// that are not convex give as many regions as they have feet.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "systems/paper/paper.hpp"
+#include "tests/support/contact_scenes.hpp"
+#include "tests/support/directions.hpp"
+#include "tests/systems/geometry/distance_meshes.hpp"
+
+namespace torsion {
+namespace {
+
+using test::Hand;
+using test::kUp;
+using test::kUpright;
+
+PartDescription mesh_part(SurfaceMesh mesh) {
+  PartDescription part;
+  part.node = "mesh";
+  part.shape.kind = ShapeKind::kMesh;
+  part.surface = std::move(mesh);
+  return part;
+}
+
+/// A slab of 0.3 m whose top is y = 0, without a beam skeleton: every region is a flat punch.
+SceneDescription slab_under(PartDescription tool) {
+  SceneDescription scene;
+  scene.bodies.push_back(test::make_body({test::make_part(
+      ShapeKind::kBox, {0.15, 0.05, 0.15}, {glm::dvec3(0.0, -0.05, 0.0), kUpright})}));
+  scene.bodies[0].models.body = BodyModel::kNone;
+  scene.tools.push_back(test::make_tool({std::move(tool)}));
+  return scene;
+}
+
+/// How far the facets of a mesh with its corners on a sphere about the origin lie inside it.
+double depth_of_facets(const SurfaceMesh& mesh, double radius) {
+  double deepest = 0.0;
+  for (const glm::uvec3& t : mesh.triangles) {
+    const glm::dvec3& a = mesh.positions[t.x];
+    const glm::dvec3 normal =
+        glm::normalize(glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a));
+    deepest = std::max(deepest, radius - glm::dot(a, normal));
+  }
+  return deepest;
+}
+
+TEST(MeshToolTest, MeshOfABallPressesAndTwistsLikeTheBall) {
+  const double radius = 0.05;
+  const double depth = 1.5e-3;
+  SurfaceMesh mesh = sphere_mesh(radius, 5);
+  const double facets = depth_of_facets(mesh, radius);
+  const glm::dquat any_way = glm::angleAxis(0.9, glm::normalize(glm::dvec3(1.0, 0.4, -0.3)));
+  for (glm::dvec3& position : mesh.positions) {
+    position = any_way * position;  // the contact is nowhere special on the mesh
+  }
+  Hand exact(slab_under(test::make_part(ShapeKind::kSphere, glm::dvec3(radius))));
+  Hand meshed(slab_under(mesh_part(mesh)));
+  for (Hand* const hand : {&exact, &meshed}) {
+    hand->step_to({{glm::dvec3(0.0, radius + 1e-4, 0.0), kUpright}});
+    hand->move({0.0, -depth - 1e-4, 0.0}, kUp, 0.0, 50);
+    ASSERT_EQ(hand->world().regions.size(), 1U);
+  }
+  // The mesh lies up to `facets` inside the ball, so it is less deep by that at most; its field
+  // adds 1e-5 of the tool's size. Force goes as depth^1.5, torque as depth^2, and the two grids lie
+  // differently: 0.5 %.
+  const double shallower = (facets + 1e-5 * 2.0 * radius) / depth;
+  EXPECT_LT(shallower, 0.04);
+  const double force = exact.wrench().force.y;
+  EXPECT_GT(force, 1.0);
+  EXPECT_GT(meshed.wrench().force.y, force * (1.0 - 1.5 * shallower - 0.005));
+  EXPECT_LT(meshed.wrench().force.y, force * 1.005);
+  EXPECT_NEAR(glm::length(glm::dvec2(meshed.wrench().force.x, meshed.wrench().force.z)), 0.0,
+              0.01 * force);
+
+  for (Hand* const hand : {&exact, &meshed}) {
+    hand->move(glm::dvec3(0.0), kUp, 0.3, 100);
+  }
+  const double torque = exact.wrench().torque.y;
+  EXPECT_LT(torque, 0.0);
+  EXPECT_LT(meshed.wrench().torque.y, torque * (1.0 - 2.0 * shallower - 0.01));
+  EXPECT_GT(meshed.wrench().torque.y, torque * 1.01);
+}
+
+/// An upside-down U along z: two legs of width `leg`, their soles at y = 0.
+SurfaceMesh u_shape_mesh(double half_width, double leg, double height, double half_depth) {
+  const double inner = half_width - leg;
+  SurfaceMesh mesh = prism_mesh({{-half_width, 0.0},
+                                 {-inner, 0.0},
+                                 {-inner, height - leg},
+                                 {inner, height - leg},
+                                 {inner, 0.0},
+                                 {half_width, 0.0},
+                                 {half_width, height},
+                                 {-half_width, height}},
+                                half_depth);
+  // The outline is not star-shaped: its ends are cut into triangles by hand.
+  std::erase_if(mesh.triangles, [](const glm::uvec3& t) {
+    return (t.x < 8) == (t.y < 8) && (t.y < 8) == (t.z < 8);
+  });
+  const glm::uvec3 ends[] = {{0, 1, 2}, {0, 2, 7}, {7, 2, 3}, {7, 3, 6}, {3, 4, 5}, {3, 5, 6}};
+  for (const glm::uvec3& t : ends) {
+    mesh.triangles.emplace_back(t.x, t.z, t.y);
+    mesh.triangles.emplace_back(8 + t.x, 8 + t.y, 8 + t.z);
+  }
+  return mesh;
+}
+
+TEST(MeshToolTest, BothLegsOfAUPressAsFlatPunches) {
+  const double half_width = 0.03;
+  const double leg = 0.015;
+  const double half_depth = 0.0075;  // square soles
+  const double depth = 4e-4;
+  const SceneDescription scene =
+      slab_under(mesh_part(u_shape_mesh(half_width, leg, 0.04, half_depth)));
+  Hand hand(scene);
+  hand.step_to({{glm::dvec3(0.0, 1e-4, 0.0), kUpright}});
+  hand.move({0.0, -depth - 1e-4, 0.0}, kUp, 0.0, 50);
+  ASSERT_EQ(hand.world().regions.size(), 2U);
+  const double area = 2.0 * leg * half_depth;
+  const double radius = std::sqrt(area / std::numbers::pi);
+  const PaperNormalLaw law =
+      paper_normal_law(scene.bodies[0].elasticity.contact_modulus(), radius, 0.0, 0.0);
+  double sides = 0.0;
+  for (std::uint32_t region = 0; region < 2; ++region) {
+    const RegionGeometry& geometry = hand.world().regions.at<RegionGeometry>(region);
+    // The field rounds edges by about a fine cell, 60 mm / 29 / 4 = 0.5 mm; the two of a sole of
+    // 15 mm may shift by half of it each: 3.5 % of its width and as much of its length.
+    EXPECT_NEAR(geometry.area / area, 1.0, 0.07);
+    EXPECT_NEAR(geometry.mean_depth / depth, 1.0, 0.05);
+    EXPECT_NEAR(std::abs(geometry.rest_point.x), half_width - 0.5 * leg, 5e-4);
+    EXPECT_NEAR(geometry.rest_point.y, 0.0, 0.05 * depth);
+    EXPECT_NEAR(geometry.rest_point.z, 0.0, 5e-4);
+    // Force goes as the root of the area and as the depth.
+    EXPECT_NEAR(hand.world().regions.at<RegionNormal>(region).force / (law.linear * depth), 1.0,
+                0.07);
+    sides += geometry.rest_point.x;
+  }
+  EXPECT_NEAR(sides, 0.0, 5e-4);  // one on either side
+  EXPECT_NEAR(hand.wrench().torque.z, 0.0, 0.01 * hand.wrench().force.y * half_width);
+}
+
+TEST(MeshToolTest, ATorusOnItsSideTouchesInOneRing) {
+  const double ring = 0.04;
+  const double tube = 0.015;
+  const double depth = 1e-3;
+  Hand hand(slab_under(mesh_part(torus_mesh(ring, tube, 240, 96))));
+  hand.step_to({{glm::dvec3(0.0, tube + 1e-4, 0.0), kUpright}});
+  hand.move({0.0, -depth - 1e-4, 0.0}, kUp, 0.0, 50);
+  ASSERT_EQ(hand.world().regions.size(), 1U);
+  const RegionGeometry& geometry = hand.world().regions.at<RegionGeometry>(0);
+  // All where the circle of the tube is lower than y = 0; the hole in the middle is none of it.
+  const double half_strip = std::sqrt(2.0 * tube * depth - depth * depth);
+  const double area = 4.0 * std::numbers::pi * ring * half_strip;
+  // Cells of 6 mm, cut along straight lines by the slope at their centres, over a strip of 11 mm
+  // whose slope doubles from its cells' centres to their far sides: a fifth too much.
+  EXPECT_NEAR(geometry.area / area, 1.0, 0.25);
+  EXPECT_NEAR(geometry.largest_depth, depth, 0.05 * depth);
+  // Two thirds of the depth is the mean over the chord of a circle.
+  EXPECT_NEAR(geometry.mean_depth / (2.0 / 3.0 * depth), 1.0, 0.25);
+  // A ring has its middle in the middle, however thin it is.
+  EXPECT_NEAR(glm::length(glm::dvec2(geometry.rest_point.x, geometry.rest_point.z)), 0.0,
+              0.001 * ring);
+}
+
+}  // namespace
+}  // namespace torsion

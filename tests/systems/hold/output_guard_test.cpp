@@ -1,0 +1,141 @@
+#include "systems/hold/output_guard.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "tests/systems/hold/held_tool.hpp"
+
+namespace torsion {
+namespace {
+
+using test::kPeriod;
+
+GuardLimits limits() {
+  GuardLimits limits;
+  limits.largest_force = 8.0;
+  limits.largest_torque = 0.2;
+  limits.largest_force_rate = 4000.0;
+  limits.largest_torque_rate = 100.0;
+  return limits;
+}
+
+GuardInput wants(double force, double torque = 0.0) {
+  GuardInput input;
+  input.wanted = {{0.0, force, 0.0}, {0.0, torque, 0.0}};
+  return input;
+}
+
+OutputGuard live(const GuardInput& input) {
+  OutputGuard guard;
+  for (int i = 0; i < 200; ++i) {
+    guard_output(guard, limits(), input, kPeriod);
+  }
+  return guard;
+}
+
+TEST(OutputGuardTest, SendsWhatIsWantedOnceItHasRisen) {
+  OutputGuard guard;
+  double before = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    const double force = guard_output(guard, limits(), wants(4.0, 0.1), kPeriod).force.y;
+    EXPECT_GE(force, before);
+    EXPECT_LE(force - before, 4.0 * kPeriod / limits().rise + 1e-12);
+    before = force;
+  }
+  EXPECT_EQ(guard.state, GuardState::kLive);
+  EXPECT_EQ(guard.sent.force.y, 4.0);
+  EXPECT_EQ(guard.sent.torque.y, 0.1);
+}
+
+TEST(OutputGuardTest, WaitsForTheHandle) {
+  OutputGuard guard;
+  GuardInput input = wants(4.0);
+  input.distance = 0.05;
+  for (int i = 0; i < 500; ++i) {
+    EXPECT_EQ(guard_output(guard, limits(), input, kPeriod).force, glm::dvec3(0.0));
+  }
+  EXPECT_EQ(guard.state, GuardState::kWaiting);
+}
+
+TEST(OutputGuardTest, FallsToZeroWhenThePhysicsIsSilent) {
+  const GuardInput input = wants(4.0, 0.1);
+  OutputGuard guard = live(input);
+  double before = guard.sent.force.y;
+  for (int i = 1; i <= 13; ++i) {
+    GuardInput silent = input;
+    silent.result_age = i * kPeriod;
+    const Wrench sent = guard_output(guard, limits(), silent, kPeriod);
+    if (i <= 3) {
+      EXPECT_EQ(sent.force.y, 4.0) << i;
+    } else {
+      EXPECT_LT(sent.force.y, before) << i;
+      EXPECT_LE(before - sent.force.y, 4.0 * 0.1 + 1e-12) << i;  // a tenth of 10 ms
+    }
+    before = sent.force.y;
+  }
+  EXPECT_EQ(guard.sent.force, glm::dvec3(0.0));  // 3 ms and 10 ms
+  EXPECT_EQ(guard.sent.torque, glm::dvec3(0.0));
+}
+
+TEST(OutputGuardTest, FallsAtAFaultAtOnceAndComesBackOnlyThroughWaiting) {
+  const GuardInput input = wants(4.0);
+  OutputGuard guard = live(input);
+  GuardInput faulty = input;
+  faulty.faulty = true;
+  for (int i = 0; i < 10; ++i) {
+    guard_output(guard, limits(), faulty, kPeriod);
+  }
+  EXPECT_EQ(guard.sent.force, glm::dvec3(0.0));
+  GuardInput far = input;
+  far.distance = 0.1;
+  guard_output(guard, limits(), far, kPeriod);
+  EXPECT_EQ(guard.state, GuardState::kWaiting);
+  guard_output(guard, limits(), input, kPeriod);
+  EXPECT_EQ(guard.state, GuardState::kRising);
+}
+
+TEST(OutputGuardTest, NeverSendsWhatIsNotFinite) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {nan, std::numeric_limits<double>::infinity()}) {
+    OutputGuard guard = live(wants(4.0));
+    for (int i = 0; i < 20; ++i) {
+      const Wrench sent = guard_output(guard, limits(), wants(bad, bad), kPeriod);
+      EXPECT_TRUE(std::isfinite(sent.force.y) && std::isfinite(sent.torque.y));
+    }
+    EXPECT_EQ(guard.sent.force, glm::dvec3(0.0));
+  }
+}
+
+TEST(OutputGuardTest, KeepsToItsLimitsOfSizeAndRate) {
+  OutputGuard guard = live(wants(0.0));
+  double before = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    const double force = guard_output(guard, limits(), wants(100.0, 5.0), kPeriod).force.y;
+    EXPECT_LE(force - before, 4.0 + 1e-12);  // 4000 N/s
+    before = force;
+  }
+  EXPECT_NEAR(guard.sent.force.y, 8.0, 1e-12);
+  EXPECT_NEAR(guard.sent.torque.y, 0.2, 1e-12);
+}
+
+TEST(OutputGuardTest, AFaultWhileItRisesFallsFromWhereItIs) {
+  OutputGuard guard;
+  for (int i = 0; i < 20; ++i) {
+    guard_output(guard, limits(), wants(4.0), kPeriod);
+  }
+  ASSERT_EQ(guard.state, GuardState::kRising);
+  const double reached = guard.sent.force.y;
+  GuardInput faulty = wants(4.0);
+  faulty.faulty = true;
+  EXPECT_LT(guard_output(guard, limits(), faulty, kPeriod).force.y, reached);
+  for (int i = 0; i < 10; ++i) {
+    guard_output(guard, limits(), faulty, kPeriod);
+  }
+  EXPECT_EQ(guard.sent.force, glm::dvec3(0.0));
+}
+
+}  // namespace
+}  // namespace torsion

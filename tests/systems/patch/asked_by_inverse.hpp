@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdlib>
+
+#include "systems/half_space/local_inverse.hpp"
+
+namespace torsion::test {
+
+/// What a displacement of a cell asks for at one that is (x, y) cells away.
+inline double asked_at(const LocalInverse& inverse, int x, int y) {
+  const double rows[2][2] = {{inverse.here, inverse.along_y}, {inverse.along_x, inverse.corner}};
+  return std::abs(x) <= 1 && std::abs(y) <= 1 ? rows[std::abs(x)][std::abs(y)] : 0.0;
+}
+
+}  // namespace torsion::test

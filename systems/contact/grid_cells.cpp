@@ -9,7 +9,6 @@
 #include "systems/contact/tool_surface.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
-#include "systems/math/widest.hpp"
 #include "systems/patch/grid.hpp"
 
 namespace torsion {

@@ -4,11 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "systems/geometry/distance_shapes.hpp"
 #include "systems/geometry/gradient_length.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
-#include "systems/math/widest.hpp"
 
 namespace torsion {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
-#include "systems/math/widest.hpp"
 
 namespace torsion {
 namespace {

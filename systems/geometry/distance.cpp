@@ -9,7 +9,7 @@
 
 #include "systems/geometry/distance_field.hpp"
 #include "systems/geometry/distance_shapes.hpp"
-#include "systems/math/widest.hpp"
+#include "systems/math/lanes.hpp"
 
 namespace torsion {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "systems/geometry/distance_shapes.hpp"
+#include "systems/math/lanes.hpp"
 
 namespace torsion {
 namespace {

@@ -11,7 +11,6 @@
 #include <glm/geometric.hpp>
 
 #include "systems/geometry/distance_mesh.hpp"
-#include "systems/model/cache.hpp"
 
 namespace torsion {
 namespace {
@@ -19,8 +18,6 @@ namespace {
 constexpr double kMargin = 1.5;  // coarse cells around the mesh's box
 constexpr double kBand =
     0.25;  // coarse cells: how far from the surface a cell may be and still get a brick
-constexpr std::uint32_t kFieldVersion =
-    1;  // of the bytes in the cache: raise it when the same mesh gives others
 
 /// Calls f(row) for every row below `count`, from `threads` threads; rows must not share what they
 /// write.
@@ -263,29 +260,6 @@ std::optional<BuiltField> field_from_bytes(std::span<const std::byte> bytes) {
     return std::nullopt;
   }
   return field;
-}
-
-Result<BuiltField> load_or_build_distance_field(const FieldOfMesh& mesh,
-                                                const FieldOptions& options) {
-  const std::array<std::uint32_t, 2> resolution{options.coarse_cells, options.subdivision};
-  std::vector<std::span<const std::byte>> content{std::as_bytes(std::span(resolution)),
-                                                  std::as_bytes(std::span(mesh.part.positions)),
-                                                  std::as_bytes(std::span(mesh.part.triangles))};
-  if (&mesh.solid != &mesh.part) {
-    content.push_back(std::as_bytes(std::span(mesh.solid.positions)));
-    content.push_back(std::as_bytes(std::span(mesh.solid.triangles)));
-  }
-  const CacheKey key = cache_key("distance_field", kFieldVersion, content);
-  if (const std::optional<std::vector<std::byte>> cached = load_cached(key)) {
-    if (std::optional<BuiltField> field = field_from_bytes(*cached)) {
-      return *std::move(field);
-    }
-  }
-  Result<BuiltField> built = build_distance_field(mesh, options);
-  if (built) {
-    store_cached(key, to_bytes(built.value()));  // a cache that cannot be written only costs time
-  }
-  return built;
 }
 
 }  // namespace torsion

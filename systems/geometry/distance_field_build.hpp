@@ -42,11 +42,6 @@ struct FieldOfMesh {
 /// extent.
 Result<BuiltField> build_distance_field(const FieldOfMesh& mesh, const FieldOptions& options = {});
 
-/// The same, from the user's cache where the same mesh was met before (systems/model/cache.hpp);
-/// stores it there if not.
-Result<BuiltField> load_or_build_distance_field(const FieldOfMesh& mesh,
-                                                const FieldOptions& options = {});
-
 /// A field as bytes and back; nullopt where the bytes are no such field.
 std::vector<std::byte> to_bytes(const BuiltField& field);
 std::optional<BuiltField> field_from_bytes(std::span<const std::byte> bytes);

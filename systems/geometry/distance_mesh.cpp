@@ -12,7 +12,7 @@
 #include <glm/geometric.hpp>
 
 #include "ecs/assert.hpp"
-#include "systems/geometry/distance_shapes.hpp"
+#include "systems/math/lanes.hpp"
 
 namespace torsion {
 

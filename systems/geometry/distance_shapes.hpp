@@ -6,14 +6,9 @@
 #include <cmath>
 
 #include "systems/geometry/distance.hpp"
+#include "systems/math/lanes.hpp"
 
 namespace torsion {
-
-/// The larger of two numbers, as one instruction (std::max takes references and hinders
-/// vectorisation).
-inline double larger(double a, double b) {
-  return a > b ? a : b;
-}
 
 /// Sphere about the origin. At the centre the gradient is +x.
 struct SphereDistance {

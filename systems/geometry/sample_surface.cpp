@@ -12,7 +12,7 @@
 
 #include "systems/geometry/sample_surface_pieces.hpp"
 #include "systems/geometry/sample_surface_tree.hpp"
-#include "systems/math/widest.hpp"
+#include "systems/math/lanes.hpp"
 
 namespace torsion {
 namespace {

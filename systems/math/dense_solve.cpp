@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "systems/math/widest.hpp"
+#include "systems/math/lanes.hpp"
 
 namespace torsion {
 namespace {

@@ -4,9 +4,23 @@
 #include <cstddef>
 #include <numeric>
 
-#include "systems/geometry/distance_shapes.hpp"
+// TORSION_WIDEST before a function compiles its loops for the widest vectors that the machine has,
+// chosen when the program starts. Without fused multiply-add (CMakeLists.txt) all versions give the
+// same bits. Sanitizers start too late for the choice.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define TORSION_WIDEST __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define TORSION_WIDEST
+#endif
 
 namespace torsion {
+
+/// The larger of two numbers, as one instruction (std::max takes references and hinders
+/// vectorisation).
+inline double larger(double a, double b) {
+  return a > b ? a : b;
+}
 
 /// How many cells a loop takes at a time that looks for a largest value: one at a time would wait
 /// for the one before. Columns of cells are as long as a multiple of that (Scratch).

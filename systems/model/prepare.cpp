@@ -11,6 +11,7 @@
 #include "systems/half_space/layer_kernel.hpp"
 #include "systems/half_space/layer_thickness.hpp"
 #include "systems/math/frames.hpp"
+#include "systems/model/cached_distance_field.hpp"
 #include "systems/model/choose_models.hpp"
 #include "systems/model/prepare_anchors.hpp"
 #include "systems/model/prepare_compliance.hpp"

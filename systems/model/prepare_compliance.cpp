@@ -12,6 +12,7 @@
 
 #include "systems/geometry/distance.hpp"
 #include "systems/geometry/fixed_volume.hpp"
+#include "systems/geometry/lattice.hpp"
 #include "systems/model/finite_elements/compliance.hpp"
 #include "systems/model/finite_elements/solid_surface.hpp"
 #include "systems/model/prepare_anchors.hpp"
@@ -116,27 +117,21 @@ void append_values(const Eigen::MatrixXd& matrix, std::size_t rows,
   }
 }
 
-constexpr double kFewestGridCells = 8.0;  // along any side (build_solid_grid)
+constexpr double kFewestCells = 8.0;  // along any side (build_solid_grid)
 
 /// Cells of a lattice over the bounds, in all.
-double cells_of(const glm::dvec3& extent, std::uint32_t along) {
-  const double longest = std::max({extent.x, extent.y, extent.z});
-  const glm::dvec3 cells = glm::max(extent * (along / longest), glm::dvec3(kFewestGridCells));
-  return cells.x * cells.y * cells.z;
-}
-
 /// Elements through a wall, whichever way it stands: along the lattice's coarsest axis but those in
 /// which the body is no thicker than the wall and has eight.
 double across_wall(const glm::dvec3& extent, std::uint32_t elements, double wall) {
   const double longest = std::max({extent.x, extent.y, extent.z});
   double coarsest = 0.0;  // m
   for (int axis = 0; axis < 3; ++axis) {
-    const double cells = std::max(kFewestGridCells, elements * extent[axis] / longest);
+    const double cells = std::max(kFewestCells, elements * extent[axis] / longest);
     if (extent[axis] > 1.5 * wall) {
       coarsest = std::max(coarsest, extent[axis] / cells);
     }
   }
-  return coarsest > 0.0 ? wall / coarsest : kFewestGridCells;
+  return coarsest > 0.0 ? wall / coarsest : kFewestCells;
 }
 
 /// Of the bounds' volume, what is in the solid.
@@ -163,7 +158,7 @@ std::uint32_t elements_for_walls(const ElasticSolid& solid, double wall, std::ui
   const glm::dvec3 extent = solid.bounds.highest - solid.bounds.lowest;
   const double filled = filled_share(solid);
   while (elements < kMost && across_wall(extent, elements, wall) < kAcrossWall &&
-         filled * cells_of(extent, elements + 1) <= kInAll) {
+         filled * lattice_cells(extent, elements + 1) <= kInAll) {
     ++elements;
   }
   return elements;
@@ -201,16 +196,6 @@ Result<Done> holds_walls(const ElasticSolid& solid, double wall, std::uint32_t e
 }
 
 }  // namespace
-
-std::uint32_t compliance_elements(const Bounds& bounds) {
-  constexpr double kInAll = 4500.0;
-  const glm::dvec3 extent = bounds.highest - bounds.lowest;
-  std::uint32_t elements = 16;
-  while (elements < 40 && cells_of(extent, elements + 1) <= kInAll) {
-    ++elements;
-  }
-  return elements;
-}
 
 Result<PreparedCompliance> prepare_compliance(const BodyDescription& description,
                                               const World& world, std::uint32_t row,

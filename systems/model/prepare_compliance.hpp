@@ -17,10 +17,6 @@ struct PreparedCompliance {
   std::vector<ComplianceValue> values;  // as OwnedRows::compliance
 };
 
-/// Elements along the longest side: as many as a cube of 16 has in all, and at least 16. Bodies
-/// with thin walls get more.
-std::uint32_t compliance_elements(const Bounds& bounds);
-
 /// Where the body is clamped: its fixed face or volumes; at a fixed point a ball of a quarter of
 /// the body's shortest side, because a point cannot hold an elastic body. Load time only; the first
 /// time for a shape and clamp it takes seconds, then it comes from the cache. The same input gives

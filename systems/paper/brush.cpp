@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "systems/contact/friction_decay.hpp"
-#include "systems/geometry/distance_shapes.hpp"
-#include "systems/math/widest.hpp"
+#include "systems/math/lanes.hpp"
 
 namespace torsion {
 namespace {

@@ -4,9 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "systems/geometry/distance_shapes.hpp"
 #include "systems/math/frames.hpp"
-#include "systems/math/widest.hpp"
+#include "systems/math/lanes.hpp"
 #include "systems/scratch.hpp"
 
 namespace torsion {

@@ -6,9 +6,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "systems/geometry/distance_shapes.hpp"
 #include "systems/half_space/local_inverse.hpp"
-#include "systems/math/widest.hpp"
+#include "systems/math/lanes.hpp"
 #include "systems/patch/disc_projection.hpp"
 #include "systems/patch/sums.hpp"
 

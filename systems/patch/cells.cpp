@@ -7,9 +7,8 @@
 #include <glm/geometric.hpp>
 
 #include "systems/contact/rim_cells.hpp"
-#include "systems/geometry/distance_shapes.hpp"
 #include "systems/math/frames.hpp"
-#include "systems/math/widest.hpp"
+#include "systems/math/lanes.hpp"
 #include "systems/patch/passes.hpp"
 #include "systems/patch/sums.hpp"
 

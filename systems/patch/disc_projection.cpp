@@ -7,9 +7,8 @@
 #include <Eigen/Dense>
 #include <glm/geometric.hpp>
 
-#include "systems/geometry/distance_shapes.hpp"
+#include "systems/math/lanes.hpp"
 #include "systems/math/wide_lanes.hpp"
-#include "systems/math/widest.hpp"
 #include "systems/patch/passes.hpp"
 
 namespace torsion {

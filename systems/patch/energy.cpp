@@ -8,7 +8,7 @@
 #include "systems/contact/region_motion.hpp"
 #include "systems/contact/stuck_stiffness.hpp"
 #include "systems/math/frames.hpp"
-#include "systems/math/widest.hpp"
+#include "systems/math/lanes.hpp"
 #include "systems/patch/passes.hpp"
 
 namespace torsion {

@@ -10,10 +10,9 @@
 #include "systems/contact/support/contact_load.hpp"
 #include "systems/contact/support/footing_response.hpp"
 #include "systems/contact/support/support_field.hpp"
-#include "systems/geometry/distance_shapes.hpp"
 #include "systems/math/frames.hpp"
+#include "systems/math/lanes.hpp"
 #include "systems/math/wide_lanes.hpp"
-#include "systems/math/widest.hpp"
 
 namespace torsion {
 namespace {

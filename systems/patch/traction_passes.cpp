@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include "systems/geometry/distance_shapes.hpp"
-#include "systems/math/widest.hpp"
+#include "systems/math/lanes.hpp"
 
 namespace torsion {
 namespace {

@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <glm/geometric.hpp>
 
+#include "systems/math/lanes.hpp"
 #include "systems/math/least_squares.hpp"
-#include "systems/math/widest.hpp"
 
 namespace torsion {
 

@@ -12,7 +12,7 @@
 #include "systems/contact/support/footing.hpp"
 #include "systems/contact/support/support_field.hpp"
 #include "systems/math/frames.hpp"
-#include "systems/math/widest.hpp"
+#include "systems/math/lanes.hpp"
 #include "systems/patch/grid.hpp"
 #include "systems/scratch.hpp"
 

@@ -8,8 +8,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "systems/math/lanes.hpp"
 #include "systems/math/smooth_step.hpp"
-#include "systems/math/widest.hpp"
 #include "systems/surface/region_field.hpp"
 
 namespace torsion {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "systems/math/dense_solve.hpp"
-#include "systems/math/widest.hpp"
+#include "systems/math/lanes.hpp"
 
 namespace torsion {
 namespace {

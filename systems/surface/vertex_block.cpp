@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "systems/math/widest.hpp"
+#include "systems/math/lanes.hpp"
 #include "systems/surface/turn_vertex.hpp"
 
 namespace torsion {

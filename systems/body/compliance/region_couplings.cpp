@@ -5,10 +5,9 @@
 #include <Eigen/Core>
 #include <glm/geometric.hpp>
 
-#include "systems/half_space/fields.hpp"
+#include "systems/half_space/coupling.hpp"
 #include "systems/half_space/layer_coupling.hpp"
 #include "systems/half_space/layer_thickness.hpp"
-#include "systems/model/finite_elements/compliance.hpp"
 
 namespace torsion {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "systems/contact/support/support_field.hpp"
 #include "systems/math/frames.hpp"
-#include "systems/math/widest.hpp"
+#include "systems/math/lanes.hpp"
 #include "systems/mdr/smooth_contact.hpp"
 #include "systems/patch/grid.hpp"
 

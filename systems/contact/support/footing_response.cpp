@@ -1,6 +1,6 @@
 #include "systems/contact/support/footing_response.hpp"
 
-#include "systems/math/widest.hpp"
+#include "systems/math/lanes.hpp"
 
 namespace torsion {
 namespace {

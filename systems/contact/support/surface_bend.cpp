@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 
 #include "systems/geometry/distance.hpp"
+#include "systems/geometry/lattice.hpp"
 #include "systems/math/frames.hpp"
-#include "systems/model/prepare_compliance.hpp"
 
 namespace torsion {
 namespace {

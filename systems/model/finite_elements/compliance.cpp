@@ -185,20 +185,6 @@ Eigen::MatrixXd rows_of_ports(const Eigen::MatrixXd& rows, Eigen::Index first) {
   return chosen;
 }
 
-/// Motion at `to` under unit wrenches at `from`, through from's half-space.
-Matrix6 half_space_response(const Port& to, const Port& from, const Elasticity& elasticity) {
-  Matrix6 response;
-  for (int column = 0; column < 6; ++column) {
-    const MaterialMotion motion =
-        half_space_motion(from, elasticity, unit_wrench(column), to.position);
-    for (int axis = 0; axis < 3; ++axis) {
-      response(axis, column) = motion.displacement[axis];
-      response(3 + axis, column) = motion.rotation[axis];
-    }
-  }
-  return response;
-}
-
 /// How far the whole compliance between the ports, half-spaces included, is from symmetric.
 double asymmetry_of(const Problem& problem, const Eigen::MatrixXd& smooth) {
   const Eigen::Index each = problem.width;
@@ -223,11 +209,6 @@ double asymmetry_of(const Problem& problem, const Eigen::MatrixXd& smooth) {
 }
 
 }  // namespace
-
-Matrix6 half_space_coupling(const Port& to, const Port& from, const Elasticity& elasticity) {
-  return 0.5 * (half_space_response(to, from, elasticity) +
-                half_space_response(from, to, elasticity).transpose());
-}
 
 Result<SmoothCompliance> build_smooth_compliance(const ElasticSolid& solid,
                                                  std::span<const Port> ports,

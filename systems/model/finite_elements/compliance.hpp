@@ -11,7 +11,7 @@
 #include "ecs/components.hpp"
 #include "ecs/result.hpp"
 #include "systems/geometry/distance.hpp"
-#include "systems/half_space/fields.hpp"
+#include "systems/half_space/coupling.hpp"
 #include "systems/model/expected_place.hpp"
 
 namespace torsion {
@@ -50,13 +50,6 @@ struct SmoothCompliance {
                                     // before it was made symmetric: |C - C'| / |C|, Frobenius
                                     // norms, rotations times half the longest side
 };
-
-/// Motion (translation, rotation) of the material at `to` under a wrench (force, torque) at `from`
-/// as far as half-spaces have it: the mean of the field of from's half-space at `to` and, by
-/// reciprocity, of to's at `from`. The two are the same on one plane, and for forces at nu = 0.5.
-/// @param to, from  not at one place
-Eigen::Matrix<double, 6, 6> half_space_coupling(const Port& to, const Port& from,
-                                                const Elasticity& elasticity);
 
 /// Solves for the smooth compliance by finite elements. For each unit wrench at a port the
 /// displacement is split into the half-space's closed form and a rest that is smooth near the port;

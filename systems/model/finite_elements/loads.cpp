@@ -208,12 +208,6 @@ void add_left_out(const SolidGrid& grid, const Port& port, LeftOut left_out, Por
 
 }  // namespace
 
-Wrench unit_wrench(int column) {
-  Wrench wrench;
-  (column < 3 ? wrench.force : wrench.torque)[column % 3] = 1.0;
-  return wrench;
-}
-
 PortLoads loads_of_port(const SolidGrid& grid, const Elasticity& elasticity, const Port& port,
                         double shortest_side, int columns) {
   const auto nodes = static_cast<Eigen::Index>(grid.nodes.size());

@@ -13,10 +13,6 @@ namespace torsion {
 /// about, the body's axes; the first three alone where forces are all.
 using WrenchColumns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, Eigen::Dynamic, 6>;
 
-/// A unit force along, or torque about, a body axis.
-/// @param column  of WrenchColumns
-Wrench unit_wrench(int column);
-
 /// What drives the smooth part of the displacement under unit wrenches at a port.
 struct PortLoads {
   WrenchColumns forces;  // N, at all nodes

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "systems/geometry/distance_field_build.hpp"
+#include "systems/model/cached_distance_field.hpp"
 #include "tests/support/contact_scenes.hpp"
 
 namespace {

@@ -15,6 +15,7 @@
 #include "systems/geometry/distance_field_build.hpp"
 #include "systems/geometry/distance_mesh.hpp"
 #include "systems/geometry/distance_shapes.hpp"
+#include "systems/model/cached_distance_field.hpp"
 #include "tests/systems/geometry/distance_meshes.hpp"
 #include "tests/systems/geometry/field_world.hpp"
 

@@ -1,163 +1,35 @@
 #pragma once
 
-#include <cstdint>
 #include <span>
-#include <vector>
 
-#include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
-
-#include "ecs/column.hpp"
-#include "ecs/commands.hpp"
-#include "ecs/components.hpp"
 #include "ecs/world.hpp"
-#include "systems/body/skeleton/main_beam.hpp"
-#include "systems/contact/group_points.hpp"
-#include "systems/geometry/distance.hpp"
-#include "systems/mdr/layers.hpp"
-#include "systems/patch/cells.hpp"
-#include "systems/patch/definite_response.hpp"
-#include "systems/patch/solver.hpp"
+#include "systems/body/compliance/compliance.hpp"
+#include "systems/body/skeleton/skeleton.hpp"
+#include "systems/contact/scratch.hpp"
+#include "systems/contact/step_context.hpp"
+#include "systems/mdr/places.hpp"
+#include "systems/paper/carry_tractions.hpp"
+#include "systems/patch/scratch.hpp"
 #include "systems/surface/ring_turns.hpp"
 
 namespace torsion {
 
-/// A point of a tool's surface inside a body.
-struct ContactPoint {
-  glm::dvec3 position{0.0};   // m, body
-  double depth = 0.0;         // m, > 0
-  std::uint32_t cluster = 0;  // which group of points of its pair it belongs to: 0, 1, ...
-};
-
-/// The contact points of one tool on one body.
-struct ContactPair {
-  std::uint32_t tool = 0;
-  std::uint32_t body = 0;
-  Range points;  // in Scratch::points
-  Range near;    // in Scratch::near_pairs, rows counted from points.first
-  std::uint32_t clusters = 0;
-};
-
-/// A candidate sample while one pair is searched.
-struct Candidate {
-  std::uint32_t sample = 0;  // row in World::samples
-  double distance = 0.0;     // m, to the body; negative inside
-};
-
-/// A sample of a tool's surface while one pair is searched; what it says counts where it is
-/// stamped.
-struct SampleState {
-  double distance = 0.0;    // m, to the body
-  std::uint32_t stamp = 0;  // Scratch::stamp of the search that has found it
-  std::uint32_t point = 0;  // its row in Scratch::points, or kNoRow
-};
-
-/// A region that continues, begins or ends in this step, for group_regions.
-struct ClusterOwner {
-  std::uint32_t region =
-      kNoRow;  // row in `regions`; kNoRow: nobody continues it, a new region forms
-  double overlap = 0.0;
-  std::uint32_t split_from = kNoRow;  // nobody continues it, but it lies over this region
-};
-
-/// The region's block of cells, by number: it does not move when rows do.
-inline std::uint32_t block_of(const RegionIdentity& region) {
-  return region.cells.first / region.cells.count;
-}
-
-/// Which of a pair's clusters a region continues in this step.
-struct RegionPoints {
-  Range points;                    // in Scratch::points: all of the pair
-  std::uint32_t cluster = kNoRow;  // which of them; kNoRow: none, it lives by its cells alone
-};
-
-/// The cells of one region as columns, in the grid's frame.
-struct CellColumns {
-  DistanceColumns points;             // cells' centres on the tool's underside
-  std::span<double> tool_x, tool_y;   // how much higher the tool is farther along x, y
-  std::span<double> gradient_square;  // of its distance, of the length: 1 but at a mesh's edges
-  std::span<double> depth;            // m, as in CellGeometry
-  std::span<double> depth_change;     // m, across the cell
-  std::span<double> coverage;         // as in CellGeometry
-  std::span<double> bearing;          // likewise
-  // Of a cell what lies under the tool, and how stiff it is for that, where the tool has rims.
-  std::span<double> rim_share, rim_bearing;
-};
-
-/// Those of a region's cells that are not yet on the tool's surface.
-struct LeftCells {
-  std::span<std::uint32_t> cells;
-  DistanceColumns points;
-  std::span<double> tool_x, tool_y, gradient_square;  // as in CellColumns
-};
-
-/// How far the body as a whole has moved the cells of one region, beside its RegionSupport, m:
-/// along the grid's axes and into the body.
-struct SupportColumns {
-  std::span<double> x, y, z;
-};
-
-/// What a place on the body carries from one grid to the next: traction times coverage along x and
-/// y, Pa; coverage, as a share of the cell; kinetic share, as in CellTraction. In one vector, for
-/// all four go the same way.
-using CarriedCell = glm::dvec4;
-
-/// Memory that the systems of one step share. Reserved at load; nothing in it outlives a step, so
-/// that a saved world replays without it.
+/// Memory of the systems of one step, room by room. Reserved at load; nothing in it outlives a
+/// step, so that a saved world replays without it.
 struct Scratch {
-  // detect_contacts
-  std::vector<SampleState> sample_states;    // (samples)
-  std::vector<std::uint64_t> found_samples;  // (samples of a tool) a bit each
-  std::vector<std::uint32_t> walk;           // (balls of a tool) those to look at, in turn
-  std::uint32_t stamp = 0;
-  std::vector<Candidate> candidates;
-  std::vector<ContactPoint> points;
-  std::vector<NearPair> near_pairs;  // points of neighbouring samples
-  std::vector<ContactPair> pairs;
-  // group_points
-  std::vector<std::uint32_t> order;
-  std::vector<std::uint32_t> parent;
-  std::vector<glm::dvec3> cluster_points;
-  // group_regions
-  std::vector<ClusterOwner> owners;  // (kMaxRegionsPerBody) of one pair's clusters
-  std::vector<double> overlaps;      // (regions of the pair x clusters)
-  Commands<RegionTable> region_commands;
-  std::vector<RegionPoints>
-      region_points;  // (regions) by block of cells, which does not move when rows do
-  // region_grids
-  CellColumns cell_columns;                // (cells of one region)
-  LeftCells left_cells;                    // likewise
-  std::vector<CarriedCell> carried_cells;  // (cells of one region and a border of one around them)
-  std::vector<std::uint32_t> near_parts;   // (parts of all bodies and tools)
-
-  // main_beams
-  std::vector<MainBeam> main_beams;  // (regions) by block of cells
-
-  // compliance
-  std::vector<double> compliance_matrix;     // (6 kMaxRegionsPerBody)^2, row-major
-  std::vector<double> compliance_copy;       // likewise
-  std::vector<double> compliance_inverse;    // likewise
-  std::vector<double> compliance_residuals;  // (6 kMaxRegionsPerBody)
-
-  // mdr_forces
-  MdrTables mdr_tables;  // constant; empty without contact model mdr
-  // region_fields
-  RingProfiles ring_profiles;  // constant; empty without contact model patch
-  // patch_forces
-  DiscStiffness disc_stiffness;                // constant; empty without patch and compliance
-  PatchColumns patch_columns;                  // (cells of one region)
-  PatchPlaces patch_places;                    // likewise
-  SupportColumns support_columns;              // (cells of one region)
-  std::vector<double> patch_support;           // (kSupportTerms x cells of one region)
-  PatchWork patch_work;                        // likewise
-  HeldBefore held_before;                      // (cells of one region) while its grid moves
-  std::vector<CellTraction> tractions_before;  // likewise
-
-  Column<double> column_memory;            // what the columns above are in
-  std::vector<std::uint32_t> cell_memory;  // what the cells of left_cells are in
+  ContactScratch contact;
+  PaperScratch paper;
+  MdrTables mdr;  // constant; empty without contact model mdr
+  PatchScratch patch;
+  SkeletonScratch skeleton;
+  ComplianceScratch compliance;
+  RingProfiles rings;  // constant; empty without contact model patch
 
   /// Takes all memory that a step of `world` can need.
   void reserve(const World& world);
+
+  /// What the systems of a step of `world` get.
+  StepContext context(World& world, std::span<const Pose> tool_poses);
 };
 
 }  // namespace torsion

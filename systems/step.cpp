@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "systems/body/compliance/compliance.hpp"
 #include "systems/body/skeleton/skeleton.hpp"
@@ -13,6 +14,7 @@
 #include "systems/contact/region_wrenches.hpp"
 #include "systems/mdr/mdr.hpp"
 #include "systems/mdr/smooth_contact.hpp"
+#include "systems/model/prepare.hpp"
 #include "systems/paper/carry_tractions.hpp"
 #include "systems/paper/paper.hpp"
 #include "systems/patch/patch.hpp"
@@ -120,9 +122,24 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
+Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options) {
+  Result<PreparedWorld> prepared = prepare_world(scene, options);
+  if (!prepared) {
+    return prepared.error();
+  }
+  Simulation simulation;
+  simulation.world = std::move(prepared.value().world);
+  simulation.choices = std::move(prepared.value().choices);
+  simulation.united_nodes = std::move(prepared.value().united_nodes);
+  simulation.scratch->reserve(simulation.world);
+  simulation.schedule = Schedule<StepContext>(step_systems(1.0 / options.rate),
+                                              simulation.scratch->context(simulation.world, {}));
+  return simulation;
+}
+
 void step(Simulation& simulation, std::span<const Pose> tool_poses) {
   TORSION_ASSERT(tool_poses.size() == simulation.world.tools.size());
-  StepContext context{simulation.world, tool_poses, *simulation.scratch};
+  StepContext context = simulation.scratch->context(simulation.world, tool_poses);
   simulation.schedule.run(context, simulation.world.clock.at<Clock>(0).step);
   Clock& clock = simulation.world.clock.at<Clock>(0);
   clock.faults_ever |= clock.faults;

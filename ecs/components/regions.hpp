@@ -24,6 +24,11 @@ struct RegionIdentity {
   Range cells;              // its rows in `cells`: grid_side x grid_side, x fastest
 };
 
+/// The region's block of cells, by number: it does not move when rows do.
+inline std::uint32_t block_of(const RegionIdentity& region) {
+  return region.cells.first / region.cells.count;
+}
+
 /// The grid's placement. Its x and y axes keep their direction as well as the turning normal lets
 /// them. Written by: group_regions and region_grids.
 struct RegionFrame {

@@ -53,7 +53,7 @@ struct CellMoments {
   }
 };
 
-/// Of the cells' coverage, as find_cells leaves it in Scratch::cell_columns.
+/// Of the cells' coverage, as find_cells leaves it in ContactScratch::cell_columns.
 CellMoments covered_moments(const Grid& grid);
 
 /// How a contact lies in its grid.

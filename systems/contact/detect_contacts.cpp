@@ -8,8 +8,8 @@
 
 #include "systems/contact/fault.hpp"
 #include "systems/contact/group_points.hpp"
+#include "systems/contact/scratch.hpp"
 #include "systems/math/frames.hpp"
-#include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {
@@ -21,7 +21,7 @@ constexpr double kSmallestStep =
 /// One tool over one body while it is searched.
 struct ContactSearch {
   const World& world;
-  Scratch& scratch;
+  ContactScratch& scratch;
   Range body_parts;
   OwnedRows tool;
   Pose tool_in_body;
@@ -39,7 +39,7 @@ struct BallBlock {
 /// @param rows  of the tool's balls, at most BallBlock::kBalls of them
 void look_at(ContactSearch& search, std::span<const SurfaceBall> balls,
              std::span<const std::uint32_t> rows, BallBlock& block) {
-  Scratch& scratch = search.scratch;
+  ContactScratch& scratch = search.scratch;
   const std::size_t count = rows.size();
   for (std::size_t i = 0; i < count; ++i) {
     const glm::dvec3& center = balls[rows[i]].center;
@@ -72,7 +72,7 @@ void look_at(ContactSearch& search, std::span<const SurfaceBall> balls,
 /// body, in their order. The distance is at least |distance| in every part, so a ball farther away
 /// than its radius holds no contact.
 void find_candidates(ContactSearch& search) {
-  Scratch& scratch = search.scratch;
+  ContactScratch& scratch = search.scratch;
   const auto balls = search.world.balls.rows<SurfaceBall>(search.tool.balls);
   scratch.candidates.clear();
   scratch.walk.clear();
@@ -164,7 +164,7 @@ ContactPoint descend(const ContactSearch& search, const Candidate& start) {
   return {to_outer(pose, point), -to_body.value, 0};
 }
 
-void add_point(Scratch& scratch, std::uint32_t sample, const ContactPoint& point) {
+void add_point(ContactScratch& scratch, std::uint32_t sample, const ContactPoint& point) {
   if (scratch.points.size() < scratch.points.capacity()) {
     scratch.sample_states[sample].point = static_cast<std::uint32_t>(scratch.points.size());
     scratch.points.push_back(point);
@@ -173,7 +173,7 @@ void add_point(Scratch& scratch, std::uint32_t sample, const ContactPoint& point
 
 /// Pairs of contact points whose samples are neighbours, with rows counted from `first`.
 void pair_neighbours(const ContactSearch& search, std::uint32_t first) {
-  Scratch& scratch = search.scratch;
+  ContactScratch& scratch = search.scratch;
   for (const Candidate& candidate : scratch.candidates) {
     const std::uint32_t point = scratch.sample_states[candidate.sample].point;
     if (point == kNoRow) {
@@ -206,7 +206,7 @@ bool too_deep(const ContactSearch& search, const Bounds& bounds,
 
 void find_points(ContactSearch& search) {
   find_candidates(search);
-  Scratch& scratch = search.scratch;
+  ContactScratch& scratch = search.scratch;
   for (const Candidate& candidate : scratch.candidates) {
     // A sample alone in contact is told by the lowest point near it, as one beside the contact is:
     // where it comes into contact nothing jumps, and two samples at one contact's rim that are no
@@ -230,7 +230,7 @@ void find_points(ContactSearch& search) {
 
 void detect_contacts(StepContext& context) {
   World& world = context.world;
-  Scratch& scratch = context.scratch;
+  ContactScratch& scratch = context.scratch;
   scratch.points.clear();
   scratch.near_pairs.clear();
   scratch.pairs.clear();
@@ -256,7 +256,7 @@ void detect_contacts(StepContext& context) {
 }
 
 void group_contact_points(StepContext& context) {
-  Scratch& scratch = context.scratch;
+  ContactScratch& scratch = context.scratch;
   for (ContactPair& pair : scratch.pairs) {
     const std::span<ContactPoint> points(scratch.points.data() + pair.points.first,
                                          pair.points.count);

@@ -1,14 +1,14 @@
 #pragma once
 
-#include "systems/step.hpp"
+#include "systems/contact/step_context.hpp"
 
 namespace torsion {
 
 /// Finds the points of every tool's surface that lie inside a body's rest shape (section II.B of
 /// the paper): samples found through the tool's tree of balls, and, between samples, the deepest
 /// points that a descent along the surface reaches, so that a contact is seen when it begins and
-/// not when it has grown to a sample. Fills Scratch::pairs and Scratch::points. The cost grows with
-/// the samples near the body, not with the meshes.
+/// not when it has grown to a sample. Fills ContactScratch::pairs and ContactScratch::points. The
+/// cost grows with the samples near the body, not with the meshes.
 void detect_contacts(StepContext& context);
 
 /// For each pair, numbers the groups of points closer than r_th: the paper's contact regions of

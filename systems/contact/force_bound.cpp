@@ -10,9 +10,9 @@
 #include "systems/contact/fault.hpp"
 #include "systems/contact/grid_cells.hpp"
 #include "systems/contact/region_wrenches.hpp"
+#include "systems/contact/scratch.hpp"
 #include "systems/geometry/distance.hpp"
 #include "systems/math/frames.hpp"
-#include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {

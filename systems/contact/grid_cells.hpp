@@ -5,16 +5,16 @@
 #include <span>
 
 #include "systems/contact/cell_finder.hpp"
+#include "systems/contact/scratch.hpp"
+#include "systems/contact/step_context.hpp"
 #include "systems/math/smooth_step.hpp"
-#include "systems/scratch.hpp"
-#include "systems/step.hpp"
 
 namespace torsion {
 
 /// One region's cells and what finding them needs of the tables.
 struct Grid {
   World& world;
-  Scratch& scratch;
+  ContactScratch& scratch;
   RegionIdentity identity;
   RegionFrame& frame;
   RegionCarrier& carrier;
@@ -40,7 +40,7 @@ inline glm::dvec2 cell_half_size(const Grid& grid) {
   return grid.frame.half_size / static_cast<double>(grid.side);
 }
 
-inline std::span<const ContactPoint> points_of(const Scratch& scratch,
+inline std::span<const ContactPoint> points_of(const ContactScratch& scratch,
                                                const RegionPoints& contact) {
   return {scratch.points.data() + contact.points.first, contact.points.count};
 }
@@ -74,7 +74,7 @@ using CellBits = std::array<std::uint64_t, kMaxGridSide>;
 /// @return true when there were any
 bool spread_one_step(std::uint32_t side, CellBits& free, CellBits& bits);
 
-/// The cells with coverage. Leaves that in Scratch::cell_columns.
+/// The cells with coverage. Leaves that in ContactScratch::cell_columns.
 CellBits covered_cells(const Grid& grid);
 
 /// Smallest cosine between a surface's normal and the grid's that is divided by.
@@ -93,7 +93,7 @@ inline double facing_share(double slope) {
 /// Finds, for every cell of the grid, the tool's surface along the normal, how deep it lies under
 /// the body's rest surface, and the share of the cell that is in contact. Cells that are not joined
 /// to the region's own contact points belong to a neighbour and get coverage 0. Leaves in
-/// Scratch::cell_columns the body's distances at the cells' points, depths and coverage.
+/// ContactScratch::cell_columns the body's distances at the cells' points, depths and coverage.
 /// @return the cells with coverage
 CellBits find_cells(const Grid& grid, const RegionPoints& contact);
 

@@ -10,11 +10,11 @@
 #include "systems/contact/join_clusters.hpp"
 #include "systems/contact/region_grid.hpp"
 #include "systems/contact/region_wrenches.hpp"
+#include "systems/contact/scratch.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/patch/energy.hpp"
 #include "systems/patch/join.hpp"
 #include "systems/patch/split.hpp"
-#include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {
@@ -171,14 +171,14 @@ void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t c
       split_from != kNoRow ? RegionEvent::kTakesOver : RegionEvent::kBegins);
 }
 
-bool owns_cluster(const Scratch& scratch, std::uint32_t region) {
+bool owns_cluster(const ContactScratch& scratch, std::uint32_t region) {
   return std::ranges::any_of(
       scratch.owners, [region](const ClusterOwner& owner) { return owner.region == region; });
 }
 
 /// Regions continue in the cluster that they overlap most; the oldest comes first and keeps what it
 /// takes.
-void match_by_overlap(const World& world, Scratch& scratch, const ContactPair& pair,
+void match_by_overlap(const World& world, ContactScratch& scratch, const ContactPair& pair,
                       std::span<const ContactPoint> points) {
   const auto regions = world.regions.column<RegionIdentity>();
   for (std::uint32_t region = 0; region < regions.size(); ++region) {
@@ -203,7 +203,7 @@ void match_by_overlap(const World& world, Scratch& scratch, const ContactPair& p
 
 /// A small region may slide or roll past its own size in a step: what is left over on both sides is
 /// matched when it is nearer than two regions can be to each other.
-void match_by_distance(const World& world, Scratch& scratch, const ContactPair& pair,
+void match_by_distance(const World& world, ContactScratch& scratch, const ContactPair& pair,
                        std::span<const ContactPoint> points) {
   const double threshold = world.bodies.at<BodyModels>(pair.body).region_threshold;
   const auto regions = world.regions.column<RegionIdentity>();
@@ -228,7 +228,7 @@ void match_by_distance(const World& world, Scratch& scratch, const ContactPair& 
 }
 
 /// Fills scratch.owners: which region each cluster continues.
-void match_clusters(const World& world, Scratch& scratch, const ContactPair& pair,
+void match_clusters(const World& world, ContactScratch& scratch, const ContactPair& pair,
                     std::span<const ContactPoint> points) {
   scratch.owners.assign(pair.clusters, ClusterOwner{});
   match_by_overlap(world, scratch, pair, points);
@@ -237,7 +237,7 @@ void match_clusters(const World& world, Scratch& scratch, const ContactPair& pai
 
 /// Where the region's contact went: the region that now owns the cluster over its old place, or
 /// kNoRow.
-std::uint32_t heir_of(const World& world, const Scratch& scratch, std::uint32_t region,
+std::uint32_t heir_of(const World& world, const ContactScratch& scratch, std::uint32_t region,
                       std::span<const ContactPoint> points) {
   const RegionCells cells(world, region);
   for (const ContactPoint& point : points) {
@@ -250,7 +250,7 @@ std::uint32_t heir_of(const World& world, const Scratch& scratch, std::uint32_t 
 
 /// A cluster without an owner that lies over a living region was split off it. Leaves that region
 /// in scratch.owners.
-void note_splits(World& world, Scratch& scratch, std::span<const ContactPoint> points) {
+void note_splits(World& world, ContactScratch& scratch, std::span<const ContactPoint> points) {
   for (const ContactPoint& point : points) {
     if (scratch.owners[point.cluster].region != kNoRow) {
       continue;
@@ -286,7 +286,7 @@ bool lives_without_points(const World& world, const ContactPair& pair, std::uint
 void end_or_go_on(StepContext& context, const ContactPair& pair,
                   std::span<const ContactPoint> points) {
   World& world = context.world;
-  Scratch& scratch = context.scratch;
+  ContactScratch& scratch = context.scratch;
   const auto regions = world.regions.column<RegionIdentity>();
   for (std::uint32_t region = 0; region < regions.size(); ++region) {
     if (!of_pair(regions[region], pair) || owns_cluster(scratch, region)) {
@@ -322,7 +322,7 @@ void join_patches(StepContext& context, const ContactPair& pair,
 
 void group_regions(StepContext& context) {
   World& world = context.world;
-  Scratch& scratch = context.scratch;
+  ContactScratch& scratch = context.scratch;
   end_events(world);
   for (ContactPair& pair : scratch.pairs) {
     join_clusters(world, scratch, pair);

@@ -223,7 +223,7 @@ class ClusterBoxes {
 
 }  // namespace
 
-void join_clusters(const World& world, Scratch& scratch, ContactPair& pair) {
+void join_clusters(const World& world, ContactScratch& scratch, ContactPair& pair) {
   if (pair.clusters < 2) {
     return;
   }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ecs/world.hpp"
-#include "systems/scratch.hpp"
+#include "systems/contact/scratch.hpp"
 
 namespace torsion {
 
@@ -10,6 +10,6 @@ namespace torsion {
 /// corners too, and so do those of two regions whose cells touch. Without this the region of a
 /// facet with four samples would fall in two when one of them leaves the contact, and a ring would
 /// be sixteen.
-void join_clusters(const World& world, Scratch& scratch, ContactPair& pair);
+void join_clusters(const World& world, ContactScratch& scratch, ContactPair& pair);
 
 }  // namespace torsion

@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "systems/scratch.hpp"
-#include "systems/step.hpp"
+#include "systems/contact/scratch.hpp"
+#include "systems/contact/step_context.hpp"
 
 namespace torsion {
 

@@ -6,9 +6,9 @@
 #include "systems/contact/fault.hpp"
 #include "systems/contact/force_bound.hpp"
 #include "systems/contact/region_motion.hpp"
+#include "systems/contact/scratch.hpp"
 #include "systems/math/finite.hpp"
 #include "systems/math/frames.hpp"
-#include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "systems/step.hpp"
+#include "systems/contact/step_context.hpp"
 
 namespace torsion {
 

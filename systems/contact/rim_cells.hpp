@@ -10,7 +10,7 @@ namespace torsion {
 /// beside the tool are put on its underside, carried on over them with its slopes.
 /// The side is looked for half a cell's diagonal above the underside, where it is nearer than that
 /// wherever it cuts the cell, and followed down along its plane.
-/// @pre   find_tool_surface has left the cells' places and slopes in Scratch::cell_columns
+/// @pre   find_tool_surface has left the cells' places and slopes in ContactScratch::cell_columns
 /// @post  CellColumns::rim_share and rim_bearing are found, when there are any
 /// @return whether there are any
 bool find_rims(const Grid& grid);

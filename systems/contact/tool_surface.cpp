@@ -37,7 +37,7 @@ void find_largest(const double* __restrict values, std::size_t count, double sig
   lanes = most;
 }
 
-double largest(std::span<const double> column, double sign) {
+double extreme_of(std::span<const double> column, double sign) {
   Lanes lanes;
   find_largest(column.data(), column.size(), sign, lanes);
   return largest_of(lanes);
@@ -45,7 +45,7 @@ double largest(std::span<const double> column, double sign) {
 
 /// How far the cells' places are below the grid's plane, m.
 double deepest_place(const Grid& grid) {
-  return largest(grid.scratch.cell_columns.points.z, -1.0);
+  return extreme_of(grid.scratch.cell_columns.points.z, -1.0);
 }
 
 /// Cells that found nothing of the tool near the rest surface look again from below: where they are
@@ -165,7 +165,7 @@ void find_tool_surface(const Grid& grid) {
       parts_under(grid, grid.world.tools.at<OwnedRows>(grid.identity.tool).parts, frame.position);
   signed_distances(grid.world, parts, frame, columns.points);
   step_to_surface(size, columns.points, columns.tool_x, columns.tool_y, columns.gradient_square);
-  if (largest(columns.points.value, 1.0) < kCloseEnough * cell_length) {
+  if (extreme_of(columns.points.value, 1.0) < kCloseEnough * cell_length) {
     return;
   }
   const LeftCells& memory = grid.scratch.left_cells;

@@ -5,7 +5,7 @@
 namespace torsion {
 
 /// Puts the cells' places of the last step on the tool's underside. Leaves them and the slopes
-/// there, of the last step of Newton's method but one, in Scratch::cell_columns.
+/// there, of the last step of Newton's method but one, in ContactScratch::cell_columns.
 void find_tool_surface(const Grid& grid);
 
 /// The parts of a tool or body that can be nearest to what of a surface lies under the cells'

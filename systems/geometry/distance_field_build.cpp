@@ -16,7 +16,7 @@ namespace torsion {
 namespace {
 
 constexpr double kMargin = 1.5;  // coarse cells around the mesh's box
-constexpr double kBand =
+constexpr double kBrickBand =
     0.25;  // coarse cells: how far from the surface a cell may be and still get a brick
 
 /// Calls f(row) for every row below `count`, from `threads` threads; rows must not share what they
@@ -94,11 +94,11 @@ void fill_coarse_nodes(const MeshDistance& mesh, std::uint32_t threads, BuiltFie
 }
 
 /// Gives a brick to each coarse cell whose centre is so near the surface that the surface may enter
-/// the cell or come within kBand of it.
+/// the cell or come within kBrickBand of it.
 void choose_bricks(const MeshDistance& mesh, std::uint32_t threads, BuiltField& field) {
   const DistanceField& grid = field.header;
   const double half_diagonal = 0.5 * std::sqrt(3.0) * grid.spacing;
-  const double reach = half_diagonal + kBand * grid.spacing;
+  const double reach = half_diagonal + kBrickBand * grid.spacing;
   const glm::uvec3 nodes = grid.cells + 1U;
   field.bricks.assign(std::size_t{grid.cells.x} * grid.cells.y * grid.cells.z, DistanceBrick{});
   for_each_row(grid.cells.y * grid.cells.z, threads, [&](std::uint32_t row) {

@@ -12,14 +12,14 @@
 
 namespace torsion {
 
-/// A lattice has at least as many cells as this along each side.
-inline constexpr double kFewestCells = 8.0;
+/// A lattice has at least as many cells as this along each side: a bend needs some.
+inline constexpr std::uint32_t kFewestLatticeCells = 8;
 
 /// All cells of the lattice over a box.
 /// @param along  cells along the longest side
 inline double lattice_cells(const glm::dvec3& extent, std::uint32_t along) {
   const double longest = std::max({extent.x, extent.y, extent.z});
-  const glm::dvec3 cells = glm::max(extent * (along / longest), glm::dvec3(kFewestCells));
+  const glm::dvec3 cells = glm::max(extent * (along / longest), glm::dvec3(kFewestLatticeCells));
   return cells.x * cells.y * cells.z;
 }
 

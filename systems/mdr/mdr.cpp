@@ -10,11 +10,11 @@
 #include <glm/matrix.hpp>
 
 #include "systems/contact/friction_decay.hpp"
+#include "systems/contact/scratch.hpp"
 #include "systems/contact/support/own_answer.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/mdr/layers.hpp"
 #include "systems/mdr/round_contact.hpp"
-#include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {
@@ -305,7 +305,7 @@ void mdr_forces(StepContext& context) {
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
     const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
     if (world.bodies.at<BodyModels>(body).contact == ContactModel::kMdr) {
-      move_region(context, context.scratch.mdr_tables, region);
+      move_region(context, context.mdr, region);
     }
   }
 }

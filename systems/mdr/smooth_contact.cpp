@@ -22,12 +22,12 @@ namespace {
 constexpr int kMostNewtonSteps = 12;     // of Newton's method
 constexpr double kCommon = 1e-14;        // between the two normals: rounding
 constexpr double kFlatCurvature = 1e-9;  // of the larger curvature: rounding
-constexpr double kOther = 0.5;     // of the cells' largest depth: it is not the deepest place,
-constexpr double kDeepest = 0.9;   // it is: cells lie beside it
-constexpr double kJust = 1e-4;     // of the grid: so deep, cells seem to touch where shapes do not
-constexpr double kKnown = 0.9;     // the smooth piece ends so far out, over the overlap's extent:
-constexpr double kUnknown = 0.75;  // Hertz' ellipse ends at 0.71
-constexpr double kOtherPartFar = 1.0;  // distance of other parts, likewise
+constexpr double kOther = 0.5;    // of the cells' largest depth: it is not the deepest place,
+constexpr double kDeepest = 0.9;  // it is: cells lie beside it
+constexpr double kJust = 1e-4;    // of the grid: so deep, cells seem to touch where shapes do not
+constexpr double kKnownPiece = 0.9;  // the smooth piece ends so far out, over the overlap's extent:
+constexpr double kUnknownPiece = 0.75;  // Hertz' ellipse ends at 0.71
+constexpr double kOtherPartFar = 1.0;   // distance of other parts, likewise
 constexpr double kOtherPartNear = 0.8;
 
 double rising(double x, double from, double to) {
@@ -261,8 +261,8 @@ SmoothContact find_contact(const Grid& grid, const RegionGeometry& geometry,
       std::min(room(tool, at->tool_piece, *at, inverse), room(body, at->body_piece, *at, inverse));
   const double extent = std::sqrt(2.0 * contact.depth / bend.small);
   const double other = std::min(of_tool.other, of_body.other) / extent;
-  contact.share =
-      rising(inside, kUnknown, kKnown) * rising(other, kOtherPartNear, kOtherPartFar) * deepest;
+  contact.share = rising(inside, kUnknownPiece, kKnownPiece) *
+                  rising(other, kOtherPartNear, kOtherPartFar) * deepest;
   if (contact.share <= 0.0) {
     return contact;
   }

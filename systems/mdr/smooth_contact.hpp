@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "systems/step.hpp"
+#include "systems/contact/step_context.hpp"
 
 namespace torsion {
 

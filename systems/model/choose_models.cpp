@@ -40,7 +40,7 @@ constexpr double kFiniteBodyError = 1.1;  // of the force, times contact radius 
 constexpr double kLongEdgedError = 0.07;
 constexpr double kSlenderEdgedError = 0.09;
 constexpr double kSlender = 8.0;              // times the width
-constexpr std::size_t kFewest = 12;           // points that tell how long a contact is
+constexpr std::size_t kFewestPoints = 12;     // points that tell how long a contact is
 constexpr double kSlidesWhileTurning = 0.05;  // of the radius, between two expected poses
 constexpr double kTellsOfRolling = 0.02;      // of the torque: less is not worth a word
 constexpr double kTurnsWhileSliding = 1e-3;   // rad between two expected poses: less is no turn
@@ -166,7 +166,7 @@ std::pair<double, std::uint32_t> extent_of_groups(std::span<const glm::dvec3> po
 
 /// Length over width of what touches; 1 where the points are too few to tell.
 double elongation_of(const Touch& touch) {
-  if (touch.points.size() < kFewest) {
+  if (touch.points.size() < kFewestPoints) {
     return 1.0;
   }
   RegionFrame plane;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ecs/world.hpp"
-#include "systems/step.hpp"
+#include "systems/model/options.hpp"
 
 namespace torsion {
 

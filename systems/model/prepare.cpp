@@ -1,3 +1,5 @@
+#include "systems/model/prepare.hpp"
+
 #include <algorithm>
 #include <numeric>
 
@@ -15,8 +17,6 @@
 #include "systems/model/choose_models.hpp"
 #include "systems/model/prepare_anchors.hpp"
 #include "systems/model/prepare_compliance.hpp"
-#include "systems/scratch.hpp"
-#include "systems/step.hpp"
 
 namespace torsion {
 namespace {
@@ -303,15 +303,15 @@ void append_models(World& world, std::uint32_t row, const BodyDescription& body,
 }
 
 /// Chooses models and fills all tables that depend on them.
-Result<Done> append_choices(Simulation& simulation, const SceneDescription& scene,
+Result<Done> append_choices(PreparedWorld& prepared, const SceneDescription& scene,
                             const PrepareOptions& options, Capacities capacities) {
-  World& world = simulation.world;
-  simulation.choices = choose_all(world, options);
+  World& world = prepared.world;
+  prepared.choices = choose_all(world, options);
   Settings settings = options.settings;
   settings.grid_side =
-      settings.grid_side == 0 ? choose_grid_side(simulation.choices) : settings.grid_side;
+      settings.grid_side == 0 ? choose_grid_side(prepared.choices) : settings.grid_side;
   for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
-    const BodyModels& models = simulation.choices[row].models;
+    const BodyModels& models = prepared.choices[row].models;
     capacities.influences += influence_values(world, row, models, settings.grid_side);
     capacities.patch_bodies += models.contact == ContactModel::kPatch ? 1U : 0U;
     capacities.mdr_bodies += models.contact == ContactModel::kMdr ? 1U : 0U;
@@ -321,7 +321,7 @@ Result<Done> append_choices(Simulation& simulation, const SceneDescription& scen
     }
   }
   const Result<std::vector<PreparedCompliance>> compliances =
-      build_compliances(world, scene, simulation.choices, options);
+      build_compliances(world, scene, prepared.choices, options);
   if (!compliances) {
     return compliances.error();
   }
@@ -331,7 +331,7 @@ Result<Done> append_choices(Simulation& simulation, const SceneDescription& scen
   }
   world.reserve_models(capacities, settings);
   for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
-    append_models(world, row, scene.bodies[row], compliances.value()[row], simulation.choices[row]);
+    append_models(world, row, scene.bodies[row], compliances.value()[row], prepared.choices[row]);
   }
   TORSION_ASSERT(world.cells.append(world.cells.capacity()).has_value());
   TORSION_ASSERT(world.layer_influences.append(world.layer_influences.capacity()).has_value());
@@ -341,10 +341,6 @@ Result<Done> append_choices(Simulation& simulation, const SceneDescription& scen
   TORSION_ASSERT(world.patch_cells.append(world.patch_cells.capacity()).has_value());
   return Done{};
 }
-
-}  // namespace
-
-namespace {
 
 /// The scene with one solid in place of meshes that overlap.
 /// @param united  out: nodes of those meshes
@@ -375,7 +371,7 @@ Result<SceneDescription> with_unions(const SceneDescription& scene,
 
 }  // namespace
 
-Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options) {
+Result<PreparedWorld> prepare_world(const SceneDescription& scene, const PrepareOptions& options) {
   if (!(options.rate > 0.0 && options.rate <= kHighestRate)) {
     return Error{"the rate must be above 0 and at most 1e6 Hz, it is " +
                  std::to_string(options.rate)};
@@ -384,8 +380,8 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
     return Error{"the grid must have 1 to " + std::to_string(kMaxGridSide) +
                  " cells along a side, it has " + std::to_string(options.settings.grid_side)};
   }
-  Simulation simulation;
-  const Result<SceneDescription> united = with_unions(scene, simulation.united_nodes);
+  PreparedWorld prepared;
+  const Result<SceneDescription> united = with_unions(scene, prepared.united_nodes);
   if (!united) {
     return united.error();
   }
@@ -394,19 +390,16 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
   if (!built) {
     return built.error();
   }
-  World& world = simulation.world;
+  World& world = prepared.world;
   const Capacities capacities = capacities_of(solid, built.value());
   world.reserve(capacities, Settings{1, 0});
   world.clock.at<Clock>(0).dt = 1.0 / options.rate;
   append_scene(world, solid, built.value());
-  const Result<Done> done = append_choices(simulation, solid, options, capacities);
+  const Result<Done> done = append_choices(prepared, solid, options, capacities);
   if (!done) {
     return done.error();
   }
-  simulation.scratch->reserve(world);
-  simulation.schedule = Schedule<StepContext>(step_systems(1.0 / options.rate),
-                                              StepContext{world, {}, *simulation.scratch});
-  return simulation;
+  return prepared;
 }
 
 }  // namespace torsion

@@ -117,21 +117,18 @@ void append_values(const Eigen::MatrixXd& matrix, std::size_t rows,
   }
 }
 
-constexpr double kFewestCells = 8.0;  // along any side (build_solid_grid)
-
-/// Cells of a lattice over the bounds, in all.
 /// Elements through a wall, whichever way it stands: along the lattice's coarsest axis but those in
 /// which the body is no thicker than the wall and has eight.
 double across_wall(const glm::dvec3& extent, std::uint32_t elements, double wall) {
   const double longest = std::max({extent.x, extent.y, extent.z});
   double coarsest = 0.0;  // m
   for (int axis = 0; axis < 3; ++axis) {
-    const double cells = std::max(kFewestCells, elements * extent[axis] / longest);
+    const double cells = std::max(1.0 * kFewestLatticeCells, elements * extent[axis] / longest);
     if (extent[axis] > 1.5 * wall) {
       coarsest = std::max(coarsest, extent[axis] / cells);
     }
   }
-  return coarsest > 0.0 ? wall / coarsest : kFewestCells;
+  return coarsest > 0.0 ? wall / coarsest : 1.0 * kFewestLatticeCells;
 }
 
 /// Of the bounds' volume, what is in the solid.

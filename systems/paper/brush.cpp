@@ -9,7 +9,7 @@
 namespace torsion {
 namespace {
 
-constexpr double kLeast = 1e-300;  // Pa: keeps 0 / 0 away
+constexpr double kNoLoad = 1e-300;  // Pa: keeps 0 / 0 away
 
 /// Elastic trial, and the limit that caps it.
 TORSION_WIDEST
@@ -58,7 +58,7 @@ void cap(const BrushState& brush, BrushBlock& __restrict block) {
   const double may_stick = brush.kinetic_share < 0.5 ? 1.0 : 0.0;
   for (std::size_t i = 0; i < kBrushBlock; ++i) {
     const double limit = block.limit[i];
-    const double kept = limit / larger(larger(limit, block.trial_size[i]), kLeast);
+    const double kept = limit / larger(larger(limit, block.trial_size[i]), kNoLoad);
     const double elastic_x = kept * block.elastic_x[i];
     const double elastic_y = kept * block.elastic_y[i];
     block.cut_x[i] = block.area[i] * (block.elastic_x[i] - elastic_x);
@@ -85,7 +85,7 @@ void slide_on(const BrushState& brush, BrushBlock& __restrict block) {
     const double way_x = block.traction_x[i] - limit * grown * motion_x;
     const double way_y = block.traction_y[i] - limit * grown * motion_y;
     const double size = std::sqrt(way_x * way_x + way_y * way_y);
-    const double kept = limit / larger(larger(limit * (1.0 + moved * grown), size), kLeast);
+    const double kept = limit / larger(larger(limit * (1.0 + moved * grown), size), kNoLoad);
     block.moved[i] = block.area[i] > 0.0 ? moved : 0.0;
     block.elastic_x[i] += state.kinetic_share * (kept * way_x - block.elastic_x[i]);
     block.elastic_y[i] += state.kinetic_share * (kept * way_y - block.elastic_y[i]);

@@ -6,7 +6,6 @@
 
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
-#include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {
@@ -119,7 +118,7 @@ void follow_grid(StepContext& context, const CellMap& map, const RegionFrame& ol
   const std::uint32_t side = context.world.settings.at<Settings>(0).grid_side;
   const auto cells = context.world.cells.rows<CellTraction>(rows);
   const auto geometry = context.world.cells.rows<CellGeometry>(rows);
-  const std::span<CarriedCell> before(context.scratch.carried_cells);
+  const std::span<CarriedCell> before(context.paper.carried_cells);
   copy_with_border(cells, side, before);
   const glm::dvec2 turn_x = turned(old, now, {1.0, 0.0});
   const glm::dvec2 turn_y = turned(old, now, {0.0, 1.0});
@@ -174,6 +173,11 @@ void carry(StepContext& context, std::uint32_t region) {
 }
 
 }  // namespace
+
+void PaperScratch::reserve(const World& world) {
+  const std::size_t side = world.settings.at<Settings>(0).grid_side;
+  carried_cells.assign((side + 2) * (side + 2), CarriedCell(0.0));
+}
 
 void carry_tractions(StepContext& context) {
   for (std::uint32_t region = 0; region < context.world.regions.size(); ++region) {

@@ -1,9 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems/body/skeleton/skeleton.hpp"
+#include "systems/contact/scratch.hpp"
 #include "systems/paper/paper.hpp"
-#include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {
@@ -12,7 +11,7 @@ namespace {
 // anything, and the cubic term would grow without bound.
 constexpr double kDeepestOfSide = 0.5;
 
-double deepest_allowed(const Bounds& bounds, const BeamSummary& beam) {
+double deepest_allowed(const Bounds& bounds, const BeamSpring& beam) {
   const glm::dvec3 size = bounds.highest - bounds.lowest;
   const double side = std::min({size.x, size.y, size.z});
   return kDeepestOfSide * (beam.length > 0.0 ? std::min(side, beam.length) : side);
@@ -46,14 +45,11 @@ void paper_normal_forces(StepContext& context) {
     }
     const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
     const Elasticity& elasticity = world.bodies.at<Elasticity>(body);
-    BeamSummary beam;
-    if (world.bodies.at<BodyModels>(body).body == BodyModel::kSkeleton) {
-      beam = beam_summary(context.scratch.main_beams[block_of(identity)], elasticity);
-    }
+    const BeamSpring& beam = context.scratch.beams[block_of(identity)];
     const double deepest = deepest_allowed(world.bodies.at<Bounds>(body), beam);
     const double depth = std::min(geometry.mean_depth, deepest);
     const PaperNormalLaw law = paper_normal_law(elasticity.contact_modulus(), geometry.radius,
-                                                beam.axial_stiffness, beam.length);
+                                                beam.stiffness, beam.length);
     RegionNormal& normal = world.regions.at<RegionNormal>(region);
     normal.force = law.linear * depth + law.cubic * depth * depth * depth;
     normal.stiffness = law.linear + 3.0 * law.cubic * depth * depth;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "systems/step.hpp"
+#include "systems/contact/step_context.hpp"
 
 namespace torsion {
 

@@ -314,7 +314,7 @@ void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints
     move = move_between(before, grid.frame, grid.side);
   }
   const double reach = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
-  move_cells(grid, move, depth, fit.takes_axes() ? reach : 0.0);
+  move_cells(grid, context.patch, move, depth, fit.takes_axes() ? reach : 0.0);
   std::uint32_t& event = context.world.regions.at<RegionWrench>(region).event_now;
   if (event == 0 && !move.keeps_cells()) {
     event = static_cast<std::uint32_t>(RegionEvent::kGridLaidAnew);

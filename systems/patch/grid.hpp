@@ -1,7 +1,7 @@
 #pragma once
 
-#include "systems/scratch.hpp"
-#include "systems/step.hpp"
+#include "systems/contact/scratch.hpp"
+#include "systems/contact/step_context.hpp"
 
 namespace torsion {
 

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "systems/scratch.hpp"
-#include "systems/step.hpp"
+#include "systems/contact/step_context.hpp"
 
 namespace torsion {
 

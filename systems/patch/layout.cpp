@@ -13,10 +13,10 @@
 namespace torsion {
 namespace {
 
-constexpr double kFill = 0.81;         // of a new grid by the cells with pressure
-constexpr double kLeastFill = 0.62;    // likewise, so that it is not at once found too large
-constexpr double kSharp = 1.25;        // overlap over what is loaded: a round contact has 1.4
-constexpr double kRectangular = 0.85;  // of its box is covered; of an ellipse's 0.79
+constexpr double kFill = 0.81;       // of a new grid by the cells with pressure
+constexpr double kLeastFill = 0.62;  // likewise, so that it is not at once found too large
+constexpr double kSharp = 1.25;      // overlap over what is loaded: a round contact has 1.4
+constexpr double kRectangularOverlap = 0.85;  // of its box is covered; of an ellipse's 0.79
 
 glm::dvec2 origin_shift(const PlaneBox& box, const glm::dvec2& middle_cell, const glm::dvec2& cell,
                         std::uint32_t side) {
@@ -64,7 +64,7 @@ double middle_of(double cells, double wanted) {
 /// Whether so many covered cells cover their box, as a punch's with straight rims do.
 bool cover_their_box(const Grid& grid, double covered, const PlaneBox& box) {
   const glm::dvec2 size = box.highest - box.lowest;
-  return covered * cell_area(grid.frame, grid.side) > kRectangular * size.x * size.y;
+  return covered * cell_area(grid.frame, grid.side) > kRectangularOverlap * size.x * size.y;
 }
 
 }  // namespace

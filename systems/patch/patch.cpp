@@ -14,7 +14,6 @@
 #include "systems/patch/grid.hpp"
 #include "systems/patch/passes.hpp"
 #include "systems/patch/region.hpp"
-#include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {

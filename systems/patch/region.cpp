@@ -45,10 +45,10 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
   problem.compliance = 2.0 * frame.half_size.x /
                        (static_cast<double>(settings.grid_side) * elasticity.shear_modulus());
   problem.coupled = influences.coupled;
-  const PatchPlaces& places = context.scratch.patch_places;
+  const PatchPlaces& places = context.patch.places;
   cell_centers(frame, settings.grid_side, places.x, places.y);
-  problem.support = patch_support(world, region, context.scratch.disc_stiffness,
-                                  {places.x, places.y}, context.scratch.patch_support);
+  problem.support = patch_support(world, region, context.patch.disc_stiffness, {places.x, places.y},
+                                  context.patch.support_terms);
   problem.sweeps = settings.sweeps;
   if (problem.support.soft) {
     problem.sweeps *= kSweepsOnSoftBody;
@@ -58,10 +58,10 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
     problem.settled = kSettledOnBody;
   }
   return {world,
-          context.scratch.patch_columns,
-          context.scratch.patch_places,
-          context.scratch.support_columns,
-          context.scratch.patch_work,
+          context.patch.columns,
+          context.patch.places,
+          context.patch.support,
+          context.patch.work,
           region,
           settings.grid_side,
           frame,

@@ -2,10 +2,10 @@
 
 #include <cstdint>
 
+#include "systems/contact/step_context.hpp"
 #include "systems/patch/cells.hpp"
+#include "systems/patch/scratch.hpp"
 #include "systems/patch/solver.hpp"
-#include "systems/scratch.hpp"
-#include "systems/step.hpp"
 
 namespace torsion {
 

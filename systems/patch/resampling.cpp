@@ -148,9 +148,9 @@ CellMove move_between(const RegionFrame& before, const RegionFrame& now, std::ui
   return move;
 }
 
-void move_cells(const Grid& grid, const CellMove& move, double depth, double ahead) {
+void move_cells(const Grid& grid, PatchScratch& scratch, const CellMove& move, double depth,
+                double ahead) {
   const PatchRows rows = patch_rows(grid.world, grid.identity.cells);
-  Scratch& scratch = grid.scratch;
   std::ranges::copy(rows.surface.held_x, scratch.held_before.x.begin());
   std::ranges::copy(rows.surface.held_y, scratch.held_before.y.begin());
   std::ranges::copy(rows.tractions, scratch.tractions_before.begin());

@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 
 #include "systems/contact/grid_cells.hpp"
+#include "systems/patch/scratch.hpp"
 
 namespace torsion {
 
@@ -31,7 +32,8 @@ CellMove move_between(const RegionFrame& before, const RegionFrame& now, std::ui
 /// they slip on at the friction limit in the same direction, whatever the new cells displace.
 /// @param depth  m, from which cells look for the tool
 /// @param ahead  m; 0 where cells are so like the old ones that they may stick
-void move_cells(const Grid& grid, const CellMove& move, double depth, double ahead);
+void move_cells(const Grid& grid, PatchScratch& scratch, const CellMove& move, double depth,
+                double ahead);
 
 /// Adds the pressures and tractions of another region's cells, by linear interpolation. Where both
 /// regions carry pressure, as cells do that were as near to the one as to the other, the larger

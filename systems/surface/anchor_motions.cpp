@@ -8,13 +8,13 @@
 
 #include <glm/geometric.hpp>
 
+#include "systems/contact/scratch.hpp"
 #include "systems/contact/support/contact_load.hpp"
 #include "systems/contact/support/footing.hpp"
 #include "systems/contact/support/support_field.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
 #include "systems/patch/grid.hpp"
-#include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {

@@ -7,8 +7,9 @@
 #include <glm/geometric.hpp>
 
 #include "systems/contact/friction_decay.hpp"
+#include "systems/contact/scratch.hpp"
 #include "systems/math/frames.hpp"
-#include "systems/scratch.hpp"
+#include "systems/mdr/places.hpp"
 #include "systems/surface/ring_turns.hpp"
 
 namespace torsion {
@@ -170,15 +171,14 @@ void fill_field(StepContext& context, std::uint32_t region, ContactModel model) 
   if (model == ContactModel::kMdr) {
     const std::uint32_t block = block_of(identity);
     const MdrState& state = world.regions.at<MdrState>(region);
-    const MdrPlaces places =
-        places_of(context.scratch.mdr_tables, {state.flat_share, state.elongation});
+    const MdrPlaces places = places_of(context.mdr, {state.flat_share, state.elongation});
     discs_of_layers(places.turn, world.mdr_layers.rows<MdrLayer>({block * kMdrLayers, kMdrLayers}),
                     field);
     return;
   }
   const double shear_modulus = world.bodies.at<Elasticity>(identity.body).shear_modulus();
   const double stiffness = 16.0 / 3.0 * shear_modulus * field.radius * field.radius * field.radius;
-  discs_of_ring_turns(context.scratch.ring_profiles, turns_of_cells(world, region, source, field),
+  discs_of_ring_turns(context.rings, turns_of_cells(world, region, source, field),
                       couple_of(source, field) / stiffness, calm_of(side), field.turn);
 }
 

@@ -35,8 +35,9 @@ void skeleton_with_one_region(benchmark::State& state) {
   press(world);
   Scratch scratch;
   const std::array<Pose, 1> poses{};
-  StepContext context{world, poses, scratch};
-  scratch.main_beams.resize(world.regions.capacity());
+  StepContext context = scratch.context(world, poses);
+  scratch.skeleton.beams.resize(world.regions.capacity());
+  scratch.contact.beams.resize(world.regions.capacity());
   for (auto _ : state) {
     main_beams(context);
     skeleton(context);

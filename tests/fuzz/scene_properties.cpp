@@ -142,7 +142,7 @@ bool only_drags(const Simulation& simulation, std::uint32_t tool) {
   const auto touches = [tool](const ContactPair& pair) {
     return pair.tool == tool && pair.points.count > 0;
   };
-  return std::ranges::none_of(simulation.scratch->pairs, touches) &&
+  return std::ranges::none_of(simulation.scratch->contact.pairs, touches) &&
          simulation.world.tools.at<ToolWrench>(tool).total.force != glm::dvec3(0.0);
 }
 

@@ -197,8 +197,9 @@ std::uint32_t add_region(World& world, const RegionOnBody& region) {
 void run_skeleton(World& world) {
   Scratch scratch;
   const std::vector<Pose> poses(world.tools.size());
-  StepContext context{world, poses, scratch};
-  scratch.main_beams.resize(world.regions.capacity());
+  StepContext context = scratch.context(world, poses);
+  scratch.skeleton.beams.resize(world.regions.capacity());
+  scratch.contact.beams.resize(world.regions.capacity());
   main_beams(context);
   skeleton(context);
 }

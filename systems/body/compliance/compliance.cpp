@@ -9,7 +9,6 @@
 #include "systems/contact/fault.hpp"
 #include "systems/math/dense_solve.hpp"
 #include "systems/math/matrix6.hpp"
-#include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {
@@ -357,9 +356,9 @@ void deform_body(StepContext& context, std::uint32_t row) {
   }
   const std::size_t size = 6 * body.count;
   const auto rows = static_cast<Eigen::Index>(size);
-  Eigen::Map<RowMatrix> matrix(context.scratch.compliance_matrix.data(), rows, rows);
-  Eigen::Map<Eigen::VectorXd> change(context.scratch.compliance_residuals.data(), rows);
-  Eigen::Map<RowMatrix> copy(context.scratch.compliance_copy.data(), rows, rows);
+  Eigen::Map<RowMatrix> matrix(context.compliance.matrix.data(), rows, rows);
+  Eigen::Map<Eigen::VectorXd> change(context.compliance.residuals.data(), rows);
+  Eigen::Map<RowMatrix> copy(context.compliance.copy.data(), rows, rows);
   change.setZero();
   const ContactModel model = context.world.bodies.at<BodyModels>(row).contact;
   const bool answers = answers_within_a_step(body, model, newton.roots);
@@ -371,7 +370,7 @@ void deform_body(StepContext& context, std::uint32_t row) {
   }
   fill_equations(body, newton.roots, matrix, change);
   if (answers) {
-    Eigen::Map<RowMatrix> inverse(context.scratch.compliance_inverse.data(), rows, rows);
+    Eigen::Map<RowMatrix> inverse(context.compliance.inverse.data(), rows, rows);
     find_reactions(body, newton.roots, matrix, copy, inverse);
   }
   if (sways_together) {
@@ -390,6 +389,16 @@ void deform_body(StepContext& context, std::uint32_t row) {
 }
 
 }  // namespace
+
+void ComplianceScratch::reserve(const World& world) {
+  if (!world.footings.empty()) {
+    constexpr std::size_t kRows = std::size_t{6} * kMaxRegionsPerBody;
+    matrix.resize(kRows * kRows);
+    copy.resize(kRows * kRows);
+    inverse.resize(kRows * kRows);
+    residuals.resize(kRows);
+  }
+}
 
 void compliance(StepContext& context) {
   for (std::uint32_t body = 0; body < context.world.bodies.size(); ++body) {

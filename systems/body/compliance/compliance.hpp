@@ -1,8 +1,21 @@
 #pragma once
 
-#include "systems/step.hpp"
+#include <vector>
+
+#include "systems/contact/step_context.hpp"
 
 namespace torsion {
+
+/// What compliance needs while it works on one body.
+struct ComplianceScratch {
+  std::vector<double> matrix;     // (6 kMaxRegionsPerBody)^2, row-major
+  std::vector<double> copy;       // likewise
+  std::vector<double> inverse;    // likewise
+  std::vector<double> residuals;  // (6 kMaxRegionsPerBody)
+
+  /// Takes all memory that a step of `world` can need; none where no body has this model.
+  void reserve(const World& world);
+};
 
 /// The body's own compliance in series with its contacts: how far the material under each region
 /// has gone under the tractions of all regions of the body, as a rigid body and beyond. Reads what

@@ -10,6 +10,7 @@
 
 #include "systems/body/compliance/layer_motion.hpp"
 #include "systems/body/compliance/region_couplings.hpp"
+#include "systems/contact/scratch.hpp"
 #include "systems/contact/stuck_stiffness.hpp"
 #include "systems/contact/support/surface_bend.hpp"
 #include "systems/half_space/curved_influence.hpp"
@@ -17,7 +18,6 @@
 #include "systems/half_space/layer_thickness.hpp"
 #include "systems/math/matrix6.hpp"
 #include "systems/patch/grid.hpp"
-#include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {

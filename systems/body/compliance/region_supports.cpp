@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 
 #include "systems/body/compliance/region_couplings.hpp"
+#include "systems/contact/scratch.hpp"
 #include "systems/patch/grid.hpp"
-#include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <glm/geometric.hpp>
 
+#include "systems/contact/scratch.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/smooth_step.hpp"
-#include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {
@@ -92,13 +92,21 @@ BeamSummary beam_summary(const MainBeam& beam, const Elasticity& elasticity) {
   return summary;
 }
 
+void SkeletonScratch::reserve(const World& world) {
+  beams.assign(world.sections.empty() ? 0 : world.regions.capacity(), MainBeam{});
+}
+
 void main_beams(StepContext& context) {
   World& world = context.world;
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
     const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+    const std::uint32_t block = block_of(identity);
+    context.scratch.beams[block] = BeamSpring{};
     if (world.bodies.at<BodyModels>(identity.body).body == BodyModel::kSkeleton) {
-      context.scratch.main_beams[block_of(identity)] =
-          main_beam(world, identity.body, world.regions.at<RegionGeometry>(region).rest_point);
+      MainBeam& beam = context.skeleton.beams[block];
+      beam = main_beam(world, identity.body, world.regions.at<RegionGeometry>(region).rest_point);
+      const BeamSummary summary = beam_summary(beam, world.bodies.at<Elasticity>(identity.body));
+      context.scratch.beams[block] = {summary.length, summary.axial_stiffness};
     }
   }
 }
@@ -119,7 +127,7 @@ void skeleton(StepContext& context) {
       if (identities[region].body != body) {
         continue;
       }
-      const MainBeam& beam = context.scratch.main_beams[block_of(identities[region])];
+      const MainBeam& beam = context.skeleton.beams[block_of(identities[region])];
       const TipLoad load = tip_load(beam, world.regions.at<RegionFrame>(region),
                                     world.regions.at<RegionNormal>(region),
                                     world.regions.at<RegionFriction>(region));

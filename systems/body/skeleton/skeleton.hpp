@@ -1,14 +1,23 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "ecs/world.hpp"
 #include "systems/body/skeleton/main_beam.hpp"
-#include "systems/step.hpp"
+#include "systems/contact/step_context.hpp"
 
 namespace torsion {
+
+/// The beams that the systems of one step share.
+struct SkeletonScratch {
+  std::vector<MainBeam> beams;  // (regions) by block of cells
+
+  /// Takes all memory that a step of `world` can need.
+  void reserve(const World& world);
+};
 
 /// Elastic sums along the straight main beam from a body's fixed point q_f (root) to a point of its
 /// surface.
@@ -24,7 +33,7 @@ struct BeamSummary {
 BeamSummary beam_summary(const MainBeam& beam, const Elasticity& elasticity);
 
 /// The beam to every region of a body whose body model is kSkeleton, to where p_eq was at rest.
-/// Writes Scratch::main_beams.
+/// Writes SkeletonScratch::beams and ContactScratch::beams.
 void main_beams(StepContext& context);
 
 /// Displacements of the anchors of each body whose body model is kSkeleton, summed over its regions

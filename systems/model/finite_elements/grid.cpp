@@ -8,10 +8,10 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "systems/geometry/lattice.hpp"
+
 namespace torsion {
 namespace {
-
-constexpr std::uint32_t kFewestCells = 8;  // along any side: a bend needs some
 
 /// Cells and nodes of a lattice over the bounds, x fastest.
 struct Lattice {
@@ -37,8 +37,9 @@ Lattice lattice_over(const Bounds& bounds, std::uint32_t elements) {
   const double longest = std::max({extent.x, extent.y, extent.z});
   Lattice lattice{bounds.lowest, glm::dvec3(0.0), glm::uvec3(0)};
   for (int k = 0; k < 3; ++k) {
-    lattice.cells[k] = std::max(
-        kFewestCells, static_cast<std::uint32_t>(std::lround(elements * extent[k] / longest)));
+    lattice.cells[k] =
+        std::max(kFewestLatticeCells,
+                 static_cast<std::uint32_t>(std::lround(elements * extent[k] / longest)));
     lattice.spacing[k] = extent[k] / lattice.cells[k];
   }
   return lattice;

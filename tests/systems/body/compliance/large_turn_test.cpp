@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "systems/scratch.hpp"
 #include "systems/surface/anchor_motions.hpp"
 #include "systems/surface/surface_field.hpp"
 #include "tests/support/contact_scenes.hpp"
@@ -112,7 +113,7 @@ class LargeTurnTest : public ::testing::Test {
     field.radius = kContact;  // a bonded disc: Reissner and Sagoci, 1944
     field.turn[kFieldDiscs - 1] =
         couple / (16.0 / 3.0 * kSoftShearModulus * std::pow(kContact, 3.0));
-    StepContext context{world, hand_.poses, *hand_.simulation().scratch};
+    StepContext context = hand_.simulation().scratch->context(world, hand_.poses);
     anchor_motions(context);
     capture(world, snapshot_);
     surface_field(world, snapshot_, frame_);

@@ -222,7 +222,7 @@ TEST(ForceBoundTest, AForceBeyondARigidPunchIsAFaultAndFades) {
   const double before = hand.wrench().force.y;
   ASSERT_GT(before, 1.0);
   Simulation& simulation = hand.simulation();
-  StepContext context{simulation.world, hand.poses, *simulation.scratch};
+  StepContext context = simulation.scratch->context(simulation.world, hand.poses);
   simulation.world.bodies.at<BodyModels>(0).contact = ContactModel::kMdr;
   simulation.world.regions.at<RegionNormal>(0).force = 1e4;
   region_wrenches(context);
@@ -244,7 +244,7 @@ TEST(ForceBoundTest, AForceForWhichNobodyHasWorkedIsAFault) {
   hand.move({0.0, -0.0025, 0.0}, {0.0, 1.0, 0.0}, 0.0, 100);
   ASSERT_EQ(hand.clock().faults_ever, 0U);
   Simulation& simulation = hand.simulation();
-  StepContext context{simulation.world, hand.poses, *simulation.scratch};
+  StepContext context = simulation.scratch->context(simulation.world, hand.poses);
   RegionNormal& normal = simulation.world.regions.at<RegionNormal>(0);
   normal.force *= 5.0;
   region_wrenches(context);
@@ -260,7 +260,7 @@ TEST(ForceBoundTest, AWrongForceHasDoneNoWork) {
   hand.step_to({{glm::dvec3(0.0, 0.151, 0.0), glm::dquat(1, 0, 0, 0)}});
   hand.move({0.0, -0.0025, 0.0}, {0.0, 1.0, 0.0}, 0.0, 100);
   Simulation& simulation = hand.simulation();
-  StepContext context{simulation.world, hand.poses, *simulation.scratch};
+  StepContext context = simulation.scratch->context(simulation.world, hand.poses);
   for (const double times : {1000.0, 5.0}) {
     simulation.world.regions.at<RegionNormal>(0).force *= times;
     region_wrenches(context);

@@ -1,0 +1,152 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "ecs/column.hpp"
+#include "ecs/commands.hpp"
+#include "ecs/components.hpp"
+#include "ecs/world.hpp"
+#include "systems/contact/group_points.hpp"
+#include "systems/geometry/distance.hpp"
+
+namespace torsion {
+
+/// A point of a tool's surface inside a body.
+struct ContactPoint {
+  glm::dvec3 position{0.0};   // m, body
+  double depth = 0.0;         // m, > 0
+  std::uint32_t cluster = 0;  // which group of points of its pair it belongs to: 0, 1, ...
+};
+
+/// The contact points of one tool on one body.
+struct ContactPair {
+  std::uint32_t tool = 0;
+  std::uint32_t body = 0;
+  Range points;  // in Scratch::points
+  Range near;    // in Scratch::near_pairs, rows counted from points.first
+  std::uint32_t clusters = 0;
+};
+
+/// A candidate sample while one pair is searched.
+struct Candidate {
+  std::uint32_t sample = 0;  // row in World::samples
+  double distance = 0.0;     // m, to the body; negative inside
+};
+
+/// A sample of a tool's surface while one pair is searched; what it says counts where it is
+/// stamped.
+struct SampleState {
+  double distance = 0.0;    // m, to the body
+  std::uint32_t stamp = 0;  // Scratch::stamp of the search that has found it
+  std::uint32_t point = 0;  // its row in Scratch::points, or kNoRow
+};
+
+/// A region that continues, begins or ends in this step, for group_regions.
+struct ClusterOwner {
+  std::uint32_t region =
+      kNoRow;  // row in `regions`; kNoRow: nobody continues it, a new region forms
+  double overlap = 0.0;
+  std::uint32_t split_from = kNoRow;  // nobody continues it, but it lies over this region
+};
+
+/// Which of a pair's clusters a region continues in this step.
+struct RegionPoints {
+  Range points;                    // in Scratch::points: all of the pair
+  std::uint32_t cluster = kNoRow;  // which of them; kNoRow: none, it lives by its cells alone
+};
+
+/// The cells of one region as columns, in the grid's frame.
+struct CellColumns {
+  DistanceColumns points;             // cells' centres on the tool's underside
+  std::span<double> tool_x, tool_y;   // how much higher the tool is farther along x, y
+  std::span<double> gradient_square;  // of its distance, of the length: 1 but at a mesh's edges
+  std::span<double> depth;            // m, as in CellGeometry
+  std::span<double> depth_change;     // m, across the cell
+  std::span<double> coverage;         // as in CellGeometry
+  std::span<double> bearing;          // likewise
+  // Of a cell what lies under the tool, and how stiff it is for that, where the tool has rims.
+  std::span<double> rim_share, rim_bearing;
+};
+
+/// Those of a region's cells that are not yet on the tool's surface.
+struct LeftCells {
+  std::span<std::uint32_t> cells;
+  DistanceColumns points;
+  std::span<double> tool_x, tool_y, gradient_square;  // as in CellColumns
+};
+
+/// The beam from what is fixed to a region, as a spring in series with its contact.
+struct BeamSpring {
+  double length = 0.0;     // m: at least a thousandth of the body's size; 0: there is none
+  double stiffness = 0.0;  // N/m, along the beam; 0: there is none
+};
+
+/// Columns of cells in one piece of memory. Each is followed by zeros up to a multiple of 8, so
+/// that loops may take eight cells at a time.
+class CellColumnMemory {
+ public:
+  /// Load time only.
+  /// @param cells  of one column
+  void reserve(std::size_t columns, std::size_t cells) {
+    cells_ = cells;
+    taken_ = 0;
+    memory_.reserve(static_cast<std::uint32_t>(columns * stride()));
+    columns_ = columns;
+  }
+  [[nodiscard]] std::size_t stride() const { return (cells_ + 7) / 8 * 8; }
+  /// The next of the columns.
+  std::span<double> take() {
+    TORSION_ASSERT(taken_ < columns_);
+    return {memory_.data() + stride() * taken_++, cells_};
+  }
+
+ private:
+  Column<double> memory_;
+  std::size_t columns_ = 0;
+  std::size_t cells_ = 0;
+  std::size_t taken_ = 0;
+};
+
+/// Memory that the systems of one step share about contacts. Reserved at load; nothing in it
+/// outlives a step, so that a saved world replays without it.
+struct ContactScratch {
+  // detect_contacts
+  std::vector<SampleState> sample_states;    // (samples)
+  std::vector<std::uint64_t> found_samples;  // (samples of a tool) a bit each
+  std::vector<std::uint32_t> walk;           // (balls of a tool) those to look at, in turn
+  std::uint32_t stamp = 0;
+  std::vector<Candidate> candidates;
+  std::vector<ContactPoint> points;
+  std::vector<NearPair> near_pairs;  // points of neighbouring samples
+  std::vector<ContactPair> pairs;
+  // group_points
+  std::vector<std::uint32_t> order;
+  std::vector<std::uint32_t> parent;
+  std::vector<glm::dvec3> cluster_points;
+  // group_regions
+  std::vector<ClusterOwner> owners;  // (kMaxRegionsPerBody) of one pair's clusters
+  std::vector<double> overlaps;      // (regions of the pair x clusters)
+  Commands<RegionTable> region_commands;
+  std::vector<RegionPoints>
+      region_points;  // (regions) by block of cells, which does not move when rows do
+  // region_grids
+  CellColumns cell_columns;               // (cells of one region)
+  LeftCells left_cells;                   // likewise
+  std::vector<std::uint32_t> near_parts;  // (parts of all bodies and tools)
+
+  // main_beams, for paper_normal_forces
+  std::vector<BeamSpring> beams;  // (regions) by block of cells
+
+  CellColumnMemory column_memory;          // what the columns above are in
+  std::vector<std::uint32_t> cell_memory;  // what the cells of left_cells are in
+
+  /// Takes all memory that a step of `world` can need.
+  void reserve(const World& world);
+};
+
+}  // namespace torsion

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+
+#include "ecs/world.hpp"
+
+namespace torsion {
+
+struct ContactScratch;  // systems/contact/scratch.hpp
+
+// What single models keep for themselves, each said in its own room.
+struct PaperScratch;
+struct MdrTables;
+struct PatchScratch;
+struct SkeletonScratch;
+struct ComplianceScratch;
+struct RingProfiles;
+
+/// What a system of the physics step may touch.
+struct StepContext {
+  World& world;
+  std::span<const Pose> tool_poses;  // (tools) the tool frames in the world at the end of this step
+  ContactScratch& scratch;           // what the systems of contact/ tell each other within a step
+  PaperScratch& paper;
+  const MdrTables& mdr;
+  PatchScratch& patch;
+  SkeletonScratch& skeleton;
+  ComplianceScratch& compliance;
+  const RingProfiles& rings;
+};
+
+}  // namespace torsion

@@ -1,0 +1,31 @@
+#include "systems/patch/scratch.hpp"
+
+namespace torsion {
+
+void PatchScratch::reserve(const World& world) {
+  if (world.patch_cells.empty()) {
+    return;
+  }
+  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  const std::size_t cells = std::size_t{side} * side;
+  column_memory.reserve(22, cells);
+  for (std::span<double>* each :
+       {&columns.depth,    &columns.friction,   &columns.target_x,   &columns.target_y,
+        &columns.pressure, &columns.traction_x, &columns.traction_y, &columns.depression,
+        &columns.moved_x,  &columns.moved_y,    &columns.slips,      &places.x,
+        &places.y,         &places.height,      &places.share,       &places.softness,
+        &places.root,      &places.from_x,      &places.from_y,      &support.x,
+        &support.y,        &support.z}) {
+    *each = column_memory.take();
+  }
+  if (!world.footings.empty()) {
+    support_terms.assign(kSupportTerms * column_memory.stride(), 0.0);
+    disc_stiffness = make_disc_stiffness();
+  }
+  work.reserve(side);
+  held_before.x.assign(cells, 0.0);
+  held_before.y.assign(cells, 0.0);
+  tractions_before.assign(cells, CellTraction{});
+}
+
+}  // namespace torsion

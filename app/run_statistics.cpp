@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "systems/patch/grid.hpp"
+#include "systems/contact/law.hpp"
 
 namespace torsion {
 namespace {
@@ -82,7 +82,8 @@ void RunStatistics::add_step(const World& world, double step_us) {
     peak_torque = std::max(peak_torque, glm::length(wrench.total.torque));
   }
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    if (has_patch(world, world.regions.at<RegionIdentity>(region))) {
+    if (law_of(world, world.regions.at<RegionIdentity>(region).body).model ==
+        ContactModel::kPatch) {
       patch.add(world.regions.at<PatchState>(region));
     }
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "systems/body/compliance/compliance.hpp"
@@ -9,15 +10,11 @@
 #include "systems/contact/couple_tools.hpp"
 #include "systems/contact/detect_contacts.hpp"
 #include "systems/contact/group_regions.hpp"
+#include "systems/contact/law.hpp"
 #include "systems/contact/region_grid.hpp"
 #include "systems/contact/region_motion.hpp"
 #include "systems/contact/region_wrenches.hpp"
-#include "systems/mdr/mdr.hpp"
-#include "systems/mdr/smooth_contact.hpp"
 #include "systems/model/prepare.hpp"
-#include "systems/paper/carry_tractions.hpp"
-#include "systems/paper/paper.hpp"
-#include "systems/patch/patch.hpp"
 #include "systems/scratch.hpp"
 #include "systems/surface/anchor_motions.hpp"
 #include "systems/surface/region_fields.hpp"
@@ -25,49 +22,23 @@
 namespace torsion {
 namespace {
 
-bool any_tool_and_body(const StepContext& context) {
-  return !context.world.tools.empty() && !context.world.bodies.empty();
-}
-
-template <ContactModel Model>
-bool any_contact_model(const StepContext& context) {
+template <BodyModel Model>
+bool any_body_model(const StepContext& context) {
   return any_tool_and_body(context) &&
          std::ranges::any_of(context.world.bodies.column<BodyModels>(),
-                             [](const BodyModels& models) { return models.contact == Model; });
-}
-
-bool any_skeleton(const StepContext& context) {
-  return any_tool_and_body(context) &&
-         std::ranges::any_of(
-             context.world.bodies.column<BodyModels>(),
-             [](const BodyModels& models) { return models.body == BodyModel::kSkeleton; });
-}
-
-bool any_compliance(const StepContext& context) {
-  return any_tool_and_body(context) &&
-         std::ranges::any_of(
-             context.world.bodies.column<BodyModels>(),
-             [](const BodyModels& models) { return models.body == BodyModel::kCompliance; });
-}
-
-bool any_friction(const StepContext& context) {
-  return any_tool_and_body(context) &&
-         std::ranges::any_of(context.world.bodies.column<Friction>(), [](const Friction& friction) {
-           return friction.static_friction > 0.0;
-         });
+                             [](const BodyModels& models) { return models.body == Model; });
 }
 
 bool any_half_space(const StepContext& context) {
-  return any_contact_model<ContactModel::kPatch>(context) ||
-         any_contact_model<ContactModel::kMdr>(context);
+  return any_contact_model(context, ContactModel::kPatch) ||
+         any_contact_model(context, ContactModel::kMdr);
 }
 
 bool any_moving(const StepContext& context) {
-  return any_friction(context) || any_half_space(context);
-}
-
-bool any_paper_friction(const StepContext& context) {
-  return any_friction(context) && any_contact_model<ContactModel::kPaper>(context);
+  return any_friction(context) ||
+         std::ranges::any_of(contact_laws(), [&context](const ContactLaw* law) {
+           return law->needs_motion && any_contact_model(context, law->model);
+         });
 }
 
 }  // namespace
@@ -77,7 +48,7 @@ std::vector<System<StepContext>> step_systems(double dt) {
   const auto field_period =
       static_cast<std::uint32_t>(std::clamp(std::round(kFieldInterval / dt), 1.0, 1e6));
   // The paper's Fig. 4, top to bottom.
-  return {
+  std::vector<System<StepContext>> systems{
       {"couple_tools", "takes the tools' poses and their motion", "a tool", nullptr, couple_tools},
       {"detect_contacts", "finds the tool's surface points inside a body", "a tool and a body",
        any_tool_and_body, detect_contacts},
@@ -87,34 +58,34 @@ std::vector<System<StepContext>> step_systems(double dt) {
        any_tool_and_body, group_regions},
       {"region_grids", "finds depth and area cell by cell", "a tool and a body", any_tool_and_body,
        region_grids},
-      {"carry_tractions", "keeps tractions at their place on the body",
-       "a body with contact model paper and friction", any_paper_friction, carry_tractions},
       {"main_beams", "the beam from what is fixed to every region",
-       "a body with body model skeleton", any_skeleton, main_beams},
-      {"paper_normal_forces", "normal force f = k1 x + k3 x^3", "a body with contact model paper",
-       any_contact_model<ContactModel::kPaper>, paper_normal_forces},
-      {"mdr_contacts", "where smooth shapes lie deepest in each other",
-       "a body with contact model mdr", any_contact_model<ContactModel::kMdr>, mdr_contacts},
-      {"region_motion", "slide, spin and axis of every region", "a body with friction", any_moving,
-       region_motion},
-      {"mdr_forces", "round contacts of an elastic half-space: force, friction and torque",
-       "a body with contact model mdr", any_contact_model<ContactModel::kMdr>, mdr_forces},
-      {"patch_forces", "elastic half-space cell by cell: pressure, friction and torque",
-       "a body with contact model patch", any_contact_model<ContactModel::kPatch>, patch_forces},
-      {"paper_friction_forces", "friction and contact torque, equations (2)-(9), (14)",
-       "a body with contact model paper and friction", any_paper_friction, paper_friction_forces},
+       "a body with body model skeleton", any_body_model<BodyModel::kSkeleton>, main_beams},
+  };
+  for (const ContactLaw* const law : contact_laws()) {
+    systems.insert(systems.end(), law->place.begin(), law->place.end());
+  }
+  systems.push_back({"region_motion", "slide, spin and axis of every region",
+                     "a body with friction", any_moving, region_motion});
+  for (const ContactLaw* const law : contact_laws()) {
+    systems.insert(systems.end(), law->solve.begin(), law->solve.end());
+  }
+  const System<StepContext> last[] = {
       {"region_fields", "what a region does to the surface around it, for those who draw it",
        "a body with contact model mdr or patch", any_half_space, region_fields, field_period},
       {"region_wrenches", "force and torque of every region, equation (1)", "a tool and a body",
        any_tool_and_body, region_wrenches},
       {"skeleton", "beam skeleton: displacement of the anchors, for those who draw it",
-       "a body with body model skeleton", any_skeleton, skeleton, field_period},
+       "a body with body model skeleton", any_body_model<BodyModel::kSkeleton>, skeleton,
+       field_period},
       {"compliance", "the whole body's deformation under its regions",
-       "a body with body model compliance", any_compliance, compliance},
+       "a body with body model compliance", any_body_model<BodyModel::kCompliance>, compliance},
       {"anchor_motions", "the whole body's deformation at its anchors, for those who draw it",
-       "a body with body model compliance", any_compliance, anchor_motions, field_period},
+       "a body with body model compliance", any_body_model<BodyModel::kCompliance>, anchor_motions,
+       field_period},
       {"sum_wrenches", "the wrench on every tool, faults, work", "a tool", nullptr, sum_wrenches},
   };
+  systems.insert(systems.end(), std::begin(last), std::end(last));
+  return systems;
 }
 
 Simulation::Simulation() : scratch(std::make_unique<Scratch>()) {}

@@ -19,6 +19,21 @@ ALLOWED = {
     "app": {"ecs", "systems", "scenes", "device", "render"},
     "tests": {"ecs", "systems", "scenes", "device", "render", "shaders", "app"},
 }
+# Room of systems/ -> rooms that it may include besides itself, from the ground up: no arrow leads back.
+# What lies in systems/ itself (the step, and the list of laws) is on top of them all.
+ROOMS = {
+    "math": set(),
+    "geometry": {"math"},
+    "half_space": {"math"},
+    "contact": {"math", "geometry", "half_space"},
+    "paper": {"math", "contact"},
+    "mdr": {"math", "geometry", "half_space", "contact"},
+    "patch": {"math", "half_space", "contact"},
+    "body": {"math", "half_space", "contact"},
+    "model": {"math", "geometry", "half_space", "contact", "body"},
+    "hold": {"math", "contact"},
+    "surface": {"math", "geometry", "half_space", "contact", "mdr", "body"},
+}
 # Libraries that only one folder may touch: an include's beginning -> that folder (tests may, too).
 OWNED_LIBRARIES = {
     "vulkan/": "render",
@@ -31,6 +46,26 @@ OWNED_LIBRARIES = {
 ALLOWED_BESIDES = {"app/report/": "tests/reference/"}
 SUFFIXES = {".cpp", ".hpp", ".h", ".comp", ".vert", ".frag", ".glsl"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
+
+
+def room_of(path):
+    """The room of systems/ that a file lies in: None outside of systems/, "" in systems/ itself."""
+    parts = pathlib.PurePosixPath(path).parts
+    if parts[0] != "systems":
+        return None
+    return parts[1] if len(parts) > 2 else ""
+
+
+def room_problem(path, target):
+    """What is wrong with an arrow between two rooms of systems/, or None."""
+    here, there = room_of(path), room_of(target)
+    if not here or there is None or here == there:
+        return None
+    if here not in ROOMS:
+        return f"room systems/{here}/ has no rule in tests/check_includes.py"
+    if there not in ROOMS[here]:
+        return f"systems/{here}/ may not include {target}"
+    return None
 
 
 def problems_of(path, text):
@@ -52,6 +87,9 @@ def problems_of(path, text):
                for part, besides in ALLOWED_BESIDES.items()):
             continue
         first = pathlib.PurePosixPath(target).parts[0]
+        problem = room_problem(path, target)
+        if problem:
+            found.append(place + problem)
         if first in ALLOWED and first != folder and first not in ALLOWED[folder]:
             found.append(f"{place}{folder}/ may not include {first}/ ({target})")
         elif quote == '"' and "/" not in target and folder != "shaders" and not target.endswith(".glsl"):
@@ -73,6 +111,12 @@ def self_test():
         ("scenes/a.cpp", "#include <tiny_gltf.h>", 0),
         ("app/a.cpp", "#include <tiny_gltf.h>", 1),
         ("app/a.cpp", '#include "systems/step.hpp"\n#include "render/frame.hpp"', 0),
+        ("systems/contact/a.cpp", '#include "systems/math/a.hpp"\n#include "systems/contact/support/a.hpp"', 0),
+        ("systems/contact/a.cpp", '#include "systems/patch/a.hpp"\n#include "systems/step.hpp"', 2),
+        ("systems/patch/a.cpp", '#include "systems/mdr/a.hpp"', 1),
+        ("systems/attic/a.cpp", '#include "systems/math/a.hpp"', 1),
+        ("systems/step.cpp", '#include "systems/patch/a.hpp"', 0),
+        ("tests/systems/a.cpp", '#include "systems/patch/a.hpp"', 0),
         ("render/a.cpp", '#include "systems/step.hpp"\n#include "app/run.hpp"', 2),
         ("render/a.cpp", '#include "../ecs/world.hpp"', 1),
         ("device/a.cpp", '#include "device.hpp"', 1),

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "systems/patch/grid.hpp"
+#include "systems/half_space/influence.hpp"
 
 namespace torsion {
 
@@ -47,7 +47,7 @@ ContactAxes contact_axes(const Grid& grid, const CellMoments& moments) {
   }
   constexpr double kQuarter = 0.5 * std::numbers::pi;
   axes.angle = second.angle();
-  const std::int32_t aspect = patch_aspect(grid.frame.half_size);
+  const std::int32_t aspect = table_aspect(grid.frame.half_size);
   if (aspect < 0 || (aspect == 0 && std::abs(axes.angle) > 0.5 * kQuarter)) {
     axes.angle += axes.angle > 0.0 ? -kQuarter : kQuarter;
   }

@@ -9,8 +9,10 @@
 
 #include "systems/contact/fault.hpp"
 #include "systems/contact/grid_cells.hpp"
+#include "systems/contact/law.hpp"
 #include "systems/contact/region_wrenches.hpp"
 #include "systems/contact/scratch.hpp"
+#include "systems/contact/support/body_law.hpp"
 #include "systems/geometry/distance.hpp"
 #include "systems/math/frames.hpp"
 
@@ -18,10 +20,6 @@ namespace torsion {
 namespace {
 
 constexpr double kDeeper = 3.0;  // than the deepest sample, at most
-
-bool moves_as_a_whole(const World& world, std::uint32_t body) {
-  return world.bodies.at<BodyModels>(body).body == BodyModel::kCompliance;
-}
 
 /// What holds a region's contact.
 struct RestOverlap {
@@ -48,7 +46,7 @@ RestOverlap rest_overlap(const StepContext& context, std::uint32_t region) {
   // Between samples it may be deeper, as cells show it; but where the body as a whole has moved,
   // theirs is the depth under the moved surface.
   const double of_cells = world.regions.at<RegionGeometry>(region).largest_depth;
-  overlap.depth = std::max(overlap.depth, moves_as_a_whole(world, identity.body)
+  overlap.depth = std::max(overlap.depth, body_law_of(world, identity.body).moves_as_a_whole
                                               ? std::min(of_cells, kDeeper * overlap.depth)
                                               : of_cells);
   // Samples lie within the overlap; it ends between them and their neighbours, which are at most as
@@ -150,7 +148,7 @@ void bound_forces_on(StepContext& context, std::uint32_t body) {
   const double needed = 0.5 * energy.force * energy.force / stiffness;
   double most = std::max(energy.most + work, kSameSize * needed + std::max(work, 0.0));
   if (regions.unannounced) {
-    const double depth = moves_as_a_whole(world, body)
+    const double depth = body_law_of(world, body).moves_as_a_whole
                              ? std::max(regions.overlap.depth, depth_by_cells(context, body))
                              : regions.overlap.depth;
     most = std::max(most, 0.5 * stiffness * depth * depth);
@@ -159,7 +157,7 @@ void bound_forces_on(StepContext& context, std::uint32_t body) {
   const double allowed = std::max(most, kDrift * energy.peak);
   const bool too_much = regions.force * regions.force > 2.0 * stiffness * allowed;
   const bool too_hard = regions.force > stiffness * regions.overlap.depth;
-  if (too_much || (too_hard && !moves_as_a_whole(world, body))) {
+  if (too_much || (too_hard && !body_law_of(world, body).moves_as_a_whole)) {
     raise(world.clock.at<Clock>(0), Fault::kForceTooLarge);
     energy.faulty = 1;
     return;
@@ -171,7 +169,7 @@ void bound_forces_on(StepContext& context, std::uint32_t body) {
 
 void bound_forces(StepContext& context) {
   for (std::uint32_t body = 0; body < context.world.bodies.size(); ++body) {
-    if (context.world.bodies.at<BodyModels>(body).contact != ContactModel::kPaper) {
+    if (law_of(context.world, body).is_bounded) {
       bound_forces_on(context, body);
     }
   }

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <optional>
 
+#include "systems/contact/law.hpp"
 #include "systems/contact/rim_cells.hpp"
 #include "systems/contact/tool_surface.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
-#include "systems/patch/grid.hpp"
 
 namespace torsion {
 namespace {
@@ -143,12 +143,11 @@ CellBits find_coverage(const Grid& grid, bool rims) {
   if (rims) {
     take_rims(columns);
   }
-  if (has_patch(grid.world, grid.identity) && patch_spare(grid.side) > 0) {
-    for (std::size_t first = 0; first < count; first += grid.side) {
-      // Takes no part: there are as many columns on either side of a contact's middle.
-      coverage[first] = 0.0;
-      columns.bearing[first] = 0.0;
-    }
+  const ContactLaw& law = law_of(grid.world, grid.identity.body);
+  const std::uint32_t spare = law.spare_columns != nullptr ? law.spare_columns(grid.side) : 0;
+  for (std::size_t first = 0; spare > 0 && first < count; first += grid.side) {
+    std::fill_n(&coverage[first], spare, 0.0);
+    std::fill_n(&columns.bearing[first], spare, 0.0);
   }
   return bits_of_covered(grid);
 }

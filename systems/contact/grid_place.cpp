@@ -5,9 +5,9 @@
 #include <cmath>
 #include <optional>
 
+#include "systems/contact/law.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/smooth_step.hpp"
-#include "systems/patch/grid.hpp"
 
 namespace torsion {
 namespace {
@@ -75,11 +75,18 @@ PlaneBox covered_box(const Grid& grid, const CellBits& covered, double angle) {
 
 glm::dvec2 half_size_for(const Grid& grid, const PlaneBox& box) {
   const glm::dvec2 half = 0.5 * (box.highest - box.lowest);
-  if (has_patch(grid.world, grid.identity)) {
-    return patch_half_size(kGridMargin * glm::max(half, glm::dvec2(kSmallestHalf)));
+  const ContactLaw& law = law_of(grid.world, grid.identity.body);
+  if (law.half_size != nullptr) {
+    return law.half_size(kGridMargin * glm::max(half, glm::dvec2(kSmallestHalf)));
   }
   const double least = std::max(0.1 * std::max(half.x, half.y), kSmallestHalf);
   return kGridMargin * glm::max(half, glm::dvec2(least));
+}
+
+glm::dvec2 overlap_extent(const World& world, std::uint32_t region) {
+  const glm::dvec2 of_grid = world.regions.at<RegionFrame>(region).half_size / kGridMargin;
+  const SmoothContact& contact = world.regions.at<SmoothContact>(region);
+  return contact.depth > 0.0 ? glm::mix(of_grid, contact.extent, contact.share) : of_grid;
 }
 
 glm::dvec3 body_normal(const Grid& grid, const glm::dvec3& point) {

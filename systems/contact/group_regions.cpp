@@ -3,18 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems/body/compliance/region_supports.hpp"
 #include "systems/contact/cell_finder.hpp"
 #include "systems/contact/fault.hpp"
 #include "systems/contact/grid_cells.hpp"
 #include "systems/contact/join_clusters.hpp"
+#include "systems/contact/law.hpp"
 #include "systems/contact/region_grid.hpp"
 #include "systems/contact/region_wrenches.hpp"
 #include "systems/contact/scratch.hpp"
+#include "systems/contact/support/body_law.hpp"
 #include "systems/math/frames.hpp"
-#include "systems/patch/energy.hpp"
-#include "systems/patch/join.hpp"
-#include "systems/patch/split.hpp"
 
 namespace torsion {
 namespace {
@@ -64,7 +62,10 @@ void end_region(World& world, std::uint32_t region, std::uint32_t heir) {
     wrench.on_tool.force += ended.on_tool.force;
     wrench.on_tool.torque += ended.on_tool.torque;
     wrench.event_now = kTakesOver;
-    join_energies(world.regions.at<PatchEnergy>(region), world.regions.at<PatchEnergy>(heir));
+    const ContactLaw& law = law_of(world, world.regions.at<RegionIdentity>(heir).body);
+    if (law.end != nullptr) {
+      law.end(world, region, heir);
+    }
   }
 }
 
@@ -85,8 +86,7 @@ bool any_took_over(const World& world, std::uint32_t body) {
 void end_events(World& world) {
   for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
     const bool begins_to_follow =
-        world.bodies.at<BodyModels>(body).body == BodyModel::kCompliance &&
-        any_took_over(world, body);
+        body_law_of(world, body).moves_as_a_whole && any_took_over(world, body);
     for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
       RegionWrench& wrench = world.regions.at<RegionWrench>(region);
       std::uint32_t& event = wrench.event_now;
@@ -147,24 +147,24 @@ void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t c
   clock.regions_formed += 1;
   std::ranges::fill(world.cells.rows<CellGeometry>(cells), CellGeometry{});
   std::ranges::fill(world.cells.rows<CellTraction>(cells), CellTraction{});
-  if (!world.mdr_layers.empty()) {
-    const Range layers{cells.first / cells.count * kMdrLayers, kMdrLayers};
-    std::ranges::fill(world.mdr_layers.rows<MdrLayer>(layers), MdrLayer{});
-  }
+  const std::uint32_t block = cells.first / cells.count;
   if (!world.footings.empty()) {
-    world.footings.at<Footing>(cells.first / cells.count) = Footing{};
+    world.footings.at<Footing>(block) = Footing{};
   }
-  if (!world.patch_cells.empty()) {
-    world.patch_cells.zero(cells);
+  const ContactLaw& law = law_of(world, pair.body);
+  if (law.begin != nullptr) {
+    law.begin(world, block);
   }
   place_new_grid(context, row, {pair.points, cluster});
-  if (split_from == kNoRow) {
-    begin_support(world, row);
-  } else {
-    begin_split_support(world, split_from, row);
-    if (world.regions.at<PatchState>(split_from).started != 0) {
-      copy_patch(world, split_from, row);
-    }
+  const BodyLaw& body = body_law_of(world, pair.body);
+  if (split_from == kNoRow && body.begin != nullptr) {
+    body.begin(world, row);
+  }
+  if (split_from != kNoRow && body.begin_split != nullptr) {
+    body.begin_split(world, split_from, row);
+  }
+  if (split_from != kNoRow && law.split != nullptr) {
+    law.split(world, split_from, row);
   }
   // on_tool is zero: what it exerts at birth fades in.
   world.regions.at<RegionWrench>(row).event_now = static_cast<std::uint32_t>(
@@ -265,20 +265,12 @@ void note_splits(World& world, ContactScratch& scratch, std::span<const ContactP
   }
 }
 
-/// Whether a region of patch has tractions that are worth keeping.
-bool has_settled(const World& world, std::uint32_t region) {
-  constexpr double kSettled = 0.1;  // PatchState::residual
-  const PatchState& state = world.regions.at<PatchState>(region);
-  return state.started != 0 && state.residual < kSettled;
-}
-
 /// Points are sought under the body's rest shape. One that gives way may be dragged along by
 /// friction until the tool stands beside that shape with all its points: cells that carry a force
 /// where they are now are a contact without them. Where there are points they say which contacts
 /// there are.
 bool lives_without_points(const World& world, const ContactPair& pair, std::uint32_t region) {
-  return pair.points.count == 0 &&
-         world.bodies.at<BodyModels>(pair.body).body == BodyModel::kCompliance &&
+  return pair.points.count == 0 && body_law_of(world, pair.body).moves_as_a_whole &&
          world.regions.at<RegionNormal>(region).force > 0.0;
 }
 
@@ -301,19 +293,18 @@ void end_or_go_on(StepContext& context, const ContactPair& pair,
   }
 }
 
-/// Regions of patch that others take over hand them their tractions.
-void join_patches(StepContext& context, const ContactPair& pair,
+/// Regions that others take over hand them what they hold.
+void join_regions(StepContext& context, const ContactPair& pair,
                   std::span<const ContactPoint> points) {
   const World& world = context.world;
+  const ContactLaw& law = law_of(world, pair.body);
   const auto regions = world.regions.column<RegionIdentity>();
-  for (std::uint32_t region = 0; region < regions.size(); ++region) {
-    if (!of_pair(regions[region], pair) || owns_cluster(context.scratch, region) ||
-        !has_settled(world, region)) {
-      continue;
-    }
-    const std::uint32_t heir = heir_of(world, context.scratch, region, points);
-    if (heir != kNoRow && has_settled(world, heir)) {
-      join_patch(context, region, heir);
+  for (std::uint32_t region = 0; law.join != nullptr && region < regions.size(); ++region) {
+    if (of_pair(regions[region], pair) && !owns_cluster(context.scratch, region)) {
+      const std::uint32_t heir = heir_of(world, context.scratch, region, points);
+      if (heir != kNoRow) {
+        law.join(context, region, heir);
+      }
     }
   }
 }
@@ -337,7 +328,7 @@ void group_regions(StepContext& context) {
         follow_contact(context, owner, {pair.points, cluster});
       }
     }
-    join_patches(context, pair, points);
+    join_regions(context, pair, points);
     for (std::uint32_t cluster = 0; cluster < pair.clusters; ++cluster) {
       const ClusterOwner& owner = scratch.owners[cluster];
       if (owner.region == kNoRow) {

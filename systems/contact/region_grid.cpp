@@ -7,11 +7,9 @@
 #include "systems/contact/grid_cells.hpp"
 #include "systems/contact/grid_place.hpp"
 #include "systems/contact/grid_summary.hpp"
+#include "systems/contact/law.hpp"
 #include "systems/contact/region_motion.hpp"
 #include "systems/math/frames.hpp"
-#include "systems/patch/centering.hpp"
-#include "systems/patch/grid.hpp"
-#include "systems/patch/split.hpp"
 
 namespace torsion {
 namespace {
@@ -41,10 +39,6 @@ void follow_material(World& world, std::uint32_t region) {
   turn_axes(frame, angle);
 }
 
-bool has_mdr(const Grid& grid) {
-  return grid.world.bodies.at<BodyModels>(grid.identity.body).contact == ContactModel::kMdr;
-}
-
 /// True when the contact reaches the grid's edge, so that some of it may lie outside.
 bool reaches_edge(const Grid& grid, const PlaneBox& box) {
   const glm::dvec2 inner = grid.frame.half_size - cell_half_size(grid);
@@ -65,15 +59,13 @@ bool settled(const Grid& grid, const PlaneBox& box) {
   return std::max(off.x, off.y) < kSettled;
 }
 
-/// Turns the grid, and what the springs of mdr know in its axes.
+/// Turns the grid, and what is known in its axes.
 void turn_grid(const Grid& grid, std::uint32_t region, double angle) {
   turn_axes(grid.frame, angle);
   const glm::dmat2 back(std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle));
-  if (has_mdr(grid)) {
-    const Range layers{block_of(grid.identity) * kMdrLayers, kMdrLayers};
-    for (MdrLayer& layer : grid.world.mdr_layers.rows<MdrLayer>(layers)) {
-      layer.shift = back * layer.shift;
-    }
+  const ContactLaw& law = law_of(grid.world, grid.identity.body);
+  if (law.turn != nullptr) {
+    law.turn(grid.world, region, back);
   }
   RegionFriction& friction = grid.world.regions.at<RegionFriction>(region);
   friction.force = back * friction.force;
@@ -124,18 +116,6 @@ bool fit_to_contact(const Grid& grid, std::uint32_t region, const RegionPoints& 
   return true;
 }
 
-double deepest_point(std::span<const ContactPoint> points, std::uint32_t cluster,
-                     glm::dvec3& position) {
-  double depth = 0.0;
-  for (const ContactPoint& point : points) {
-    if (point.cluster == cluster && point.depth > depth) {
-      depth = point.depth;
-      position = point.position;
-    }
-  }
-  return depth;
-}
-
 void include_points(const Grid& grid, const RegionPoints& contact, PlaneBox& box) {
   for (const ContactPoint& point : points_of(grid.scratch, contact)) {
     if (point.cluster == contact.cluster) {
@@ -150,27 +130,18 @@ RegionPoints& contact_of(StepContext& context, const RegionIdentity& region) {
   return context.scratch.region_points[block_of(region)];
 }
 
-/// What sticks goes with the tool in this step, too. Cells that only followed a step later would
-/// lie at other depths in between, for which nobody has worked.
-void foresee_carrier(World& world, std::uint32_t region) {
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const double share = world.regions.at<RegionFriction>(region).stick_share;
-  const MotionOverBody motion = motion_over_body(world, region);
-  // As a rigid body about the contact's middle, so that it does not matter where the grid has its
-  // origin.
-  const glm::dvec3 middle = world.regions.at<RegionGeometry>(region).equivalent_point;
-  const glm::dvec3 shift = shift_at(motion, middle);
-  const double turn = share * glm::dot(turn_of(motion), frame.normal);
-  RegionCarrier& carrier = world.regions.at<RegionCarrier>(region);
-  const glm::dvec3 arm = frame.origin + carrier.translation - middle;
-  carrier.translation += share * (shift - frame.normal * glm::dot(shift, frame.normal)) +
-                         (glm::angleAxis(turn, frame.normal) * arm - arm);
-  carrier.rotation += frame.normal * turn;
+}  // namespace
+
+ContactPoint deepest_of_cluster(const Grid& grid, const RegionPoints& contact) {
+  ContactPoint deepest;
+  for (const ContactPoint& point : points_of(grid.scratch, contact)) {
+    if (point.cluster == contact.cluster && point.depth > deepest.depth) {
+      deepest = point;
+    }
+  }
+  return deepest;
 }
 
-/// A grid that is laid anew may see more of the body than the one before it, by whose cells it is
-/// turned: of a face that comes to lie on a body the first to touch is an edge, whose normal is
-/// another one, and over the whole face that would be a depth of its own.
 void look_along_normal(const Grid& grid, const RegionPoints& contact) {
   constexpr double kLittle = 0.1;  // of the depth
   const RegionGeometry seen = summarize_cells(grid);
@@ -184,46 +155,29 @@ void look_along_normal(const Grid& grid, const RegionPoints& contact) {
   find_cells(grid, contact);
 }
 
-}  // namespace
-
 void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const Grid grid = grid_of(context, region);
   contact_of(context, grid.identity) = contact;
-  glm::dvec3 deepest(0.0);
-  const double depth = deepest_point(points_of(grid.scratch, contact), contact.cluster, deepest);
+  const ContactPoint deepest = deepest_of_cluster(grid, contact);
   const Distance surface = signed_distance(
-      grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts, deepest);
+      grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts, deepest.position);
   RegionFrame& frame = grid.frame;
   frame = RegionFrame{};
-  frame.origin = deepest;
+  frame.origin = deepest.position;
   turn_normal_to(frame, glm::normalize(surface.gradient));
   PlaneBox box;
-  const glm::dvec2 start(2.0 * depth);
+  const glm::dvec2 start(2.0 * deepest.depth);
   box.include(-start, start);
   include_points(grid, contact, box);
   fit(grid, box);
-  restart_heights(grid, depth);
+  restart_heights(grid, deepest.depth);
 }
 
-void follow_contact(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
+void follow_overlap(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const Grid grid = grid_of(context, region);
-  contact_of(context, grid.identity) = contact;
-  if (has_patch(context.world, grid.identity)) {
-    if (context.world.regions.at<RegionNormal>(region).force <= 0.0) {
-      // It has nothing to keep, and its grid may lie beside the points, where it would stay.
-      context.world.patch_cells.zero(grid.identity.cells);
-      context.world.regions.at<PatchState>(region) = PatchState{};
-      place_new_grid(context, region, contact);
-      return;
-    }
-    follow_patch(context, region, contact);
-    turn_normal_to(grid.frame, context.world.regions.at<RegionGeometry>(region).mean_normal);
-    return;
-  }
   const MotionOverBody motion = motion_over_body(context.world, region);
   const bool moves = motion.shift != glm::dvec3(0.0) || motion.turn != glm::dvec3(0.0);
-  // The springs of mdr are round: they need no grid that turns with what sticks.
-  if (!has_mdr(grid)) {
+  if (law_of(context.world, grid.identity.body).follows_material) {
     follow_material(context.world, region);
   }
   const CellBits covered = covered_cells(grid);
@@ -241,33 +195,34 @@ void follow_contact(StepContext& context, std::uint32_t region, const RegionPoin
   turn_normal_to(grid.frame, context.world.regions.at<RegionGeometry>(region).mean_normal);
 }
 
-void region_grids(StepContext& context) {
-  for (std::uint32_t region = 0; region < context.world.regions.size(); ++region) {
-    const Grid grid = grid_of(context, region);
-    const RegionPoints& contact = contact_of(context, grid.identity);
-    if (has_patch(context.world, grid.identity) &&
-        context.world.regions.at<PatchState>(region).started != 0) {
-      foresee_carrier(context.world, region);
-      find_cells(grid, contact);
-      if (context.world.regions.at<PatchState>(region).resized != 0) {
-        look_along_normal(grid, contact);
-      }
-    } else {
-      glm::dvec3 deepest(0.0);
-      const double depth =
-          deepest_point(points_of(grid.scratch, contact), contact.cluster, deepest);
-      if (has_patch(context.world, grid.identity)) {
-        center_patch(grid, contact, depth);
-      } else {
-        const bool event_now = context.world.regions.at<RegionWrench>(region).event_now != 0;
-        if (fit_to_contact(grid, region, contact, depth, event_now)) {
-          look_along_normal(grid, contact);
-        }
-      }
-    }
-    context.world.regions.at<RegionGeometry>(region) = summarize_cells(grid);
+void find_overlap(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
+  const Grid grid = grid_of(context, region);
+  const double depth = deepest_of_cluster(grid, contact).depth;
+  const bool event_now = context.world.regions.at<RegionWrench>(region).event_now != 0;
+  if (fit_to_contact(grid, region, contact, depth, event_now)) {
+    look_along_normal(grid, contact);
   }
-  share_out_patches(context);
+}
+
+void follow_contact(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
+  const RegionIdentity& identity = context.world.regions.at<RegionIdentity>(region);
+  contact_of(context, identity) = contact;
+  law_of(context.world, identity.body).follow(context, region, contact);
+}
+
+void region_grids(StepContext& context) {
+  World& world = context.world;
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+    law_of(world, identity.body).find_cells(context, region, contact_of(context, identity));
+    world.regions.at<RegionGeometry>(region) = summarize_cells(grid_of(context, region));
+  }
+  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    const ContactLaw& law = law_of(world, world.regions.at<RegionIdentity>(region).body);
+    if (law.share_out != nullptr) {
+      law.share_out(context, region);
+    }
+  }
 }
 
 }  // namespace torsion

@@ -9,7 +9,6 @@
 #include "systems/contact/tool_surface.hpp"
 #include "systems/geometry/gradient_length.hpp"
 #include "systems/math/lanes.hpp"
-#include "systems/patch/grid.hpp"
 
 namespace torsion {
 namespace {

@@ -6,9 +6,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "systems/contact/grid_place.hpp"
+#include "systems/contact/law.hpp"
 #include "systems/half_space/elliptic_contact.hpp"
-#include "systems/mdr/smooth_contact.hpp"
-#include "systems/patch/grid.hpp"
 
 namespace torsion {
 namespace {
@@ -37,7 +37,7 @@ StuckStiffness stuck_stiffness(const World& world, std::uint32_t region, double 
   const double g = elasticity.shear_modulus();
   const double nu = elasticity.poisson_ratio;
   const glm::dvec2 half = overlap_extent(world, region);
-  const double axes = axes_of(half, radius, !has_patch(world, identity));
+  const double axes = axes_of(half, radius, !law_of(world, identity.body).by_cells);
   const double cube = cube_of(radius);
   const double share = ellipse_shares(axes).force;
   StuckStiffness stiffness;

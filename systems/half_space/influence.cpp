@@ -105,4 +105,20 @@ InfluenceTables influence_tables(std::span<const double> values, std::uint32_t s
   return tables;
 }
 
+std::int32_t table_aspect(const glm::dvec2& half_size) {
+  const double ratio = std::log2(half_size.x / half_size.y);
+  return static_cast<std::int32_t>(
+      std::clamp(std::round(ratio), -1.0 * kMostAspect, 1.0 * kMostAspect));
+}
+
+glm::dvec2 tabulated_half_size(const glm::dvec2& least, std::int32_t aspect) {
+  const double ratio = std::ldexp(1.0, aspect);
+  const double half = std::max(least.x, least.y * ratio);
+  return {half, half / ratio};
+}
+
+glm::dvec2 tabulated_half_size(const glm::dvec2& least) {
+  return tabulated_half_size(least, table_aspect(least));
+}
+
 }  // namespace torsion

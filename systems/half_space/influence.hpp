@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <span>
 
+#include <glm/vec2.hpp>
+
 namespace torsion {
 
 /// Displacement (first letter) by traction (second letter); z points into the body.
@@ -64,5 +66,16 @@ struct InfluenceTables {
 /// @param aspect  -kMostAspect to kMostAspect
 InfluenceTables influence_tables(std::span<const double> values, std::uint32_t side,
                                  std::int32_t aspect);
+
+/// Which of the shapes of cells that there are tables for a grid has: -kMostAspect to kMostAspect.
+std::int32_t table_aspect(const glm::dvec2& half_size);
+
+/// Half the sides, at least `least`, of a grid whose cells have one of the shapes that there are
+/// influence tables for.
+/// @param least  m
+glm::dvec2 tabulated_half_size(const glm::dvec2& least);
+
+/// Likewise, of cells with a given shape: 2^aspect times as long along x as along y.
+glm::dvec2 tabulated_half_size(const glm::dvec2& least, std::int32_t aspect);
 
 }  // namespace torsion

@@ -10,11 +10,13 @@
 #include <glm/matrix.hpp>
 
 #include "systems/contact/friction_decay.hpp"
+#include "systems/contact/region_grid.hpp"
 #include "systems/contact/scratch.hpp"
 #include "systems/contact/support/own_answer.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/mdr/layers.hpp"
 #include "systems/mdr/round_contact.hpp"
+#include "systems/mdr/smooth_contact.hpp"
 
 namespace torsion {
 namespace {
@@ -298,7 +300,43 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
   set_cells(world, region, round, forces.stick_radius);
 }
 
+std::span<MdrLayer> layers_of(World& world, std::uint32_t block) {
+  return world.mdr_layers.rows<MdrLayer>({block * kMdrLayers, kMdrLayers});
+}
+
+void forget_layers(World& world, std::uint32_t block) {
+  std::ranges::fill(layers_of(world, block), MdrLayer{});
+}
+
+void turn_layers(World& world, std::uint32_t region, const glm::dmat2& back) {
+  for (MdrLayer& layer : layers_of(world, block_of(world.regions.at<RegionIdentity>(region)))) {
+    layer.shift = back * layer.shift;
+  }
+}
+
+constexpr System<StepContext> kMdrPlace[] = {
+    {"mdr_contacts", "where smooth shapes lie deepest in each other",
+     "a body with contact model mdr", any_with<ContactModel::kMdr>, mdr_contacts},
+};
+constexpr System<StepContext> kMdrSolve[] = {
+    {"mdr_forces", "round contacts of an elastic half-space: force, friction and torque",
+     "a body with contact model mdr", any_with<ContactModel::kMdr>, mdr_forces},
+};
+
 }  // namespace
+
+// The springs are round: they need no grid that turns with what sticks.
+const ContactLaw kMdrLaw{
+    .model = ContactModel::kMdr,
+    .moves_own_support = true,
+    .answers_from = 10.0,  // only when tools that pinch a body sway it
+    .place = kMdrPlace,
+    .solve = kMdrSolve,
+    .follow = follow_overlap,
+    .find_cells = find_overlap,
+    .turn = turn_layers,
+    .begin = forget_layers,
+};
 
 void mdr_forces(StepContext& context) {
   World& world = context.world;

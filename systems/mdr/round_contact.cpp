@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "systems/contact/support/body_law.hpp"
 #include "systems/half_space/elliptic_contact.hpp"
 #include "systems/half_space/layer_thickness.hpp"
 #include "systems/mdr/contact_shape.hpp"
@@ -121,7 +122,7 @@ RoundContact round_contact(const World& world, std::uint32_t region) {
     contact = mix(contact, contact_of_shapes(smooth, elasticity), smooth.share);
   }
   // A body model in series has the body's thickness itself.
-  const bool in_series = world.bodies.at<BodyModels>(identity.body).body == BodyModel::kCompliance;
+  const bool in_series = body_law_of(world, identity.body).moves_as_a_whole;
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
   const double thickness =
       in_series ? 0.0

@@ -295,15 +295,6 @@ glm::dvec2 move_region_to(const CommonNormal& at, double share, RegionFrame& fra
 
 }  // namespace
 
-glm::dvec2 overlap_extent(const World& world, std::uint32_t region) {
-  const glm::dvec2 of_grid = world.regions.at<RegionFrame>(region).half_size / kGridMargin;
-  const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
-  const SmoothContact& contact = world.regions.at<SmoothContact>(region);
-  const bool known =
-      world.bodies.at<BodyModels>(body).contact == ContactModel::kMdr && contact.depth > 0.0;
-  return known ? glm::mix(of_grid, contact.extent, contact.share) : of_grid;
-}
-
 void mdr_contacts(StepContext& context) {
   World& world = context.world;
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {

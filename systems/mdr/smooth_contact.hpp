@@ -16,8 +16,4 @@ namespace torsion {
 /// depth to the deepest place.
 void mdr_contacts(StepContext& context);
 
-/// Half of the overlap's extent along the grid's axes, m: that of the shapes as far as
-/// SmoothContact is known, else the grid's own.
-glm::dvec2 overlap_extent(const World& world, std::uint32_t region);
-
 }  // namespace torsion

@@ -199,11 +199,11 @@ glm::dvec2 half_size_around(const Grid& grid, const glm::dvec2& middle, const Pl
   // Cells are made longer only where the overlap is so by more than a doubling and a half, or they
   // might go to and fro between two shapes.
   constexpr double kLonger = 0.6;  // of a doubling
-  const std::int32_t now = patch_aspect(grid.frame.half_size);
-  const std::int32_t wanted = patch_aspect(least);
+  const std::int32_t now = table_aspect(grid.frame.half_size);
+  const std::int32_t wanted = table_aspect(least);
   const bool longer = std::abs(wanted) > std::abs(now);
   const bool keeps = longer && std::abs(std::log2(least.x / least.y) - now) < kLonger;
-  return patch_half_size(least, keeps ? now : wanted);
+  return tabulated_half_size(least, keeps ? now : wanted);
 }
 
 /// Passes over a grid whose axes stay until it lies around the contact.
@@ -235,7 +235,7 @@ void find_middle(const Grid& grid, const RegionPoints& contact, double start_dep
       if (progress.is_at_end()) {
         return;
       }
-      if (progress.stalls() || patch_aspect(half) != patch_aspect(before)) {
+      if (progress.stalls() || table_aspect(half) != table_aspect(before)) {
         seeker.forget();
       } else {
         step = seeker.next(step);

@@ -268,7 +268,9 @@ void retell_others(World& world, std::uint32_t region, const RegionSupport& befo
   energy.rotation_by_others += now.rotation_by_others - before.rotation_by_others;
 }
 
-void join_energies(const PatchEnergy& ended, PatchEnergy& heir) {
+void join_energies(World& world, std::uint32_t ended_region, std::uint32_t heir_region) {
+  const PatchEnergy& ended = world.regions.at<PatchEnergy>(ended_region);
+  PatchEnergy& heir = world.regions.at<PatchEnergy>(heir_region);
   heir.held += ended.held;
   heir.owed += ended.owed;
   heir.lent += ended.lent;

@@ -65,7 +65,7 @@ void split_energy(World& world, std::uint32_t from, std::uint32_t region, double
 /// though the material has not moved: nothing works by that.
 void retell_others(World& world, std::uint32_t region, const RegionSupport& before);
 
-/// What a region that ends hands to the one that takes over.
-void join_energies(const PatchEnergy& ended, PatchEnergy& heir);
+/// ContactLaw::end. What a region that ends hands to the one that takes over.
+void join_energies(World& world, std::uint32_t ended_region, std::uint32_t heir_region);
 
 }  // namespace torsion

@@ -8,9 +8,12 @@
 
 #include "systems/contact/contact_axes.hpp"
 #include "systems/contact/grid_cells.hpp"
+#include "systems/contact/region_grid.hpp"
+#include "systems/contact/region_motion.hpp"
 #include "systems/contact/region_wrenches.hpp"
 #include "systems/half_space/influence.hpp"
 #include "systems/math/frames.hpp"
+#include "systems/patch/centering.hpp"
 #include "systems/patch/layout.hpp"
 #include "systems/patch/resampling.hpp"
 
@@ -150,7 +153,8 @@ PlaneBox extent_along(const Grid& grid, double least, double angle) {
 bool shift_frame(const Grid& grid, const CellBox& box, CellMove& move) {
   const double side = static_cast<double>(grid.side);
   const glm::dvec2 half = 0.5 * cell_size(grid) * glm::dvec2(box.end - box.first);
-  const glm::dvec2 growth = patch_half_size(half / fill_of_new(grid.side)) / grid.frame.half_size;
+  const glm::dvec2 growth =
+      tabulated_half_size(half / fill_of_new(grid.side)) / grid.frame.half_size;
   // With a free row or column on either side, or the next step would lay it anew.
   const glm::ivec2 room = glm::ivec2(static_cast<int>(grid.side)) - (box.end - box.first) -
                           glm::ivec2(static_cast<int>(patch_spare(grid.side)), 0);
@@ -241,7 +245,7 @@ GridFit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& conta
   const glm::dvec2 size = cell_size(grid) * glm::dvec2(cells);
   const double ratio =
       std::clamp(std::log2(size.x / size.y), -1.0 * kMostAspect, 1.0 * kMostAspect);
-  fit.other_shape = std::abs(ratio - patch_aspect(grid.frame.half_size)) > kOtherShape;
+  fit.other_shape = std::abs(ratio - table_aspect(grid.frame.half_size)) > kOtherShape;
   if (!fit.has_lobes) {
     fit.axes = contact_axes(grid, loaded.moments);
     fit.has_rims = fit.axes.is_long() && !(fit.cut && fills_side(grid, fit.least, fit.box)) &&
@@ -268,17 +272,25 @@ void lay_frame(const Grid& grid, const RegionPoints& contact, const GridFit& fit
   }
 }
 
+/// What sticks goes with the tool in this step, too. Cells that only followed a step later would
+/// lie at other depths in between, for which nobody has worked.
+void foresee_carrier(World& world, std::uint32_t region) {
+  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const double share = world.regions.at<RegionFriction>(region).stick_share;
+  const MotionOverBody motion = motion_over_body(world, region);
+  // As a rigid body about the contact's middle, so that it does not matter where the grid has its
+  // origin.
+  const glm::dvec3 middle = world.regions.at<RegionGeometry>(region).equivalent_point;
+  const glm::dvec3 shift = shift_at(motion, middle);
+  const double turn = share * glm::dot(turn_of(motion), frame.normal);
+  RegionCarrier& carrier = world.regions.at<RegionCarrier>(region);
+  const glm::dvec3 arm = frame.origin + carrier.translation - middle;
+  carrier.translation += share * (shift - frame.normal * glm::dot(shift, frame.normal)) +
+                         (glm::angleAxis(turn, frame.normal) * arm - arm);
+  carrier.rotation += frame.normal * turn;
+}
+
 }  // namespace
-
-bool has_patch(const World& world, const RegionIdentity& region) {
-  return world.bodies.at<BodyModels>(region.body).contact == ContactModel::kPatch;
-}
-
-std::int32_t patch_aspect(const glm::dvec2& half_size) {
-  const double ratio = std::log2(half_size.x / half_size.y);
-  return static_cast<std::int32_t>(
-      std::clamp(std::round(ratio), -1.0 * kMostAspect, 1.0 * kMostAspect));
-}
 
 glm::dvec2 patch_middle(std::uint32_t side) {
   const double half = 0.5 * static_cast<double>(side);
@@ -290,17 +302,7 @@ std::uint32_t patch_spare(std::uint32_t side) {
   return side % 2 == 0 && side >= kCoarsest ? 1 : 0;
 }
 
-glm::dvec2 patch_half_size(const glm::dvec2& least, std::int32_t aspect) {
-  const double ratio = std::ldexp(1.0, aspect);
-  const double half = std::max(least.x, least.y * ratio);
-  return {half, half / ratio};
-}
-
-glm::dvec2 patch_half_size(const glm::dvec2& least) {
-  return patch_half_size(least, patch_aspect(least));
-}
-
-void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
+void lay_around_loaded(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const Grid grid = grid_of(context, region);
   const GridFit fit = fit_of(grid, region, contact);
   if (fit.box.end.x == 0 || !(fit.cut || fit.too_small || fit.other_shape || fit.axes.is_askew())) {
@@ -326,6 +328,34 @@ void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints
     state.settling = kSettlingSteps;
   }
   state.slide = state.slide * move.turn;
+}
+
+void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
+  World& world = context.world;
+  if (world.regions.at<RegionNormal>(region).force <= 0.0) {
+    // It has nothing to keep, and its grid may lie beside the points, where it would stay.
+    world.patch_cells.zero(world.regions.at<RegionIdentity>(region).cells);
+    world.regions.at<PatchState>(region) = PatchState{};
+    place_new_grid(context, region, contact);
+    return;
+  }
+  lay_around_loaded(context, region, contact);
+  turn_normal_to(world.regions.at<RegionFrame>(region),
+                 world.regions.at<RegionGeometry>(region).mean_normal);
+}
+
+void find_patch_cells(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
+  const Grid grid = grid_of(context, region);
+  const PatchState& state = context.world.regions.at<PatchState>(region);
+  if (state.started == 0) {
+    center_patch(grid, contact, deepest_of_cluster(grid, contact).depth);
+    return;
+  }
+  foresee_carrier(context.world, region);
+  find_cells(grid, contact);
+  if (state.resized != 0) {
+    look_along_normal(grid, contact);
+  }
 }
 
 }  // namespace torsion

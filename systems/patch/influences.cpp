@@ -122,7 +122,7 @@ RegionInfluences region_influences(World& world, std::uint32_t region) {
   const std::span<const double> values(&rows.front().value, rows.size());
   const std::size_t count = influence_count(side);
   RegionInfluences result;
-  result.tables = influence_tables(values.first(count), side, patch_aspect(frame.half_size));
+  result.tables = influence_tables(values.first(count), side, table_aspect(frame.half_size));
   result.coupled = poisson_ratio < 0.5;
   const double thickness = values.size() > count
                                ? layer_thickness(world, identity.body, frame.normal, frame.origin)

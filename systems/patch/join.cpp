@@ -5,8 +5,8 @@
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "systems/body/compliance/region_supports.hpp"
 #include "systems/contact/grid_cells.hpp"
+#include "systems/contact/support/body_law.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/patch/cells.hpp"
 #include "systems/patch/energy.hpp"
@@ -45,10 +45,20 @@ bool holds(const Grid& grid, const PlaneBox& box) {
          glm::all(glm::lessThan(box.highest, grid.frame.half_size - cell));
 }
 
+/// Whether a region has tractions that are worth keeping.
+bool has_settled(const World& world, std::uint32_t region) {
+  constexpr double kSolved = 0.1;  // PatchState::residual
+  const PatchState& state = world.regions.at<PatchState>(region);
+  return state.started != 0 && state.residual < kSolved;
+}
+
 }  // namespace
 
 void join_patch(StepContext& context, std::uint32_t ended, std::uint32_t heir) {
   World& world = context.world;
+  if (!has_settled(world, ended) || !has_settled(world, heir)) {
+    return;
+  }
   const Grid grid = grid_of(context, heir);
   const Grid other = grid_of(context, ended);
   PlaneBox box;
@@ -67,7 +77,10 @@ void join_patch(StepContext& context, std::uint32_t ended, std::uint32_t heir) {
   // All are displaced by the others' tractions, too, from now on: they are held where that is.
   std::ranges::fill(patch_rows(world, grid.identity.cells).surface.known, 0.0);
   const RegionSupport support = world.regions.at<RegionSupport>(heir);
-  join_support(world, ended, heir);
+  const BodyLaw& body = body_law_of(world, world.regions.at<RegionIdentity>(heir).body);
+  if (body.join != nullptr) {
+    body.join(world, ended, heir);
+  }
   retell_others(world, heir, support);
   RegionMotion& motion = world.regions.at<RegionMotion>(heir);
   const RegionMotion& of_ended = world.regions.at<RegionMotion>(ended);

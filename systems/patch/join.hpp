@@ -4,11 +4,11 @@
 
 namespace torsion {
 
-/// Lets a region with contact model `patch` take over what another one that ends holds: its grid is
+/// ContactLaw::join. Lets a region take over what another one that ends holds: its grid is
 /// laid around the loaded cells of both, the other's pressures and tractions are added, and what
 /// that one's load does to the body here is by its own load from now on.
-/// @pre both have solutions that have settled, and the rows of the one that ends are still what
-///      they were
+/// Nothing where one of both has no solution that has settled.
+/// @pre the rows of the one that ends are still what they were
 void join_patch(StepContext& context, std::uint32_t ended, std::uint32_t heir);
 
 }  // namespace torsion

@@ -77,7 +77,7 @@ double fill_of_new(std::uint32_t side) {
 
 GridLayout layout_around(const PlaneBox& loaded, std::uint32_t side) {
   const glm::dvec2 half = 0.5 * (loaded.highest - loaded.lowest);
-  const glm::dvec2 half_size = patch_half_size(half / fill_of_new(side));
+  const glm::dvec2 half_size = tabulated_half_size(half / fill_of_new(side));
   return {half_size, origin_shift(loaded, patch_middle(side),
                                   2.0 * half_size / static_cast<double>(side), side)};
 }

@@ -12,8 +12,10 @@
 #include "systems/patch/cells.hpp"
 #include "systems/patch/energy.hpp"
 #include "systems/patch/grid.hpp"
+#include "systems/patch/join.hpp"
 #include "systems/patch/passes.hpp"
 #include "systems/patch/region.hpp"
+#include "systems/patch/split.hpp"
 
 namespace torsion {
 namespace {
@@ -306,11 +308,15 @@ void solve_region(StepContext& context, std::uint32_t region, const SweepLimits&
   }
 }
 
+bool is_patch(const World& world, std::uint32_t region) {
+  return law_of(world, world.regions.at<RegionIdentity>(region).body).model == ContactModel::kPatch;
+}
+
 SweepLimits sweep_limits(const World& world) {
   std::uint32_t all = 0;
   std::uint32_t anew = 0;
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    if (has_patch(world, world.regions.at<RegionIdentity>(region))) {
+    if (is_patch(world, region)) {
       ++all;
       const PatchState& state = world.regions.at<PatchState>(region);
       anew += is_anew(state) || state.settling > 0 ? 1U : 0U;
@@ -322,13 +328,39 @@ SweepLimits sweep_limits(const World& world) {
           std::min(kSweepsOfRolling, kSweepsOfStep / std::max(all, 1U))};
 }
 
+void forget_cells(World& world, std::uint32_t block) {
+  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  world.patch_cells.zero({block * side * side, side * side});
+}
+
+constexpr System<StepContext> kPatchSolve[] = {
+    {"patch_forces", "elastic half-space cell by cell: pressure, friction and torque",
+     "a body with contact model patch", any_with<ContactModel::kPatch>, patch_forces},
+};
+
 }  // namespace
+
+const ContactLaw kPatchLaw{
+    .model = ContactModel::kPatch,
+    .by_cells = true,
+    .answers_from = 0.5,
+    .solve = kPatchSolve,
+    .follow = follow_patch,
+    .find_cells = find_patch_cells,
+    .half_size = tabulated_half_size,
+    .spare_columns = patch_spare,
+    .begin = forget_cells,
+    .split = copy_patch,
+    .share_out = share_out_patch,
+    .join = join_patch,
+    .end = join_energies,
+};
 
 void patch_forces(StepContext& context) {
   World& world = context.world;
   const SweepLimits sweeps = sweep_limits(world);
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    if (has_patch(world, world.regions.at<RegionIdentity>(region))) {
+    if (is_patch(world, region)) {
       solve_region(context, region, sweeps);
     }
   }

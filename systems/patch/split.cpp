@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "systems/body/compliance/region_supports.hpp"
 #include "systems/contact/grid_cells.hpp"
 #include "systems/contact/grid_summary.hpp"
+#include "systems/contact/support/body_law.hpp"
 #include "systems/patch/cells.hpp"
 #include "systems/patch/energy.hpp"
 #include "systems/patch/grid.hpp"
@@ -66,7 +66,7 @@ std::uint32_t copied_from(const World& world, const PatchState& state) {
 void lay_around_rest(StepContext& context, std::uint32_t region) {
   const Grid grid = grid_of(context, region);
   const RegionPoints& contact = context.scratch.region_points[block_of(grid.identity)];
-  follow_patch(context, region, contact);
+  lay_around_loaded(context, region, contact);
   find_cells(grid, contact);
   context.world.regions.at<RegionGeometry>(region) = summarize_cells(grid);
   // They are held where they will have moved to without the other region's tractions.
@@ -80,7 +80,10 @@ void share_out(StepContext& context, std::uint32_t from, std::uint32_t region) {
   const double taken = keep_covered(world, region);
   lay_around_rest(context, from);
   lay_around_rest(context, region);
-  split_support(world, from, region);
+  const BodyLaw& body = body_law_of(world, world.regions.at<RegionIdentity>(from).body);
+  if (body.split != nullptr) {
+    body.split(world, from, region);
+  }
   if (left + taken > 0.0) {
     split_energy(world, from, region, taken / (left + taken));
   }
@@ -94,6 +97,9 @@ void share_out(StepContext& context, std::uint32_t from, std::uint32_t region) {
 }  // namespace
 
 void copy_patch(World& world, std::uint32_t from, std::uint32_t region) {
+  if (world.regions.at<PatchState>(from).started == 0) {
+    return;
+  }
   const Range cells = world.regions.at<RegionIdentity>(from).cells;
   copy_cells(world, cells, world.regions.at<RegionIdentity>(region).cells);
   copy_component<RegionFrame>(world, from, region);
@@ -105,14 +111,11 @@ void copy_patch(World& world, std::uint32_t from, std::uint32_t region) {
   world.regions.at<PatchState>(region).copy_of = cells.first / cells.count + 1;
 }
 
-void share_out_patches(StepContext& context) {
-  World& world = context.world;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    PatchState& state = world.regions.at<PatchState>(region);
-    if (state.copy_of != 0) {
-      share_out(context, copied_from(world, state), region);
-      state.copy_of = 0;
-    }
+void share_out_patch(StepContext& context, std::uint32_t region) {
+  PatchState& state = context.world.regions.at<PatchState>(region);
+  if (state.copy_of != 0) {
+    share_out(context, copied_from(context.world, state), region);
+    state.copy_of = 0;
   }
 }
 

@@ -8,13 +8,13 @@
 
 #include <glm/geometric.hpp>
 
+#include "systems/contact/law.hpp"
 #include "systems/contact/scratch.hpp"
 #include "systems/contact/support/contact_load.hpp"
 #include "systems/contact/support/footing.hpp"
 #include "systems/contact/support/support_field.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
-#include "systems/patch/grid.hpp"
 
 namespace torsion {
 namespace {
@@ -83,7 +83,7 @@ void find_support_turn(const World& world, std::uint32_t region, AnchorTurns& tu
   turns.support = glm::dot(support.rotation - support.rotation_step,
                            world.regions.at<RegionFrame>(region).normal);
   const double radius = world.regions.at<RegionGeometry>(region).radius;
-  if (radius > 0.0 && has_patch(world, world.regions.at<RegionIdentity>(region))) {
+  if (radius > 0.0 && law_of(world, world.regions.at<RegionIdentity>(region).body).by_cells) {
     const double outer = mean_turn(world, region, radius);
     const double inner = mean_turn(world, region, 0.5 * radius);
     turns.support_growth = (outer - inner) / (0.75 * radius * radius);

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/body/skeleton/main_beam.hpp"
+#include "systems/contact/support/body_law.hpp"
 #include "systems/half_space/source.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/smooth_step.hpp"
@@ -328,7 +329,7 @@ RegionDent region_dent(const World& world, const Snapshot& snapshot, std::uint32
   dent.drag = tangent_to_body(frame, friction.force) * -compliance;
   dent.pressure =
       geometry.area > 0.0 ? snapshot.regions.at<RegionNormal>(region).force / geometry.area : 0.0;
-  const bool in_series = world.bodies.at<BodyModels>(identity.body).body == BodyModel::kCompliance;
+  const bool in_series = body_law_of(world, identity.body).moves_as_a_whole;
   dent.pressed = pressed_surface(world, snapshot, region,
                                  in_series ? 1.0 : dent.depth / geometry.largest_depth);
   dent.full_overlap = 0.1 * geometry.largest_depth;

@@ -6,7 +6,9 @@
 #include <glm/geometric.hpp>
 
 #include "systems/body/compliance/region_couplings.hpp"
+#include "systems/body/compliance/region_supports.hpp"
 #include "systems/contact/fault.hpp"
+#include "systems/contact/law.hpp"
 #include "systems/math/dense_solve.hpp"
 #include "systems/math/matrix6.hpp"
 
@@ -202,22 +204,17 @@ void sway(const CompliantBody& body, Stand& stand) {
 }
 
 /// Whether the body gives way under two regions at least by so much, beside the contacts, that the
-/// one feels within a step how the other answers. The paper's model does not reckon with answers.
-bool answers_within_a_step(const CompliantBody& body, ContactModel model,
+/// one feels within a step how the other answers.
+bool answers_within_a_step(const CompliantBody& body, const ContactLaw& law,
                            const std::array<StiffnessRoot, kMaxRegionsPerBody>& roots) {
-  // Of the contact's own compliance. Where a contact is known as a whole that matters only when
-  // tools that pinch a body sway it.
-  constexpr double kMuch = 0.5;
-  constexpr double kSway = 10.0;
-  const double much = model == ContactModel::kPatch ? kMuch : kSway;
   std::size_t soft = 0;
   for (std::size_t i = 0; i < body.count; ++i) {
     const Footing& footing = footing_of(body, body.stands[i]);
     const Eigen::Map<const Matrix6> own(footing.own.data());
     const double share = (roots[i].root * own * roots[i].root).trace();
-    soft += footing.on_layer == 0 && share > much ? 1U : 0U;
+    soft += footing.on_layer == 0 && share > law.answers_from ? 1U : 0U;
   }
-  return soft >= 2 && model != ContactModel::kPaper;
+  return soft >= 2;
 }
 
 /// Solves with Newton's symmetric matrix. Couplings between regions that lie in each other's reach
@@ -320,9 +317,9 @@ void take_answers(World& world, std::uint32_t row) {
     if (identity.body != row) {
       continue;
     }
-    if (world.bodies.at<BodyModels>(row).contact == ContactModel::kMdr) {
+    if (law_of(world, row).moves_own_support) {
       reaction.active = 0;
-      continue;  // mdr has moved its support by that already (own_answer.hpp)
+      continue;  // it has moved its support by that already (own_answer.hpp)
     }
     support.translation_step = glm::dvec3(0.0);
     support.rotation_step = glm::dvec3(0.0);
@@ -360,9 +357,9 @@ void deform_body(StepContext& context, std::uint32_t row) {
   Eigen::Map<Eigen::VectorXd> change(context.compliance.residuals.data(), rows);
   Eigen::Map<RowMatrix> copy(context.compliance.copy.data(), rows, rows);
   change.setZero();
-  const ContactModel model = context.world.bodies.at<BodyModels>(row).contact;
-  const bool answers = answers_within_a_step(body, model, newton.roots);
-  const bool sways_together = answers && model == ContactModel::kPatch;
+  const ContactLaw& law = law_of(context.world, row);
+  const bool answers = answers_within_a_step(body, law, newton.roots);
+  const bool sways_together = answers && law.by_cells;
   if (!sways_together) {
     for (std::size_t i = 0; i < body.count; ++i) {
       sway(body, body.stands[i]);
@@ -389,6 +386,15 @@ void deform_body(StepContext& context, std::uint32_t row) {
 }
 
 }  // namespace
+
+const BodyLaw kComplianceLaw{
+    .model = BodyModel::kCompliance,
+    .moves_as_a_whole = true,
+    .begin = begin_support,
+    .begin_split = begin_split_support,
+    .split = split_support,
+    .join = join_support,
+};
 
 void ComplianceScratch::reserve(const World& world) {
   if (!world.footings.empty()) {

@@ -3,8 +3,11 @@
 #include <vector>
 
 #include "systems/contact/step_context.hpp"
+#include "systems/contact/support/body_law.hpp"
 
 namespace torsion {
+
+extern const BodyLaw kComplianceLaw;
 
 /// What compliance needs while it works on one body.
 struct ComplianceScratch {

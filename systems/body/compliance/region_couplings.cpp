@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <glm/geometric.hpp>
 
+#include "systems/contact/law.hpp"
 #include "systems/half_space/coupling.hpp"
 #include "systems/half_space/layer_coupling.hpp"
 #include "systems/half_space/layer_thickness.hpp"
@@ -45,11 +46,10 @@ bool is_found(const RegionCoupling& coupling, const Footing& to, const Footing& 
 /// the middle of one may lie within the disc of another: as far as the larger one's rim at least,
 /// where two regions do less to each other than each does to itself. With q = (1 - nu^2) / (pi E)
 /// point loads at distance d sink by q / d, discs by (pi / 2) q / a.
-glm::dvec3 apart(const Footing& there, const Footing& here, ContactModel model) {
+glm::dvec3 apart(const Footing& there, const Footing& here, bool by_cells) {
   const glm::dvec3 way = there.center - here.center;
   const double distance = glm::length(way);
-  const double least = model == ContactModel::kPatch ? std::max(there.radius, here.radius)
-                                                     : there.radius + here.radius;
+  const double least = by_cells ? std::max(there.radius, here.radius) : there.radius + here.radius;
   return distance < least ? here.center + way * (least / distance) : there.center;
 }
 
@@ -93,10 +93,10 @@ void forget_couplings(World& world, std::uint32_t block) {
 Matrix6 motion_of(const CompliantBody& body, const Footing& there, const Footing& here) {
   Matrix6 motion = there.share * here.share * motion_between(body.ports, there, here);
   if (there.center != here.center) {
-    const ContactModel model = body.world.bodies.at<BodyModels>(body.row).contact;
+    const bool by_cells = law_of(body.world, body.row).by_cells;
     motion +=
-        half_space_coupling({apart(there, here, model), there.normal}, {here.center, here.normal},
-                            body.world.bodies.at<Elasticity>(body.row));
+        half_space_coupling({apart(there, here, by_cells), there.normal},
+                            {here.center, here.normal}, body.world.bodies.at<Elasticity>(body.row));
   }
   const double thickness = layer_thickness(body.world, body.row, here.normal, here.center);
   if (thickness > 0.0) {

@@ -10,6 +10,7 @@
 
 #include "systems/body/compliance/layer_motion.hpp"
 #include "systems/body/compliance/region_couplings.hpp"
+#include "systems/contact/law.hpp"
 #include "systems/contact/scratch.hpp"
 #include "systems/contact/stuck_stiffness.hpp"
 #include "systems/contact/support/surface_bend.hpp"
@@ -17,7 +18,6 @@
 #include "systems/half_space/layer_coupling.hpp"
 #include "systems/half_space/layer_thickness.hpp"
 #include "systems/math/matrix6.hpp"
-#include "systems/patch/grid.hpp"
 
 namespace torsion {
 namespace {
@@ -114,12 +114,11 @@ void find_own_motion(const CompliantBody& body, const Stand& stand, Footing& foo
 /// On a layer the ports do not count: patch has what the half-space lacks in its own tables
 /// (layer_kernel.hpp), mdr is moved as one.
 void find_motion_on_layer(const CompliantBody& body, const Stand& stand,
-                          const ContactEllipse& contact, double thickness, bool has_tables,
-                          Footing& footing) {
+                          const ContactEllipse& contact, double thickness, Footing& footing) {
   footing.share = 0.0;
   footing.on_layer = 1;
   footing.own = {};
-  if (!has_tables && has_layer_kernel(body.world, body.row)) {
+  if (!law_of(body.world, body.row).by_cells && has_layer_kernel(body.world, body.row)) {
     const Matrix6 motion = layer_motion(body.world, body.row, contact, thickness);
     Eigen::Map<Matrix6>(footing.own.data()) =
         RelativeCompliance(body, stand, motion).at_least(kStiffest);
@@ -200,8 +199,7 @@ void lay_stand(const CompliantBody& body, const Stand& stand, const ContactEllip
   footing.serial = world.clock.at<Clock>(0).step * world.footings.size() + stand.block + 1;
   const double thickness = layer_thickness(world, body.row, contact.normal, contact.center);
   if (thickness > 0.0) {
-    const RegionIdentity& identity = world.regions.at<RegionIdentity>(stand.region);
-    find_motion_on_layer(body, stand, contact, thickness, has_patch(world, identity), footing);
+    find_motion_on_layer(body, stand, contact, thickness, footing);
   } else {
     find_own_motion(body, stand, footing);
   }
@@ -215,7 +213,7 @@ void find_stands(CompliantBody& body) {
       Stand& stand = body.stands[body.count++];
       stand.region = region;
       stand.block = block_of(identity);
-      stand.solved = has_patch(world, identity);
+      stand.solved = law_of(world, body.row).by_cells;
     }
   }
   lay_footings(body);

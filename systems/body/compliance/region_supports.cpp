@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 
 #include "systems/body/compliance/region_couplings.hpp"
+#include "systems/contact/law.hpp"
 #include "systems/contact/scratch.hpp"
-#include "systems/patch/grid.hpp"
 
 namespace torsion {
 namespace {
@@ -65,9 +65,6 @@ void begin_support(World& world, std::uint32_t region) {
   const std::uint32_t row = world.regions.at<RegionIdentity>(region).body;
   RegionSupport& support = world.regions.at<RegionSupport>(region);
   support = RegionSupport{};
-  if (world.bodies.at<BodyModels>(row).body != BodyModel::kCompliance) {
-    return;
-  }
   const CompliantBody body{world, row, ports_of(world, row)};
   Footing there;
   Vector6 motion = Vector6::Zero();
@@ -95,12 +92,8 @@ void begin_split_support(World& world, std::uint32_t from, std::uint32_t region)
   RegionSupport& old = world.regions.at<RegionSupport>(from);
   RegionSupport& fresh = world.regions.at<RegionSupport>(region);
   fresh = old;
-  if (has_patch(world, identity) ||
-      world.bodies.at<BodyModels>(identity.body).body != BodyModel::kCompliance) {
-    return;
-  }
   const Footing& here = world.footings.at<Footing>(block_of(identity));
-  if (here.reach == 0.0) {
+  if (law_of(world, identity.body).by_cells || here.reach == 0.0) {
     return;
   }
   const CompliantBody body{world, identity.body, ports_of(world, identity.body)};
@@ -126,9 +119,6 @@ void begin_split_support(World& world, std::uint32_t from, std::uint32_t region)
 
 void split_support(World& world, std::uint32_t from, std::uint32_t region) {
   const RegionIdentity& identity = world.regions.at<RegionIdentity>(from);
-  if (world.bodies.at<BodyModels>(identity.body).body != BodyModel::kCompliance) {
-    return;
-  }
   const Footing& here = world.footings.at<Footing>(block_of(identity));
   if (here.reach == 0.0) {
     return;
@@ -155,9 +145,6 @@ void split_support(World& world, std::uint32_t from, std::uint32_t region) {
 
 void join_support(World& world, std::uint32_t ended, std::uint32_t heir) {
   const RegionIdentity& identity = world.regions.at<RegionIdentity>(heir);
-  if (world.bodies.at<BodyModels>(identity.body).body != BodyModel::kCompliance) {
-    return;
-  }
   const Footing& here = world.footings.at<Footing>(block_of(identity));
   const Footing& there =
       world.footings.at<Footing>(block_of(world.regions.at<RegionIdentity>(ended)));

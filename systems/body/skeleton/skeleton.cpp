@@ -92,6 +92,8 @@ BeamSummary beam_summary(const MainBeam& beam, const Elasticity& elasticity) {
   return summary;
 }
 
+const BodyLaw kSkeletonLaw{.model = BodyModel::kSkeleton};
+
 void SkeletonScratch::reserve(const World& world) {
   beams.assign(world.sections.empty() ? 0 : world.regions.capacity(), MainBeam{});
 }

@@ -8,8 +8,11 @@
 #include "ecs/world.hpp"
 #include "systems/body/skeleton/main_beam.hpp"
 #include "systems/contact/step_context.hpp"
+#include "systems/contact/support/body_law.hpp"
 
 namespace torsion {
+
+extern const BodyLaw kSkeletonLaw;
 
 /// The beams that the systems of one step share.
 struct SkeletonScratch {

@@ -7,11 +7,11 @@
 
 #include <glm/geometric.hpp>
 
+#include "systems/contact/grid_place.hpp"
+#include "systems/contact/law.hpp"
 #include "systems/contact/support/support_field.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
-#include "systems/mdr/smooth_contact.hpp"
-#include "systems/patch/grid.hpp"
 
 namespace torsion {
 namespace {
@@ -42,6 +42,10 @@ void for_loaded(const LoadedCells& cells, const Each& each) {
       }
     }
   }
+}
+
+bool by_cells(const World& world, std::uint32_t region) {
+  return law_of(world, world.regions.at<RegionIdentity>(region).body).by_cells;
 }
 
 /// A disc at the region's place.
@@ -222,14 +226,12 @@ PortCompliance ports_of(const World& world, std::uint32_t body) {
 }
 
 ContactEllipse contact_ellipse(const World& world, std::uint32_t region) {
-  return has_patch(world, world.regions.at<RegionIdentity>(region)) ? ellipse_of(world, region)
-                                                                    : disc_of(world, region);
+  return by_cells(world, region) ? ellipse_of(world, region) : disc_of(world, region);
 }
 
 ContactLoad contact_load(const World& world, std::uint32_t region, const Footing& footing) {
-  return has_patch(world, world.regions.at<RegionIdentity>(region))
-             ? load_of_cells(world, region, footing)
-             : load_of_disc(world, region, footing);
+  return by_cells(world, region) ? load_of_cells(world, region, footing)
+                                 : load_of_disc(world, region, footing);
 }
 
 }  // namespace torsion

@@ -3,7 +3,8 @@
 #include <Eigen/Core>
 #include <glm/geometric.hpp>
 
-#include "systems/contact/grid_cells.hpp"
+#include "systems/contact/scratch.hpp"
+#include "systems/contact/support/body_law.hpp"
 #include "systems/math/matrix6.hpp"
 
 namespace torsion {
@@ -19,7 +20,7 @@ using LoadColumns = Eigen::Matrix<double, 6, 4>;  // wrenches by loads
 /// The footing whose compliance the region's support comes from, or null.
 const Footing* footing_under(const World& world, std::uint32_t region) {
   const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  if (world.bodies.at<BodyModels>(identity.body).body != BodyModel::kCompliance) {
+  if (!body_law_of(world, identity.body).moves_as_a_whole) {
     return nullptr;
   }
   const Footing& footing = world.footings.at<Footing>(block_of(identity));

@@ -41,7 +41,7 @@ double worst_difference(const Hand& hand) {
   }
   PatchProblem problem;
   problem.influences = influence_tables({&influences.front().value, influences.size()}, side,
-                                        patch_aspect(frame.half_size));
+                                        table_aspect(frame.half_size));
   problem.compliance = 2.0 * frame.half_size.x / (side * elasticity.shear_modulus());
   problem.coupled = elasticity.poisson_ratio < 0.5;
   PatchWork work;

@@ -1,0 +1,97 @@
+#pragma once
+
+// What a contact model is to the rest of the program. systems/laws.cpp has the list of them.
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include <glm/mat2x2.hpp>
+#include <glm/vec2.hpp>
+
+#include "ecs/schedule.hpp"
+#include "ecs/world.hpp"
+#include "systems/contact/step_context.hpp"
+
+namespace torsion {
+
+struct RegionPoints;  // systems/contact/scratch.hpp
+
+/// One contact model: from a region's overlap and its motion to RegionNormal and RegionFriction.
+struct ContactLaw {
+  ContactModel model = ContactModel::kAuto;
+
+  // What it knows.
+  /// Pressure and traction of every cell, so that it says where on the material its load lies and
+  /// finds in its own equations what that does to a body that moves as a whole. Others know a
+  /// contact as a whole: a force, and a couple about its middle.
+  bool by_cells = false;
+  /// It moves RegionSupport by its own load in the step in which that is found
+  /// (support/own_answer.hpp).
+  bool moves_own_support = false;
+  /// On a body that moves as a whole: so many times a contact's own compliance the body has to give
+  /// way for other regions to answer within a step (support/body_law.hpp).
+  double answers_from = 0.0;
+  /// Its force is bounded by the overlap and by the tools' work (force_bound.hpp).
+  bool is_bounded = true;
+  /// It needs RegionMotion on bodies without friction, too.
+  bool needs_motion = true;
+
+  // Its systems: before and after region_motion.
+  std::span<const System<StepContext>> place = {};
+  std::span<const System<StepContext>> solve = {};
+
+  // A region's grid.
+  /// Moves it along with its contact, before cells are sought.
+  void (*follow)(StepContext& context, std::uint32_t region, const RegionPoints& contact) = nullptr;
+  /// Finds its cells (find_cells in grid_cells.hpp), and lays it anew where they ask for that.
+  void (*find_cells)(StepContext& context, std::uint32_t region,
+                     const RegionPoints& contact) = nullptr;
+  /// Half the sides, at least `least`, m, of a grid that suits it; null: any will do.
+  glm::dvec2 (*half_size)(const glm::dvec2& least) = nullptr;
+  /// Columns at the grid's left that take no part; null: none.
+  std::uint32_t (*spare_columns)(std::uint32_t side) = nullptr;
+  /// Whether the grid turns and goes with the material that sticks to the tool (follow_overlap).
+  bool follows_material = false;
+  /// The grid's axes have been turned: what it keeps in them of the region is turned by `back`.
+  /// Null: nothing.
+  void (*turn)(World& world, std::uint32_t region, const glm::dmat2& back) = nullptr;
+
+  // What it keeps of a region from step to step. Null: nothing that an event would change.
+  /// A new region has this block of cells: forgets whose it was.
+  void (*begin)(World& world, std::uint32_t block) = nullptr;
+  /// `region` splits off `from`, in group_regions; once its cells are known, `share_out`.
+  void (*split)(World& world, std::uint32_t from, std::uint32_t region) = nullptr;
+  void (*share_out)(StepContext& context, std::uint32_t region) = nullptr;
+  /// `heir` takes over what `ended` holds. Their rows are still what they were.
+  void (*join)(StepContext& context, std::uint32_t ended, std::uint32_t heir) = nullptr;
+  /// `ended` goes, with or without a join.
+  void (*end)(World& world, std::uint32_t ended, std::uint32_t heir) = nullptr;
+};
+
+/// @pre model is not kAuto
+const ContactLaw& contact_law(ContactModel model);
+
+/// All of them.
+std::span<const ContactLaw* const> contact_laws();
+
+inline const ContactLaw& law_of(const World& world, std::uint32_t body) {
+  return contact_law(world.bodies.at<BodyModels>(body).contact);
+}
+
+/// Whether the scene has a tool and a body.
+bool any_tool_and_body(const StepContext& context);
+
+/// And a body with that contact model.
+bool any_contact_model(const StepContext& context, ContactModel model);
+
+/// And a body with friction.
+bool any_friction(const StepContext& context);
+
+/// For System::needed.
+template <ContactModel Model>
+bool any_with(const StepContext& context) {
+  return any_contact_model(context, Model);
+}
+
+}  // namespace torsion

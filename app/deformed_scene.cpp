@@ -67,7 +67,7 @@ std::vector<WrittenMesh> deformed_scene(const Session& session) {
   FrameWorld frame = prepare_frame(session.scene, world);
   Snapshot snapshot;
   snapshot.reserve(world);
-  capture(world, snapshot);
+  take_snapshot(session.simulation, snapshot);
   surface_field(world, snapshot, frame);
   std::vector<WrittenMesh> meshes;
   for (std::uint32_t body = 0; body < session.scene.bodies.size(); ++body) {

@@ -73,7 +73,7 @@ Result<PictureScales> find_scales(Session& session, std::uint64_t steps, std::ui
     }
     scales.pressure = std::max(scales.pressure, largest_pressure(world));
     if (i % stride == 0) {
-      capture(world, snapshot);
+      take_snapshot(session.simulation, snapshot);
       surface_field(world, snapshot, frame);
       scales.twist = std::max(scales.twist, largest_twist(frame));
       progress.show(static_cast<double>(i) / static_cast<double>(steps));
@@ -122,7 +122,7 @@ Result<PictureRun> PictureRun::create(const Session& session, const Options& opt
   FrameWorld frame = prepare_frame(session.scene, world);
   Snapshot snapshot;
   snapshot.reserve(world);
-  capture(world, snapshot);
+  take_snapshot(session.simulation, snapshot);
   surface_field(world, snapshot, frame);
   const double aspect = static_cast<double>(options.width) / static_cast<double>(options.height);
   const Result<Camera> camera = choose_camera(session, frame, options.camera, aspect);
@@ -178,7 +178,7 @@ OverlayContent PictureRun::content_of(const Session& session) const {
 
 Result<Image> PictureRun::draw(const Session& session) {
   const World& world = session.simulation.world;
-  capture(world, snapshot_);
+  take_snapshot(session.simulation, snapshot_);
   surface_field(world, snapshot_, frame_);
   OverlayDrawList list;
   if (options_.overlay) {

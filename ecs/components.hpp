@@ -18,6 +18,7 @@
 #include "ecs/components/basics.hpp"   // IWYU pragma: export
 #include "ecs/components/bodies.hpp"   // IWYU pragma: export
 #include "ecs/components/cells.hpp"    // IWYU pragma: export
+#include "ecs/components/drawn.hpp"    // IWYU pragma: export
 #include "ecs/components/frame.hpp"    // IWYU pragma: export
 #include "ecs/components/regions.hpp"  // IWYU pragma: export
 #include "ecs/components/shapes.hpp"   // IWYU pragma: export

@@ -15,10 +15,9 @@ struct System {
   std::string_view needs;                    // what a scene must have for it, in words
   bool (*needed)(const Context&) = nullptr;  // nullptr: always
   void (*run)(Context&) = nullptr;
-  std::uint32_t every = 1;  // runs in steps whose number is a multiple of this
 };
 
-/// Runs systems in the order given, each at its own rate, and times each. What no entity needs is
+/// Runs systems in the order given, and times each. What no entity needs is
 /// left out at construction: it costs nothing, and `is_on` says so.
 template <class Context>
 class Schedule {
@@ -44,11 +43,11 @@ class Schedule {
     }
   }
 
-  /// One step: every system that is on and due, in order. Allocates nothing.
-  void run(Context& context, std::uint64_t step) {
+  /// One step: every system that is on, in order. Allocates nothing.
+  void run(Context& context) {
     auto start = std::chrono::steady_clock::now();
     for (Row& row : rows_) {
-      if (!row.on || step % row.system.every != 0) {
+      if (!row.on) {
         continue;
       }
       row.system.run(context);

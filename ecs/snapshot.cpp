@@ -24,6 +24,7 @@ void Snapshot::reserve(const World& world) {
   clock.reserve(1);
   tools.reserve(world.tools.capacity());
   regions.reserve(world.regions.capacity());
+  region_fields.reserve(world.regions.capacity());
   anchors.reserve(world.anchors.capacity());
 }
 
@@ -31,7 +32,10 @@ void capture(const World& world, Snapshot& snapshot) {
   snapshot.clock.copy_rows(world.clock);
   copy_columns<ToolPose, ToolMotion, ToolWrench>(world.tools, snapshot.tools);
   snapshot.regions.copy_rows(world.regions);
-  copy_columns<AnchorMotion>(world.anchors, snapshot.anchors);
+  snapshot.region_fields.clear();
+  TORSION_ASSERT(snapshot.region_fields.append(world.regions.size()).has_value());
+  snapshot.anchors.clear();
+  TORSION_ASSERT(snapshot.anchors.append(world.anchors.size()).has_value());
 }
 
 }  // namespace torsion

@@ -10,14 +10,16 @@ struct Snapshot {
   Table<Clock> clock;
   Table<ToolPose, ToolMotion, ToolWrench> tools;
   RegionTable regions;
-  Table<AnchorMotion> anchors;
+  // Found for who draws (systems/surface/take_snapshot.hpp), zero until then
+  Table<RegionField, AnchorTurns> region_fields;  // (regions)
+  Table<AnchorMotion> anchors;                    // (anchors of the world)
 
   /// Takes memory for whatever `world` can hold.
   void reserve(const World& world);
 };
 
-/// Copies the state of `world` into `snapshot`. Allocates nothing. @pre snapshot.reserve(world) was
-/// called.
+/// Copies the state of `world` into `snapshot`, and zeroes the rest. Allocates nothing. @pre
+/// snapshot.reserve(world) was called.
 void capture(const World& world, Snapshot& snapshot);
 
 }  // namespace torsion

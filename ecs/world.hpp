@@ -74,13 +74,12 @@ using ToolTable =
 using RegionTable =
     Table<RegionIdentity, RegionFrame, RegionCarrier, RegionSupport, RegionReaction, SupportField,
           TractionFrame, RegionGeometry, RegionMotion, RegionNormal, RegionFriction, PatchState,
-          PatchEnergy, LayerGrid, SmoothContact, MdrState, RegionField, AnchorTurns, RegionWrench>;
+          PatchEnergy, LayerGrid, SmoothContact, MdrState, RegionWrench>;
 using CellTable = Table<CellGeometry, CellTraction>;
 using PatchCellTable = Table<PatchMovedX, PatchMovedY, PatchDepression, PatchHeldX, PatchHeldY,
                              PatchKnown, PatchChangeX, PatchChangeY, PatchChangePressure,
                              PatchChangeMovedX, PatchChangeMovedY, PatchChangeDepression>;
 using MdrLayerTable = Table<MdrLayer>;
-using AnchorTable = Table<AnchorRest, AnchorMotion>;
 
 /// The physics world: everything that one step knows. A step is a pure function of it and of the
 /// input poses.
@@ -111,7 +110,7 @@ struct World {
       footings;  // one a block of cells; none without body model compliance
   Table<RegionCoupling>
       couplings;  // likewise, one for each two blocks: i, j < i at i (i - 1)/2 + j
-  AnchorTable anchors;
+  Table<AnchorRest> anchors;
   // handles
   EntityPool body_handles;
   EntityPool tool_handles;

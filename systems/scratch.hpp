@@ -4,13 +4,11 @@
 
 #include "ecs/world.hpp"
 #include "systems/body/compliance/compliance.hpp"
-#include "systems/body/skeleton/skeleton.hpp"
 #include "systems/contact/scratch.hpp"
 #include "systems/contact/step_context.hpp"
 #include "systems/mdr/places.hpp"
 #include "systems/paper/carry_tractions.hpp"
 #include "systems/patch/scratch.hpp"
-#include "systems/surface/ring_turns.hpp"
 
 namespace torsion {
 
@@ -21,9 +19,7 @@ struct Scratch {
   PaperScratch paper;
   MdrTables mdr;  // constant; empty without contact model mdr
   PatchScratch patch;
-  SkeletonScratch skeleton;
   ComplianceScratch compliance;
-  RingProfiles rings;  // constant; empty without contact model patch
 
   /// Takes all memory that a step of `world` can need.
   void reserve(const World& world);

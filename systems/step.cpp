@@ -16,22 +16,24 @@
 #include "systems/contact/region_wrenches.hpp"
 #include "systems/model/prepare.hpp"
 #include "systems/scratch.hpp"
-#include "systems/surface/anchor_motions.hpp"
-#include "systems/surface/region_fields.hpp"
+#include "systems/surface/take_snapshot.hpp"
 
 namespace torsion {
 namespace {
 
-template <BodyModel Model>
-bool any_body_model(const StepContext& context) {
+bool any_compliance(const StepContext& context) {
   return any_tool_and_body(context) &&
-         std::ranges::any_of(context.world.bodies.column<BodyModels>(),
-                             [](const BodyModels& models) { return models.body == Model; });
+         std::ranges::any_of(
+             context.world.bodies.column<BodyModels>(),
+             [](const BodyModels& models) { return models.body == BodyModel::kCompliance; });
 }
 
-bool any_half_space(const StepContext& context) {
-  return any_contact_model(context, ContactModel::kPatch) ||
-         any_contact_model(context, ContactModel::kMdr);
+bool any_paper_beam(const StepContext& context) {
+  return any_tool_and_body(context) &&
+         std::ranges::any_of(
+             context.world.bodies.column<BodyModels>(), [](const BodyModels& models) {
+               return models.contact == ContactModel::kPaper && models.body == BodyModel::kSkeleton;
+             });
 }
 
 bool any_moving(const StepContext& context) {
@@ -43,10 +45,7 @@ bool any_moving(const StepContext& context) {
 
 }  // namespace
 
-std::vector<System<StepContext>> step_systems(double dt) {
-  constexpr double kFieldInterval = 8e-3;  // s; frames are farther apart
-  const auto field_period =
-      static_cast<std::uint32_t>(std::clamp(std::round(kFieldInterval / dt), 1.0, 1e6));
+std::vector<System<StepContext>> step_systems() {
   // The paper's Fig. 4, top to bottom.
   std::vector<System<StepContext>> systems{
       {"couple_tools", "takes the tools' poses and their motion", "a tool", nullptr, couple_tools},
@@ -59,7 +58,7 @@ std::vector<System<StepContext>> step_systems(double dt) {
       {"region_grids", "finds depth and area cell by cell", "a tool and a body", any_tool_and_body,
        region_grids},
       {"main_beams", "the beam from what is fixed to every region",
-       "a body with body model skeleton", any_body_model<BodyModel::kSkeleton>, main_beams},
+       "a body with contact model paper and body model skeleton", any_paper_beam, main_beams},
   };
   for (const ContactLaw* const law : contact_laws()) {
     systems.insert(systems.end(), law->place.begin(), law->place.end());
@@ -70,18 +69,10 @@ std::vector<System<StepContext>> step_systems(double dt) {
     systems.insert(systems.end(), law->solve.begin(), law->solve.end());
   }
   const System<StepContext> last[] = {
-      {"region_fields", "what a region does to the surface around it, for those who draw it",
-       "a body with contact model mdr or patch", any_half_space, region_fields, field_period},
       {"region_wrenches", "force and torque of every region, equation (1)", "a tool and a body",
        any_tool_and_body, region_wrenches},
-      {"skeleton", "beam skeleton: displacement of the anchors, for those who draw it",
-       "a body with body model skeleton", any_body_model<BodyModel::kSkeleton>, skeleton,
-       field_period},
       {"compliance", "the whole body's deformation under its regions",
-       "a body with body model compliance", any_body_model<BodyModel::kCompliance>, compliance},
-      {"anchor_motions", "the whole body's deformation at its anchors, for those who draw it",
-       "a body with body model compliance", any_body_model<BodyModel::kCompliance>, anchor_motions,
-       field_period},
+       "a body with body model compliance", any_compliance, compliance},
       {"sum_wrenches", "the wrench on every tool, faults, work", "a tool", nullptr, sum_wrenches},
   };
   systems.insert(systems.end(), std::begin(last), std::end(last));
@@ -103,19 +94,25 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
   simulation.choices = std::move(prepared.value().choices);
   simulation.united_nodes = std::move(prepared.value().united_nodes);
   simulation.scratch->reserve(simulation.world);
-  simulation.schedule = Schedule<StepContext>(step_systems(1.0 / options.rate),
-                                              simulation.scratch->context(simulation.world, {}));
+  simulation.snapshot_tables =
+      std::make_unique<const SnapshotTables>(make_snapshot_tables(simulation.world));
+  simulation.schedule =
+      Schedule<StepContext>(step_systems(), simulation.scratch->context(simulation.world, {}));
   return simulation;
 }
 
 void step(Simulation& simulation, std::span<const Pose> tool_poses) {
   TORSION_ASSERT(tool_poses.size() == simulation.world.tools.size());
   StepContext context = simulation.scratch->context(simulation.world, tool_poses);
-  simulation.schedule.run(context, simulation.world.clock.at<Clock>(0).step);
+  simulation.schedule.run(context);
   Clock& clock = simulation.world.clock.at<Clock>(0);
   clock.faults_ever |= clock.faults;
   clock.time = static_cast<double>(clock.step) * clock.dt;
   clock.step += 1;
+}
+
+void take_snapshot(const Simulation& simulation, Snapshot& snapshot) {
+  take_snapshot(simulation.world, *simulation.snapshot_tables, snapshot);
 }
 
 }  // namespace torsion

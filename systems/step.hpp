@@ -8,18 +8,18 @@
 #include "ecs/result.hpp"
 #include "ecs/scene_description.hpp"
 #include "ecs/schedule.hpp"
+#include "ecs/snapshot.hpp"
 #include "ecs/world.hpp"
 #include "systems/contact/step_context.hpp"
 #include "systems/model/options.hpp"
 
 namespace torsion {
 
-struct Scratch;  // systems/scratch.hpp: memory of the systems of one step
+struct Scratch;         // systems/scratch.hpp: memory of the systems of one step
+struct SnapshotTables;  // systems/surface/take_snapshot.hpp
 
-/// The systems of one step in the order of the paper's Fig. 4. What is made for those who draw is
-/// made every 8 ms, or in every step where those are longer.
-/// @param dt  s
-std::vector<System<StepContext>> step_systems(double dt);
+/// The systems of one step in the order of the paper's Fig. 4.
+std::vector<System<StepContext>> step_systems();
 
 /// A world with the schedule that moves it and the memory that the schedule needs.
 struct Simulation {
@@ -32,6 +32,7 @@ struct Simulation {
 
   World world;
   std::unique_ptr<Scratch> scratch;
+  std::unique_ptr<const SnapshotTables> snapshot_tables;
   Schedule<StepContext> schedule;
   std::vector<ModelChoice> choices;       // (bodies)
   std::vector<std::string> united_nodes;  // whose meshes overlap and count as one solid
@@ -45,5 +46,9 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
 /// every table that changes. Never throws, never allocates; what went wrong is in Clock::faults.
 /// @pre tool_poses.size() == tools
 void step(Simulation& simulation, std::span<const Pose> tool_poses);
+
+/// What the last step has left, for those who draw it. Allocates nothing.
+/// @pre snapshot.reserve(simulation.world) was called
+void take_snapshot(const Simulation& simulation, Snapshot& snapshot);
 
 }  // namespace torsion

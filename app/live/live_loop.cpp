@@ -230,7 +230,7 @@ void step_and_tell(LiveLoop& loop, double late_us) {
 
 void publish_frame(LiveLoop& loop) {
   LiveFrame& frame = loop.frames.back();
-  capture(loop.simulation->world, frame.snapshot);
+  take_snapshot(*loop.simulation, frame.snapshot);
   frame.statistics = loop.statistics;
   frame.cells.clear();
   if (loop.wants_cells.load(std::memory_order_relaxed)) {
@@ -257,10 +257,10 @@ void reserve(LiveLoop& loop, Session& session, Simulation& simulation) {
   loop.rows.reserve(loop.wants_rows ? rows : 1);
   loop.inputs.reserve(loop.wants_inputs ? rows : 1);
   loop.commands.reserve(kCommands);
-  loop.frames.prepare([&world](LiveFrame& frame) {
+  loop.frames.prepare([&world, &simulation](LiveFrame& frame) {
     frame.snapshot.reserve(world);
     frame.cells.reserve(kMostCellMarks);
-    capture(world, frame.snapshot);
+    take_snapshot(simulation, frame.snapshot);
   });
 }
 

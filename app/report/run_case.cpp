@@ -67,7 +67,7 @@ std::vector<double> surface_twists(const ReferenceCase& reference_case,
   FrameWorld frame = prepare_frame(scene, simulation.world);
   Snapshot snapshot;
   snapshot.reserve(simulation.world);
-  capture(simulation.world, snapshot);
+  take_snapshot(simulation, snapshot);
   surface_field(simulation.world, snapshot, frame);
   std::vector<glm::vec4> moved(drawn.positions.size());
   deform_vertices(frame, 0, moved);

@@ -12,6 +12,8 @@
 
 namespace torsion {
 
+inline constexpr std::uint32_t kAnchorsPerBody = 48;
+
 /// A point of the body's rest surface at which the body model gives displacement. Written by: load.
 struct AnchorRest {
   glm::dvec3 position{0.0};  // m, body
@@ -71,11 +73,6 @@ struct RegionCoupling {
   std::uint64_t serial_to = 0;  // of the footings between which it was found
   std::uint64_t serial_from = 0;
   std::array<double, 36> motion{};
-};
-
-/// Sum over the body's regions. Written by: the body model (systems/body/).
-struct AnchorMotion {
-  glm::dvec3 displacement{0.0};  // m, body
 };
 
 inline constexpr std::uint32_t kBeamStations = 16;

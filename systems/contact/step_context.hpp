@@ -12,9 +12,7 @@ struct ContactScratch;  // systems/contact/scratch.hpp
 struct PaperScratch;
 struct MdrTables;
 struct PatchScratch;
-struct SkeletonScratch;
 struct ComplianceScratch;
-struct RingProfiles;
 
 /// What a system of the physics step may touch.
 struct StepContext {
@@ -24,9 +22,7 @@ struct StepContext {
   PaperScratch& paper;
   const MdrTables& mdr;
   PatchScratch& patch;
-  SkeletonScratch& skeleton;
   ComplianceScratch& compliance;
-  const RingProfiles& rings;
 };
 
 }  // namespace torsion

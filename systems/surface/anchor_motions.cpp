@@ -92,9 +92,9 @@ void find_support_turn(const World& world, std::uint32_t region, AnchorTurns& tu
 }
 
 /// All regions of one body.
-void move_anchors_of(World& world, std::uint32_t body) {
-  const auto anchors = world.anchors.rows<AnchorMotion>(world.bodies.at<OwnedRows>(body).anchors);
-  std::ranges::fill(anchors, AnchorMotion{});
+void move_anchors_of(const World& world, std::uint32_t body, Snapshot& snapshot) {
+  const auto anchors =
+      snapshot.anchors.rows<AnchorMotion>(world.bodies.at<OwnedRows>(body).anchors);
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
     const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
     if (identity.body != body) {
@@ -103,8 +103,7 @@ void move_anchors_of(World& world, std::uint32_t body) {
     const Footing& footing = world.footings.at<Footing>(block_of(identity));
     PortVectors forces;
     forces_at_ports(footing, contact_load(world, region, footing).moments, forces);
-    AnchorTurns& turns = world.regions.at<AnchorTurns>(region);
-    turns = AnchorTurns{};
+    AnchorTurns& turns = snapshot.region_fields.at<AnchorTurns>(region);
     find_support_turn(world, region, turns);
     move_anchors(ports_of(world, body), footing, forces, anchors, turns);
   }
@@ -112,10 +111,10 @@ void move_anchors_of(World& world, std::uint32_t body) {
 
 }  // namespace
 
-void anchor_motions(StepContext& context) {
-  for (std::uint32_t body = 0; body < context.world.bodies.size(); ++body) {
-    if (context.world.bodies.at<BodyModels>(body).body == BodyModel::kCompliance) {
-      move_anchors_of(context.world, body);
+void anchor_motions(const World& world, Snapshot& snapshot) {
+  for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
+    if (world.bodies.at<BodyModels>(body).body == BodyModel::kCompliance) {
+      move_anchors_of(world, body, snapshot);
     }
   }
 }

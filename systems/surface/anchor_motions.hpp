@@ -1,11 +1,12 @@
 #pragma once
 
-#include "systems/contact/step_context.hpp"
+#include "ecs/snapshot.hpp"
+#include "ecs/world.hpp"
 
 namespace torsion {
 
 /// Where the anchors of bodies with body model compliance are under the tractions of all regions,
 /// for those who draw them. Writes AnchorMotion and AnchorTurns.
-void anchor_motions(StepContext& context);
+void anchor_motions(const World& world, Snapshot& snapshot);
 
 }  // namespace torsion

@@ -106,7 +106,7 @@ std::vector<double> anchor_turns(const Snapshot& snapshot, const Slot& slot, std
   if (slot.twist.discs.radius <= 0.0) {
     return turns;
   }
-  const AnchorTurns& all = snapshot.regions.at<AnchorTurns>(slot.region);
+  const AnchorTurns& all = snapshot.region_fields.at<AnchorTurns>(slot.region);
   turns.assign(std::begin(all.turn), std::begin(all.turn) + anchors);
   double largest = 0.0;
   for (const double turn : turns) {
@@ -179,7 +179,7 @@ void meet_supports(const Snapshot& snapshot, std::span<const glm::dvec3> centers
                    BodyField& field) {
   for (Slot& slot : field.slots) {
     BodyTurn& turn = slot.turn;
-    const AnchorTurns& turns = snapshot.regions.at<AnchorTurns>(slot.region);
+    const AnchorTurns& turns = snapshot.region_fields.at<AnchorTurns>(slot.region);
     double missing = turns.support;
     for (const Slot& other : field.slots) {
       if (other.turn.share > 0.0) {

@@ -82,8 +82,8 @@ bool is_half_space(ContactModel model) {
 
 /// The sums of a half-space model in a region; radius 0 where it has none.
 TurnedDiscs turned_discs(const Snapshot& snapshot, std::uint32_t region) {
-  const RegionField& field = snapshot.regions.at<RegionField>(region);
-  const RegionFrame& frame = field.frame;
+  const RegionField& field = snapshot.region_fields.at<RegionField>(region);
+  const RegionFrame& frame = snapshot.regions.at<RegionFrame>(region);
   TurnedDiscs discs;
   discs.center = grid_to_body(frame, {field.center, 0.0});
   discs.normal = frame.normal;
@@ -98,8 +98,8 @@ TurnedDiscs turned_discs(const Snapshot& snapshot, std::uint32_t region) {
 /// @param share  of their displacement that is drawn
 PressedSurface pressed_surface(const World& world, const Snapshot& snapshot, std::uint32_t region,
                                double share) {
-  const RegionField& field = snapshot.regions.at<RegionField>(region);
-  const RegionFrame& frame = field.frame;
+  const RegionField& field = snapshot.region_fields.at<RegionField>(region);
+  const RegionFrame& frame = snapshot.regions.at<RegionFrame>(region);
   const Elasticity& elasticity =
       world.bodies.at<Elasticity>(snapshot.regions.at<RegionIdentity>(region).body);
   PressedSurface pressed;
@@ -107,9 +107,8 @@ PressedSurface pressed_surface(const World& world, const Snapshot& snapshot, std
   if (field.radius <= 0.0 || normal_force <= 0.0) {
     return pressed;
   }
-  const glm::dvec3 drag = tangent_to_body(snapshot.regions.at<RegionFrame>(region),
-                                          snapshot.regions.at<RegionFriction>(region).force) /
-                          -normal_force;
+  const glm::dvec3 drag =
+      tangent_to_body(frame, snapshot.regions.at<RegionFriction>(region).force) / -normal_force;
   const double turn = glm::dot(snapshot.regions.at<RegionCarrier>(region).rotation, frame.normal);
   const double sine = std::sin(turn);
   const double cosine = std::cos(turn);

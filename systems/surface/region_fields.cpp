@@ -96,7 +96,7 @@ double couple_of(const Source& source, const RegionField& field) {
 }
 
 /// How far the cells have gone around the field's centre, all of the grid's, in contact or not.
-RingTurns turns_of_cells(World& world, std::uint32_t region, const Source& source,
+RingTurns turns_of_cells(const World& world, std::uint32_t region, const Source& source,
                          const RegionField& field) {
   const Range cells = world.regions.at<RegionIdentity>(region).cells;
   const std::span<const PatchMovedX> moved_x = world.patch_cells.rows<PatchMovedX>(cells);
@@ -148,16 +148,13 @@ void discs_of_layers(const MdrFoundation& foundation, std::span<const MdrLayer> 
   }
 }
 
-void fill_field(StepContext& context, std::uint32_t region, ContactModel model) {
-  World& world = context.world;
+void fill_field(const World& world, const SnapshotTables& tables, std::uint32_t region,
+                ContactModel model, RegionField& field) {
   const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
   const RegionFrame& frame = world.regions.at<RegionFrame>(region);
   const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
   const glm::dvec2 cell = 2.0 * frame.half_size / static_cast<double>(side);
   const Source source{frame, side, cell.x * cell.y, world.cells.rows<CellTraction>(identity.cells)};
-  RegionField& field = world.regions.at<RegionField>(region);
-  field = RegionField{};
-  field.frame = frame;
   field.radius = world.regions.at<RegionGeometry>(region).radius;
   if (field.radius <= 0.0) {
     return;
@@ -171,26 +168,25 @@ void fill_field(StepContext& context, std::uint32_t region, ContactModel model) 
   if (model == ContactModel::kMdr) {
     const std::uint32_t block = block_of(identity);
     const MdrState& state = world.regions.at<MdrState>(region);
-    const MdrPlaces places = places_of(context.mdr, {state.flat_share, state.elongation});
+    const MdrPlaces places = places_of(tables.mdr, {state.flat_share, state.elongation});
     discs_of_layers(places.turn, world.mdr_layers.rows<MdrLayer>({block * kMdrLayers, kMdrLayers}),
                     field);
     return;
   }
   const double shear_modulus = world.bodies.at<Elasticity>(identity.body).shear_modulus();
   const double stiffness = 16.0 / 3.0 * shear_modulus * field.radius * field.radius * field.radius;
-  discs_of_ring_turns(context.rings, turns_of_cells(world, region, source, field),
+  discs_of_ring_turns(tables.rings, turns_of_cells(world, region, source, field),
                       couple_of(source, field) / stiffness, calm_of(side), field.turn);
 }
 
 }  // namespace
 
-void region_fields(StepContext& context) {
-  const World& world = context.world;
+void region_fields(const World& world, const SnapshotTables& tables, Snapshot& snapshot) {
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
     const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
     const ContactModel model = world.bodies.at<BodyModels>(body).contact;
     if (model == ContactModel::kMdr || model == ContactModel::kPatch) {
-      fill_field(context, region, model);
+      fill_field(world, tables, region, model, snapshot.region_fields.at<RegionField>(region));
     }
   }
 }

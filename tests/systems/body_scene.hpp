@@ -36,7 +36,4 @@ struct RegionOnBody {
 /// Adds a region of tool 0 on body 0; its row.
 std::uint32_t add_region(World& world, const RegionOnBody& region);
 
-/// Runs the system `skeleton` on the world.
-void run_skeleton(World& world);
-
 }  // namespace torsion

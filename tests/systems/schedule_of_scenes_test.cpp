@@ -31,9 +31,9 @@ bool runs(Hand& hand, std::string_view name) {
 
 TEST(ScheduleOfScenesTest, TheWholeSceneRunsEverySystemButThoseOfOtherContactModels) {
   Hand hand(test::ball_on_cube());
-  EXPECT_EQ(names_on(hand).size(), step_systems(1e-3).size() - 6);
+  EXPECT_EQ(names_on(hand).size(), step_systems().size() - 4);
   EXPECT_TRUE(runs(hand, "paper_friction_forces"));
-  EXPECT_TRUE(runs(hand, "skeleton"));
+  EXPECT_TRUE(runs(hand, "main_beams"));
   EXPECT_FALSE(runs(hand, "mdr_forces"));
   EXPECT_FALSE(runs(hand, "patch_forces"));
 }
@@ -62,22 +62,11 @@ TEST(ScheduleOfScenesTest, WithoutFrictionNothingOfFrictionRuns) {
   EXPECT_TRUE(runs(hand, "paper_normal_forces"));
 }
 
-// So that a picture at 100 Hz is not 80 ms late, and one at 10 kHz costs no more.
-TEST(ScheduleOfScenesTest, WhatIsDrawnIsMadeEvery8Milliseconds) {
-  for (const auto& [dt, every] : {std::pair{1e-2, 1U}, {1e-3, 8U}, {1e-4, 80U}}) {
-    for (const System<StepContext>& system : step_systems(dt)) {
-      const bool drawn = system.name == "region_fields" || system.name == "skeleton" ||
-                         system.name == "anchor_motions";
-      EXPECT_EQ(system.every, drawn ? every : 1U) << system.name << " at " << dt;
-    }
-  }
-}
-
 TEST(ScheduleOfScenesTest, ABodyModelNoneLeavesTheSkeletonOut) {
   SceneDescription scene = test::ball_on_cube();
   scene.bodies[0].models.body = BodyModel::kNone;
   Hand hand(scene);
-  EXPECT_FALSE(runs(hand, "skeleton"));
+  EXPECT_FALSE(runs(hand, "main_beams"));
   EXPECT_TRUE(runs(hand, "paper_friction_forces"));
   EXPECT_EQ(hand.world().anchors.size(), 0U);
 }

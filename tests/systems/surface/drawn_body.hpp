@@ -8,6 +8,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "systems/surface/skeleton_motions.hpp"
 #include "systems/surface/surface_field.hpp"
 #include "tests/support/directions.hpp"
 #include "tests/systems/body_scene.hpp"
@@ -25,13 +26,10 @@ struct Drawn {
     snapshot.reserve(world);
   }
 
-  /// Runs the skeleton and the surface field on what the world holds now.
+  /// Draws what the world holds now.
   void draw() {
-    run_skeleton(world);
-    draw_as_is();
-  }
-  void draw_as_is() {
     capture(world, snapshot);
+    skeleton_motions(world, snapshot);
     surface_field(world, snapshot, frame);
     positions.resize(frame.body_vertices.size());
     deform_vertices(frame, 0, positions);

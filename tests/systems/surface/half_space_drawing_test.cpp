@@ -263,8 +263,10 @@ TEST_P(DrawnTwistTest, IsLubkinsWithinEightRadii) {
   PressedBall ball(scene);
   ball.press(test::kBallDepth, 200);
   ball.twist(GetParam().twist, 400);
-  ball.twist(0.0, 16);  // the sums for drawing are made anew every few steps
-  const RegionField& field = ball.hand.world().regions.at<RegionField>(0);
+  Snapshot snapshot;
+  snapshot.reserve(ball.hand.world());
+  take_snapshot(ball.hand.simulation(), snapshot);
+  const RegionField& field = snapshot.region_fields.at<RegionField>(0);
   TurnedDiscs discs;
   discs.normal = {0.0, 0.0, 1.0};
   discs.radius = field.radius;

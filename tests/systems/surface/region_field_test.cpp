@@ -178,38 +178,11 @@ TEST(RegionTwistTest, SharesOfTheAxisBlendWithoutAJump) {
   }
 }
 
-/// A region of contact model patch with one bonded disc about `center`, m, of its grid.
-std::uint32_t half_space_region(Drawn& drawn, const glm::dvec2& center) {
+TEST(RegionTwistTest, ARegionWithoutAFieldTurnsNothing) {
+  Drawn drawn = cube();
   drawn.world.bodies.at<BodyModels>(0).contact = ContactModel::kPatch;
   const std::uint32_t region =
       add_region(drawn.world, {.point = {0.0, 0.05, 0.0}, .radius = 0.01, .depth = 0.001});
-  RegionField& field = drawn.world.regions.at<RegionField>(region);
-  field.frame = drawn.world.regions.at<RegionFrame>(region);
-  field.center = center;
-  field.radius = 0.01;
-  field.turn[kFieldDiscs - 1] = 0.1;
-  return region;
-}
-
-TEST(RegionTwistTest, AFieldStaysWhereItWasMadeWhenTheGridMovesOn) {
-  Drawn drawn = cube();
-  const std::uint32_t region = half_space_region(drawn, {0.002, 0.001});
-  capture(drawn.world, drawn.snapshot);
-  const RegionTwist before = region_twist(drawn.world, drawn.snapshot, region);
-  RegionFrame& frame = drawn.world.regions.at<RegionFrame>(region);
-  frame.origin += 0.003 * frame.tangent_x;
-  std::swap(frame.tangent_x, frame.tangent_y);
-  capture(drawn.world, drawn.snapshot);
-  const RegionTwist after = region_twist(drawn.world, drawn.snapshot, region);
-  EXPECT_EQ(glm::distance(before.discs.center, after.discs.center), 0.0);
-  EXPECT_NEAR(glm::length(before.discs.center - glm::dvec3(0.0, 0.05, 0.0)),
-              std::hypot(0.002, 0.001), 1e-12);
-}
-
-TEST(RegionTwistTest, ARegionWithoutAFieldYetTurnsNothing) {
-  Drawn drawn = cube();
-  const std::uint32_t region = half_space_region(drawn, glm::dvec2(0.0));
-  drawn.world.regions.at<RegionField>(region) = RegionField{};
   RegionFriction& friction = drawn.world.regions.at<RegionFriction>(region);
   friction.stick_turn = 0.3;
   friction.stick_radius = 0.01;

@@ -51,7 +51,7 @@ TEST(SurfaceFieldTest, VertexAtAnAnchorMovesWithIt) {
   const std::uint32_t count = drawn.world.anchors.size();
   double largest = 0.0;
   for (std::uint32_t j = 0; j < count; ++j) {
-    const glm::dvec3 wanted = drawn.world.anchors.at<AnchorMotion>(j).displacement;
+    const glm::dvec3 wanted = drawn.snapshot.anchors.at<AnchorMotion>(j).displacement;
     largest = std::max(largest, glm::length(wanted));
     const std::uint32_t v = drawn.vertices() - count + j;
     if (drawn.rest(v).y > -0.09) {

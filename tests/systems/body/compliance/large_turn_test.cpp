@@ -107,15 +107,12 @@ class LargeTurnTest : public ::testing::Test {
     RegionFriction& friction = world.regions.at<RegionFriction>(0);
     friction.force = {-force.x, force.z};
     friction.couple = -couple;
-    RegionField& field = world.regions.at<RegionField>(0);
-    field = RegionField{};
-    field.frame = world.regions.at<RegionFrame>(0);
+    capture(world, snapshot_);
+    RegionField& field = snapshot_.region_fields.at<RegionField>(0);
     field.radius = kContact;  // a bonded disc: Reissner and Sagoci, 1944
     field.turn[kFieldDiscs - 1] =
         couple / (16.0 / 3.0 * kSoftShearModulus * std::pow(kContact, 3.0));
-    StepContext context = hand_.simulation().scratch->context(world, hand_.poses);
-    anchor_motions(context);
-    capture(world, snapshot_);
+    anchor_motions(world, snapshot_);
     surface_field(world, snapshot_, frame_);
     deform_vertices(frame_, 0, positions_);
   }
@@ -275,7 +272,7 @@ TEST(TurnedByAToolTest, SurfaceTurnsWithTheToolAndTheColumnSwellsOnlyByTheForce)
   FrameWorld frame = prepare_frame(scene, hand.world());
   Snapshot snapshot;
   snapshot.reserve(hand.world());
-  capture(hand.world(), snapshot);
+  take_snapshot(hand.simulation(), snapshot);
   surface_field(hand.world(), snapshot, frame);
   std::vector<glm::vec4> positions(frame.body_vertices.size());
   deform_vertices(frame, 0, positions);

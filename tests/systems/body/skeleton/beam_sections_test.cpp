@@ -6,6 +6,9 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "systems/body/skeleton/skeleton.hpp"
+#include "tests/systems/body_scene.hpp"
+
 namespace torsion {
 namespace {
 
@@ -105,6 +108,16 @@ TEST(TransverseAxesTest, TurnLittleWhenTheDirectionTurnsLittle) {
   EXPECT_LT(glm::length(transverse_axes(direction, reference).first -
                         transverse_axes(other, reference).first),
             1e-5);
+}
+
+TEST(BeamSpringTest, ASquareBarHasEAOverL) {
+  const double side = 0.1;
+  const World world =
+      body_world(exact_body(ShapeKind::kBox, glm::dvec3(side / 2), FixedKind::kFace));
+  const BeamSpring spring =
+      beam_spring(main_beam(world, 0, {0.0, side / 2, 0.0}), world.bodies.at<Elasticity>(0));
+  EXPECT_NEAR(spring.length, side, 1e-12);
+  EXPECT_NEAR(spring.stiffness / (3e6 * side), 1.0, 5e-3);
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
-#include "systems/body/skeleton/skeleton.hpp"
+#include "systems/surface/skeleton_motions.hpp"
 
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -15,6 +16,16 @@ namespace torsion {
 namespace {
 
 using std::numbers::pi;
+
+/// Of all anchors of the world.
+std::vector<AnchorMotion> skeleton_of(const World& world) {
+  Snapshot snapshot;
+  snapshot.reserve(world);
+  capture(world, snapshot);
+  skeleton_motions(world, snapshot);
+  const auto motion = snapshot.anchors.column<AnchorMotion>();
+  return {motion.begin(), motion.end()};
+}
 
 /// A bar 0.03 x 0.2 x 0.05 m of rubber, its lower end clamped.
 struct Bar {
@@ -30,15 +41,14 @@ struct Bar {
   glm::dvec3 tip{0.0, kLength / 2, 0.0};
 };
 
-TEST(SkeletonTest, TransverseTipForceGivesTimoshenkosDeflectionAlongTheBar) {
+TEST(SkeletonMotionsTest, TransverseTipForceGivesTimoshenkosDeflectionAlongTheBar) {
   Bar bar;
   const double force = 0.3;
   add_region(bar.world, {.point = bar.tip, .force_on_body = {force, 0.0, 0.0}});
-  run_skeleton(bar.world);
   const double moment = bar.kWidthZ * std::pow(bar.kWidthX, 3) / 12.0;  // bends about z
   const double tip_deflection = force * std::pow(bar.kLength, 3) / (3.0 * bar.youngs * moment);
   const auto rest = bar.world.anchors.column<AnchorRest>();
-  const auto motion = bar.world.anchors.column<AnchorMotion>();
+  const auto motion = skeleton_of(bar.world);
   ASSERT_GE(rest.size(), 20U);
   for (std::size_t j = 0; j < rest.size(); ++j) {
     const double s = rest[j].position.y + bar.kLength / 2;
@@ -54,14 +64,13 @@ TEST(SkeletonTest, TransverseTipForceGivesTimoshenkosDeflectionAlongTheBar) {
   }
 }
 
-TEST(SkeletonTest, AxialTipForceStretchesAndThinsTheBar) {
+TEST(SkeletonMotionsTest, AxialTipForceStretchesAndThinsTheBar) {
   Bar bar;
   const double force = 5.0;
   add_region(bar.world, {.point = bar.tip, .force_on_body = {0.0, -force, 0.0}});
-  run_skeleton(bar.world);
   const double strain = -force / (bar.youngs * bar.area);
   const auto rest = bar.world.anchors.column<AnchorRest>();
-  const auto motion = bar.world.anchors.column<AnchorMotion>();
+  const auto motion = skeleton_of(bar.world);
   for (std::size_t j = 0; j < rest.size(); ++j) {
     const double s = rest[j].position.y + bar.kLength / 2;
     EXPECT_NEAR(motion[j].displacement.y, strain * s, 1e-2 * std::abs(strain) * bar.kLength);
@@ -72,17 +81,16 @@ TEST(SkeletonTest, AxialTipForceStretchesAndThinsTheBar) {
   }
 }
 
-TEST(SkeletonTest, TipCoupleAcrossTheBarBendsItToACircularArc) {
+TEST(SkeletonMotionsTest, TipCoupleAcrossTheBarBendsItToACircularArc) {
   Bar bar;
   // A region on the side face at the top: its couple about the x axis bends the bar about x.
   const double couple = 0.02;
   add_region(bar.world, {.point = {bar.kWidthX / 2, 0.0999, 0.0},
                          .normal = {1.0, 0.0, 0.0},
                          .couple_on_body = couple});
-  run_skeleton(bar.world);
   const double moment = bar.kWidthX * std::pow(bar.kWidthZ, 3) / 12.0;  // bends about x
   const auto rest = bar.world.anchors.column<AnchorRest>();
-  const auto motion = bar.world.anchors.column<AnchorMotion>();
+  const auto motion = skeleton_of(bar.world);
   const double tip_deflection = couple * bar.kLength * bar.kLength / (2.0 * bar.youngs * moment);
   for (std::size_t j = 0; j < rest.size(); ++j) {
     const double s = rest[j].position.y + bar.kLength / 2;
@@ -93,67 +101,61 @@ TEST(SkeletonTest, TipCoupleAcrossTheBarBendsItToACircularArc) {
   }
 }
 
-TEST(SkeletonTest, SeveralRegionsAdd) {
+TEST(SkeletonMotionsTest, SeveralRegionsAdd) {
   const RegionOnBody first{.point = {0.0, 0.1, 0.0}, .force_on_body = {0.2, -1.0, 0.1}};
   const RegionOnBody second{
       .point = {0.015, 0.02, 0.0}, .normal = {1.0, 0.0, 0.0}, .force_on_body = {-2.0, 0.3, 0.0}};
   Bar alone_first;
   add_region(alone_first.world, first);
-  run_skeleton(alone_first.world);
   Bar alone_second;
   add_region(alone_second.world, second);
-  run_skeleton(alone_second.world);
   Bar both;
   add_region(both.world, first);
   add_region(both.world, second);
-  run_skeleton(both.world);
+  const auto by_first = skeleton_of(alone_first.world);
+  const auto by_second = skeleton_of(alone_second.world);
+  const auto by_both = skeleton_of(both.world);
   for (std::uint32_t j = 0; j < both.world.anchors.size(); ++j) {
-    const glm::dvec3 sum = alone_first.world.anchors.at<AnchorMotion>(j).displacement +
-                           alone_second.world.anchors.at<AnchorMotion>(j).displacement;
-    EXPECT_NEAR(glm::length(both.world.anchors.at<AnchorMotion>(j).displacement - sum), 0.0, 1e-15);
+    const glm::dvec3 sum = by_first[j].displacement + by_second[j].displacement;
+    EXPECT_NEAR(glm::length(by_both[j].displacement - sum), 0.0, 1e-15);
   }
 }
 
-TEST(SkeletonTest, BodyWithoutRegionsIsAtRest) {
+TEST(SkeletonMotionsTest, BodyWithoutRegionsIsAtRest) {
   Bar bar;
-  bar.world.anchors.at<AnchorMotion>(3).displacement = glm::dvec3(1.0);
-  run_skeleton(bar.world);
-  for (const AnchorMotion& motion : bar.world.anchors.column<AnchorMotion>()) {
+  for (const AnchorMotion& motion : skeleton_of(bar.world)) {
     EXPECT_EQ(motion.displacement, glm::dvec3(0.0));
   }
 }
 
-TEST(SkeletonTest, OtherBodyModelsLeaveTheAnchorsAtRest) {
+TEST(SkeletonMotionsTest, OtherBodyModelsLeaveTheAnchorsAtRest) {
   Bar bar;
   bar.world.bodies.at<BodyModels>(0).body = BodyModel::kNone;
   add_region(bar.world, {.point = bar.tip, .force_on_body = {1.0, -1.0, 0.0}});
-  run_skeleton(bar.world);
-  for (const AnchorMotion& motion : bar.world.anchors.column<AnchorMotion>()) {
+  for (const AnchorMotion& motion : skeleton_of(bar.world)) {
     EXPECT_EQ(motion.displacement, glm::dvec3(0.0));
   }
 }
 
-TEST(SkeletonTest, FixedFaceStaysUnderAnObliqueBeam) {
+TEST(SkeletonMotionsTest, FixedFaceStaysUnderAnObliqueBeam) {
   Bar bar;
   add_region(bar.world, {.point = {0.015, -0.05, 0.01},
                          .normal = {1.0, 0.0, 0.0},
                          .force_on_body = {-3.0, 1.0, 2.0}});
   // An anchor put on the fixed face moves with the root.
   bar.world.anchors.at<AnchorRest>(7).position = glm::dvec3(0.012, -0.1, -0.02);
-  run_skeleton(bar.world);
-  EXPECT_NEAR(glm::length(bar.world.anchors.at<AnchorMotion>(7).displacement), 0.0, 1e-15);
+  EXPECT_NEAR(glm::length(skeleton_of(bar.world)[7].displacement), 0.0, 1e-15);
 }
 
-TEST(SkeletonTest, FixedPointStays) {
+TEST(SkeletonMotionsTest, FixedPointStays) {
   const glm::dvec3 half(0.06, 0.04, 0.05);
   World world = body_world(exact_body(ShapeKind::kEllipsoid, half, FixedKind::kPoint));
   world.anchors.at<AnchorRest>(7).position = glm::dvec3(0.0, -half.y, 0.0);
   add_region(world, {.point = {0.0, half.y, 0.0}, .force_on_body = {1.0, -5.0, 0.5}});
-  run_skeleton(world);
-  EXPECT_NEAR(glm::length(world.anchors.at<AnchorMotion>(7).displacement), 0.0, 1e-15);
+  EXPECT_NEAR(glm::length(skeleton_of(world)[7].displacement), 0.0, 1e-15);
 }
 
-TEST(SkeletonTest, AnchorsMoveContinuouslyWhileTheContactSlides) {
+TEST(SkeletonMotionsTest, AnchorsMoveContinuouslyWhileTheContactSlides) {
   const glm::dvec3 half(0.06, 0.04, 0.05);
   World world = body_world(exact_body(ShapeKind::kEllipsoid, half, FixedKind::kPoint));
   std::vector<glm::dvec3> before;
@@ -166,8 +168,7 @@ TEST(SkeletonTest, AnchorsMoveContinuouslyWhileTheContactSlides) {
     const glm::dvec3 normal = glm::normalize(point / (half * half));
     world.regions.clear();
     add_region(world, {.point = point, .normal = normal, .force_on_body = -2.0 * normal});
-    run_skeleton(world);
-    const auto motion = world.anchors.column<AnchorMotion>();
+    const auto motion = skeleton_of(world);
     for (std::size_t j = 0; j < before.size(); ++j) {
       largest_jump = std::max(largest_jump, glm::length(motion[j].displacement - before[j]));
     }
@@ -181,28 +182,6 @@ TEST(SkeletonTest, AnchorsMoveContinuouslyWhileTheContactSlides) {
   // 20 for its steepest place. A jump would be a sizeable share of `largest`.
   EXPECT_LT(largest_jump, 20.0 * largest / kSteps);
   RecordProperty("largest_m", std::to_string(largest));
-}
-
-TEST(BeamSummaryTest, SquareBarHasSaintVenantsComplianceAndItsAxialStiffness) {
-  const double side = 0.1;
-  World world = body_world(exact_body(ShapeKind::kBox, glm::dvec3(side / 2), FixedKind::kFace));
-  const BeamSummary summary =
-      beam_summary(main_beam(world, 0, {0.0, side / 2, 0.0}), world.bodies.at<Elasticity>(0));
-  EXPECT_NEAR(summary.length, side, 1e-12);
-  EXPECT_NEAR(summary.area / (side * side), 1.0, 5e-3);
-  EXPECT_NEAR(summary.axial_stiffness / (3e6 * side), 1.0, 5e-3);
-  EXPECT_NEAR(summary.polar / (std::pow(side, 4) / 6.0), 1.0, 5e-3);
-  // physics B8: G = 1e6 Pa, b = L = 0.1 m, phi = 0.01 rad needs 1.40577015 N m.
-  EXPECT_NEAR(summary.torsion_compliance * 1.40577015 / 0.01, 1.0, 5e-3);
-}
-
-TEST(BeamSummaryTest, RoundBarHasItsClosedForms) {
-  World world = body_world(exact_body(ShapeKind::kCylinder, {0.05, 0.05, 0.05}, FixedKind::kFace));
-  const BeamSummary summary =
-      beam_summary(main_beam(world, 0, {0.0, 0.05, 0.0}), world.bodies.at<Elasticity>(0));
-  // physics B8: G = 1e6 Pa, r = 0.05 m, L = 0.1 m, phi = 0.1 rad needs 9.81747704 N m.
-  EXPECT_NEAR(summary.torsion_compliance * 9.81747704 / 0.1, 1.0, 5e-3);
-  EXPECT_NEAR(summary.area / (pi * 0.0025), 1.0, 5e-3);
 }
 
 }  // namespace

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "ecs/snapshot.hpp"
+#include "ecs/world.hpp"
+#include "systems/mdr/places.hpp"
+#include "systems/surface/ring_turns.hpp"
+
+namespace torsion {
+
+/// Tables by which a step's snapshot is taken. Constant.
+struct SnapshotTables {
+  MdrTables mdr;       // empty without contact model mdr
+  RingProfiles rings;  // empty without contact model patch
+};
+
+/// Load time.
+SnapshotTables make_snapshot_tables(const World& world);
+
+/// What a step has left, with all that only a picture needs of it: what each region does to the
+/// surface around it, and how far the anchors have gone. Costs a part of a step, and nothing in
+/// steps of which nobody takes one. Allocates nothing. @pre snapshot.reserve(world) was called
+void take_snapshot(const World& world, const SnapshotTables& tables, Snapshot& snapshot);
+
+}  // namespace torsion

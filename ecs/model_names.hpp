@@ -11,8 +11,10 @@ namespace torsion {
 
 // The models' names, as scenes, the command line and reports write them; in the order of the enums.
 
-inline constexpr std::array<std::string_view, 4> kContactModelNames = {"auto", "paper", "mdr",
-                                                                       "patch"};
+#define TORSION_NAME(name, text) text,
+inline constexpr std::array kContactModelNames =
+    std::to_array<std::string_view>({"auto", TORSION_CONTACT_MODELS(TORSION_NAME)});
+#undef TORSION_NAME
 inline constexpr std::array<std::string_view, 4> kBodyModelNames = {"auto", "none", "skeleton",
                                                                     "compliance"};
 

@@ -8,6 +8,8 @@
 #include <limits>
 #include <string_view>
 
+#include "ecs/contact_models.hpp"
+
 namespace torsion {
 
 enum class Role : std::uint32_t {
@@ -50,6 +52,11 @@ constexpr std::uint32_t bits(Role role) {
   return static_cast<std::uint32_t>(role);
 }
 
+// The names of all contact models, with spaces between.
+#define TORSION_WORD(name, text) " " text
+inline constexpr std::string_view kContactModelWords = "auto" TORSION_CONTACT_MODELS(TORSION_WORD);
+#undef TORSION_WORD
+
 inline constexpr std::array kSceneKeys = {
     SceneKey{"torsion_role", ~0U, KeyKind::kText,
              "elastic tool fixed_point fixed_box fixed_sphere"},
@@ -63,7 +70,7 @@ inline constexpr std::array kSceneKeys = {
              "a number of at least 0 and of at least torsion_dynamic_friction", 0.0, 100.0},
     SceneKey{"torsion_dynamic_friction", bits(Role::kElastic), KeyKind::kNumber,
              "a number of at least 0", 0.0, 100.0},
-    SceneKey{"torsion_contact_model", bits(Role::kElastic), KeyKind::kText, "auto paper mdr patch"},
+    SceneKey{"torsion_contact_model", bits(Role::kElastic), KeyKind::kText, kContactModelWords},
     SceneKey{"torsion_body_model", bits(Role::kElastic), KeyKind::kText,
              "auto none skeleton compliance"},
     SceneKey{"torsion_tolerance", bits(Role::kElastic), KeyKind::kNumber,

@@ -1,4 +1,5 @@
-// Every contact model and every body model: a new one is a room of its own and one line here.
+// Every contact model (ecs/contact_models.hpp has the list) and every body model: a new one is a
+// room of its own and one line in its list.
 
 #include <array>
 
@@ -6,14 +7,19 @@
 #include "systems/body/skeleton/skeleton.hpp"
 #include "systems/contact/law.hpp"
 #include "systems/contact/support/body_law.hpp"
-#include "systems/mdr/mdr.hpp"
-#include "systems/paper/paper.hpp"
-#include "systems/patch/patch.hpp"
 
 namespace torsion {
+
+#define TORSION_LAW(name, text) extern const ContactLaw k##name##Law;
+TORSION_CONTACT_MODELS(TORSION_LAW)
+#undef TORSION_LAW
+
 namespace {
 
-constexpr std::array<const ContactLaw*, 3> kContactLaws{&kPaperLaw, &kMdrLaw, &kPatchLaw};
+#define TORSION_LAW(name, text) &k##name##Law,
+constexpr auto kContactLaws =
+    std::to_array<const ContactLaw*>({TORSION_CONTACT_MODELS(TORSION_LAW)});
+#undef TORSION_LAW
 
 const BodyLaw kNoBodyLaw{.model = BodyModel::kNone};
 constexpr std::array<const BodyLaw*, 3> kBodyLaws{&kNoBodyLaw, &kSkeletonLaw, &kComplianceLaw};

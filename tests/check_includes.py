@@ -29,6 +29,7 @@ ROOMS = {
     "paper": {"math", "contact"},
     "mdr": {"math", "geometry", "half_space", "contact"},
     "patch": {"math", "half_space", "contact"},
+    "winkler": {"math", "contact"},
     "body": {"math", "half_space", "contact"},
     "model": {"math", "geometry", "half_space", "contact", "body"},
     "hold": {"math", "contact"},

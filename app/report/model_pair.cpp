@@ -29,7 +29,9 @@ std::vector<ModelPair> model_pairs(const ReferenceCase& reference_case, bool qui
     }
     for (std::size_t b = 1; b < kBodyModelNames.size(); ++b) {
       const auto body = static_cast<BodyModel>(b);
-      if (body != BodyModel::kNone && !reference_case.finite_body) {
+      // The bed of winkler has the body's depth in it already.
+      if (body != BodyModel::kNone &&
+          (!reference_case.finite_body || contact == ContactModel::kWinkler)) {
         continue;
       }
       for (const std::uint32_t side : sides) {

@@ -13,12 +13,13 @@ namespace torsion {
 namespace {
 
 // Colours that stay apart for the colour-blind (Okabe and Ito 2008), in the order of the enum.
-constexpr std::array<const char*, 4> kContactColors = {"#000000", "#D55E00", "#0072B2", "#009E73"};
+constexpr std::array<const char*, 5> kContactColors = {"#000000", "#D55E00", "#0072B2", "#009E73",
+                                                       "#CC79A7"};
 // gnuplot's numbers of dashes and points, in the order of the enum BodyModel.
 constexpr std::array<int, 4> kBodyDashes = {1, 1, 2, 4};
 constexpr std::array<int, 4> kBodyPoints = {7, 7, 9, 5};
 // Wide below, narrow on top, so that curves that coincide are all seen; in the order of the enum.
-constexpr std::array<double, 4> kContactWidths = {1.6, 1.6, 3.6, 1.4};
+constexpr std::array<double, 5> kContactWidths = {1.6, 1.6, 3.6, 1.4, 1.4};
 constexpr double kSmallestError = 1e-5;  // below this a logarithmic axis says nothing
 
 /// The model's entry; the last one for a model that is newer than the array.

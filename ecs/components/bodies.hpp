@@ -8,6 +8,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include "ecs/contact_models.hpp"
 #include "ecs/entity.hpp"
 
 namespace torsion {
@@ -55,7 +56,9 @@ struct FixedVolume {
   std::uint32_t padding = 0;
 };
 
-enum class ContactModel : std::uint32_t { kAuto, kPaper, kMdr, kPatch };
+#define TORSION_ENUMERATOR(name, text) k##name,
+enum class ContactModel : std::uint32_t { kAuto, TORSION_CONTACT_MODELS(TORSION_ENUMERATOR) };
+#undef TORSION_ENUMERATOR
 enum class BodyModel : std::uint32_t { kAuto, kNone, kSkeleton, kCompliance };
 
 /// What the scene asked for and, once prepared, what runs (never kAuto). Written by: load.

@@ -346,21 +346,26 @@ ModelChoice choose_models(const BodyModels& scene, const PrepareOptions& options
   }
   choice.body_is_auto = choice.models.body == BodyModel::kAuto;
   if (choice.body_is_auto) {
-    std::tie(choice.models.body, choice.body_why) = auto_body(contact, scene.tolerance);
+    if (choice.models.contact == ContactModel::kWinkler) {
+      choice.models.body = BodyModel::kNone;
+      choice.body_why = "auto: the bed of winkler is as deep as the body";
+    } else {
+      std::tie(choice.models.body, choice.body_why) = auto_body(contact, scene.tolerance);
+    }
   }
   return choice;
 }
 
 std::uint32_t choose_grid_side(std::span<const ModelChoice> choices) {
-  constexpr std::uint32_t kPaperSide = 16;
+  constexpr std::uint32_t kSideOfCells = 16;
   // Sides whose errors are at most 2 %, 0.7 % and below.
   constexpr std::uint32_t kPatchSides[] = {12, 16, 20};
   constexpr std::uint32_t kLongSide = 20;  // steps stay within a millisecond
   std::uint32_t side = 8;
   for (const ModelChoice& choice : choices) {
     const BodyModels& models = choice.models;
-    if (models.contact == ContactModel::kPaper) {
-      side = std::max(side, kPaperSide);
+    if (models.contact == ContactModel::kPaper || models.contact == ContactModel::kWinkler) {
+      side = std::max(side, kSideOfCells);
     } else if (models.contact == ContactModel::kPatch) {
       side = std::max(
           side,

@@ -166,39 +166,6 @@ void check_owners(const World& world, Findings& findings) {
   }
 }
 
-Entity handle(const BodyTable& table, std::uint32_t row) {
-  return table.at<Entity>(row);
-}
-Entity handle(const ToolTable& table, std::uint32_t row) {
-  return table.at<Entity>(row);
-}
-Entity handle(const RegionTable& table, std::uint32_t row) {
-  return table.at<RegionIdentity>(row).self;
-}
-
-// Every slot is either free and in the list of free slots once, or names the row that names it.
-template <class AnyTable>
-void check_handles(const AnyTable& table, const EntityPool& pool, std::string_view name,
-                   Findings& findings) {
-  for (std::uint32_t row = 0; row < table.size(); ++row) {
-    findings.require(pool.row(handle(table, row)) == row, name, row, "its handle is stale");
-  }
-  std::uint32_t alive = 0;
-  for (const EntityPool::Slot& slot : pool.slots()) {
-    alive += slot.generation % 2;
-  }
-  findings.require(alive == table.size(), name, table.size(), "a handle names no row");
-  std::uint32_t free = 0;
-  std::uint32_t slot = pool.first_free();
-  while (slot < pool.capacity() && pool.slots()[slot].generation % 2 == 0 &&
-         free < pool.capacity()) {
-    slot = pool.slots()[slot].row;
-    ++free;
-  }
-  findings.require(slot == UINT32_MAX && free + alive == pool.capacity(), name, 0,
-                   "the list of free handles is broken");
-}
-
 }  // namespace
 
 Result<Done> check_world(const World& world) {
@@ -207,9 +174,6 @@ Result<Done> check_world(const World& world) {
   if (findings.first.empty()) {
     check_fields(world, findings);
     check_owners(world, findings);
-    check_handles(world.bodies, world.body_handles, "bodies", findings);
-    check_handles(world.tools, world.tool_handles, "tools", findings);
-    check_handles(world.regions, world.region_handles, "regions", findings);
   }
   if (!findings.first.empty()) {
     return Error{findings.first};

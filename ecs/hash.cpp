@@ -23,13 +23,6 @@ void add_table(XXH3_state_t& state, const AnyTable& table) {
   });
 }
 
-void add_pool(XXH3_state_t& state, const EntityPool& pool) {
-  add_number(state, pool.capacity());
-  add_number(state, pool.first_free());
-  const auto bytes = std::as_bytes(std::span(pool.slots()));
-  XXH3_64bits_update(&state, bytes.data(), bytes.size());
-}
-
 }  // namespace
 
 std::uint64_t hash(const World& world) {
@@ -37,7 +30,6 @@ std::uint64_t hash(const World& world) {
   XXH3_INITSTATE(&state);
   XXH3_64bits_reset(&state);
   std::apply([&state](const auto&... tables) { (add_table(state, tables), ...); }, world.tables());
-  std::apply([&state](const auto&... pools) { (add_pool(state, pools), ...); }, world.pools());
   return XXH3_64bits_digest(&state);
 }
 

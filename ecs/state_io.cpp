@@ -25,7 +25,7 @@ struct Header {
 };
 
 constexpr std::array<char, 8> kMagic = {'T', 'O', 'R', 'S', 'T', 'A', 'T', 'E'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 // Room beyond the rows that a file may ask for, bytes: the capacities are the one number in it that
 // its own length does not bound. A world of 64 bodies needs under 40 MiB.
 constexpr std::uint64_t kLargestSpareRoom = std::uint64_t{1} << 28U;
@@ -47,7 +47,6 @@ std::uint64_t layout_hash() {
   const World world;
   std::apply([&text](const auto&... tables) { (describe_table(text, tables), ...); },
              world.tables());
-  describe<EntityPool::Slot>(text);
   const std::uint32_t order = 0x01020304;
   text.append(std::string(reinterpret_cast<const char*>(&order), sizeof(order)));
   return XXH3_64bits(text.data(), text.size());
@@ -69,12 +68,6 @@ class Writer {
     number(table.capacity());
     table.each_column(
         [this](std::span<const std::byte> column, std::size_t /*row_size*/) { raw(column); });
-  }
-
-  void pool(const EntityPool& pool) {
-    number(pool.capacity());
-    number(pool.first_free());
-    raw(std::as_bytes(std::span(pool.slots())));
   }
 
  private:
@@ -123,18 +116,6 @@ class Reader {
         [this](std::span<std::byte> column, std::size_t /*row_size*/) { raw(column); });
   }
 
-  void pool(EntityPool& pool) {
-    const std::uint32_t capacity = number();
-    const std::uint32_t first_free = number();
-    if (!ok_ || capacity * sizeof(EntityPool::Slot) > rest_.size()) {
-      ok_ = false;
-      return;
-    }
-    pool.reserve(capacity);
-    raw(std::as_writable_bytes(std::span(pool.slots())));
-    pool.set_first_free(first_free);
-  }
-
  private:
   bool take_spare_room(std::uint64_t bytes) {
     if (bytes > kLargestSpareRoom - spare_room_) {
@@ -159,7 +140,6 @@ std::vector<std::byte> to_bytes(const World& world) {
   std::vector<std::byte> bytes(sizeof(Header));
   Writer writer(bytes);
   std::apply([&writer](const auto&... tables) { (writer.table(tables), ...); }, world.tables());
-  std::apply([&writer](const auto&... pools) { (writer.pool(pools), ...); }, world.pools());
   const std::span<const std::byte> content = std::span(bytes).subspan(sizeof(Header));
   const Header header{kMagic,        kVersion,       0,
                       layout_hash(), content.size(), XXH3_64bits(content.data(), content.size())};
@@ -197,7 +177,6 @@ Result<World> from_bytes(std::span<const std::byte> bytes, std::string_view orig
   World world;
   Reader reader(content);
   std::apply([&reader](auto&... tables) { (reader.table(tables), ...); }, world.tables());
-  std::apply([&reader](auto&... pools) { (reader.pool(pools), ...); }, world.pools());
   if (!reader.ok() || !reader.at_end()) {
     return failure(origin, "is damaged: its tables do not fill it");
   }

@@ -12,7 +12,7 @@
 namespace torsion {
 
 // A saved world: magic, version, a hash of the layout of every saved type, the tables with their
-// capacities, the entity pools, and a checksum. A world that is loaded has the hash() of the one
+// capacities, and a checksum. A world that is loaded has the hash() of the one
 // that was saved and goes on bit for bit. The format is this build's own: another layout of the
 // components is refused, not converted.
 

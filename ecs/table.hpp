@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "ecs/column.hpp"
-#include "ecs/entity.hpp"
+#include "ecs/range.hpp"
 
 namespace torsion {
 

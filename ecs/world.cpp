@@ -15,8 +15,6 @@ void World::reserve(const Capacities& capacities, const Settings& chosen) {
   bodies.reserve(capacities.bodies);
   tools.reserve(capacities.tools);
   anchors.reserve(capacities.anchors);
-  body_handles.reserve(capacities.bodies);
-  tool_handles.reserve(capacities.tools);
   reserve_models(capacities, chosen);
   clock.append();
   clock.at<Clock>(0) = Clock{};
@@ -35,7 +33,6 @@ void World::reserve_models(const Capacities& capacities, const Settings& chosen)
   patch_cells.reserve(capacities.patch_bodies > 0 ? cells.capacity() : 0);
   layer_influences.reserve(capacities.regions * capacities.layer_influences);
   mdr_layers.reserve(capacities.mdr_bodies > 0 ? capacities.regions * kMdrLayers : 0);
-  region_handles.reserve(capacities.regions);
   settings.append();
   settings.at<Settings>(0) = chosen;
 }

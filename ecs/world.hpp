@@ -67,10 +67,9 @@ struct Settings {
 };
 
 // Parallel columns of each table. What a column means is said at its struct in ecs/components.hpp.
-using BodyTable = Table<Entity, Pose, Elasticity, Friction, FixedRegion, BodyModels, OwnedRows,
-                        Bounds, StoredEnergy>;
-using ToolTable =
-    Table<Entity, ToolPose, ToolMotion, MassProperties, ToolWrench, OwnedRows, Bounds>;
+using BodyTable =
+    Table<Pose, Elasticity, Friction, FixedRegion, BodyModels, OwnedRows, Bounds, StoredEnergy>;
+using ToolTable = Table<ToolPose, ToolMotion, MassProperties, ToolWrench, OwnedRows, Bounds>;
 using RegionTable =
     Table<RegionIdentity, RegionFrame, RegionCarrier, RegionSupport, RegionReaction, SupportField,
           TractionFrame, RegionGeometry, RegionMotion, RegionNormal, RegionFriction, PatchState,
@@ -111,10 +110,6 @@ struct World {
   Table<RegionCoupling>
       couplings;  // likewise, one for each two blocks: i, j < i at i (i - 1)/2 + j
   Table<AnchorRest> anchors;
-  // handles
-  EntityPool body_handles;
-  EntityPool tool_handles;
-  EntityPool region_handles;
 
   /// Takes all memory, empties all tables, and appends the one row of `settings` and `clock`.
   void reserve(const Capacities& capacities, const Settings& chosen);
@@ -134,8 +129,6 @@ struct World {
                     balls, influences, ports, compliance, sections, clock, bodies, tools, regions,
                     cells, patch_cells, mdr_layers, layer_influences, footings, couplings, anchors);
   }
-  [[nodiscard]] auto pools() { return std::tie(body_handles, tool_handles, region_handles); }
-  [[nodiscard]] auto pools() const { return std::tie(body_handles, tool_handles, region_handles); }
 };
 
 }  // namespace torsion

@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "ecs/contact_models.hpp"
-#include "ecs/entity.hpp"
+#include "ecs/range.hpp"
 
 namespace torsion {
 

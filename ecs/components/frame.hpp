@@ -6,7 +6,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "ecs/entity.hpp"
+#include "ecs/range.hpp"
 
 namespace torsion {
 

@@ -11,13 +11,12 @@
 #include <glm/vec3.hpp>
 
 #include "ecs/components/basics.hpp"
-#include "ecs/entity.hpp"
+#include "ecs/range.hpp"
 
 namespace torsion {
 
 /// Written by: group_regions.
 struct RegionIdentity {
-  Entity self;
   std::uint32_t body = 0;   // row in `bodies`
   std::uint32_t tool = 0;   // row in `tools`
   std::uint64_t order = 0;  // 0, 1, 2, ... in the order of formation, never used twice

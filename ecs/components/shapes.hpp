@@ -9,7 +9,7 @@
 #include <glm/vec4.hpp>
 
 #include "ecs/components/basics.hpp"
-#include "ecs/entity.hpp"
+#include "ecs/range.hpp"
 
 namespace torsion {
 

@@ -140,10 +140,9 @@ void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t c
     return;
   }
   const Range cells = free_cells(world);
-  const std::optional<Entity> handle = world.region_handles.create(row);
-  TORSION_ASSERT(handle.has_value() && world.regions.append().has_value());
-  world.regions.at<RegionIdentity>(row) = {*handle, pair.body, pair.tool, clock.regions_formed,
-                                           cells};
+  const std::optional<Range> appended = world.regions.append();
+  TORSION_ASSERT(appended.has_value());
+  world.regions.at<RegionIdentity>(row) = {pair.body, pair.tool, clock.regions_formed, cells};
   clock.regions_formed += 1;
   std::ranges::fill(world.cells.rows<CellGeometry>(cells), CellGeometry{});
   std::ranges::fill(world.cells.rows<CellTraction>(cells), CellTraction{});
@@ -288,7 +287,7 @@ void end_or_go_on(StepContext& context, const ContactPair& pair,
       follow_contact(context, region, {pair.points, kNoRow});
     } else {
       end_region(world, region, heir_of(world, scratch, region, points));
-      scratch.region_commands.destroy(regions[region].self);
+      scratch.ended_regions.push_back(region);
     }
   }
 }
@@ -306,6 +305,14 @@ void join_regions(StepContext& context, const ContactPair& pair,
         law.join(context, region, heir);
       }
     }
+  }
+}
+
+/// Takes the rows of regions that have ended out of the table.
+void erase_ended(World& world, ContactScratch& scratch) {
+  // The last first: rows behind one that goes move up. They were noted in the order of rows.
+  for (; !scratch.ended_regions.empty(); scratch.ended_regions.pop_back()) {
+    world.regions.erase(scratch.ended_regions.back());
   }
 }
 
@@ -335,7 +342,7 @@ void group_regions(StepContext& context) {
         begin_region(context, pair, cluster, owner.split_from);
       }
     }
-    scratch.region_commands.apply(world.regions, world.region_handles);
+    erase_ended(world, scratch);
   }
 }
 

@@ -20,7 +20,7 @@ void ContactScratch::reserve(const World& world) {
   cluster_points.reserve(samples);
   owners.reserve(samples);
   overlaps.reserve(std::size_t{kMaxRegionsPerBody} * samples);
-  region_commands.reserve(world.regions.capacity());
+  ended_regions.reserve(world.regions.capacity());
   region_points.assign(world.regions.capacity(), RegionPoints{});
   const std::size_t cells = std::size_t{side} * side;
   column_memory.reserve(26, cells);

@@ -8,7 +8,6 @@
 #include <glm/vec3.hpp>
 
 #include "ecs/column.hpp"
-#include "ecs/commands.hpp"
 #include "ecs/components.hpp"
 #include "ecs/world.hpp"
 #include "systems/contact/group_points.hpp"
@@ -129,9 +128,9 @@ struct ContactScratch {
   std::vector<std::uint32_t> parent;
   std::vector<glm::dvec3> cluster_points;
   // group_regions
-  std::vector<ClusterOwner> owners;  // (kMaxRegionsPerBody) of one pair's clusters
-  std::vector<double> overlaps;      // (regions of the pair x clusters)
-  Commands<RegionTable> region_commands;
+  std::vector<ClusterOwner> owners;          // (kMaxRegionsPerBody) of one pair's clusters
+  std::vector<double> overlaps;              // (regions of the pair x clusters)
+  std::vector<std::uint32_t> ended_regions;  // (regions) rows, to be erased once a pair is done
   std::vector<RegionPoints>
       region_points;  // (regions) by block of cells, which does not move when rows do
   // region_grids

@@ -153,7 +153,6 @@ void append_tool(World& world, const ToolDescription& tool, const SampledSurface
   owned.samples = append_rows<SurfaceSample>(world.samples, surface.samples);
   owned.balls = append_rows<SurfaceBall>(world.balls, surface.balls);
   const std::uint32_t row = world.tools.append()->first;
-  world.tools.at<Entity>(row) = *world.tool_handles.create(row);
   world.tools.at<ToolPose>(row) = ToolPose{};
   world.tools.at<ToolMotion>(row) = ToolMotion{};
   world.tools.at<MassProperties>(row) = tool.mass;
@@ -169,7 +168,6 @@ void append_body(World& world, const BodyDescription& body, const Built& built,
   FixedRegion fixed = body.fixed;
   fixed.volumes = append_rows<FixedVolume>(world.fixed_volumes, body.fixed_volumes);
   const std::uint32_t row = world.bodies.append()->first;
-  world.bodies.at<Entity>(row) = *world.body_handles.create(row);
   world.bodies.at<Pose>(row) = body.pose;
   world.bodies.at<Elasticity>(row) = body.elasticity;
   world.bodies.at<Friction>(row) = body.friction;

@@ -27,7 +27,7 @@ void set_levers(const FixedRegion& fixed, const RegionFrame& frame, const Region
 bool has_siblings(const World& world, std::uint32_t region) {
   const RegionIdentity& self = world.regions.at<RegionIdentity>(region);
   return std::ranges::any_of(world.regions.column<RegionIdentity>(), [&](const auto& other) {
-    return other.body == self.body && other.tool == self.tool && !(other.self == self.self);
+    return other.body == self.body && other.tool == self.tool && other.order != self.order;
   });
 }
 

@@ -129,22 +129,6 @@ const std::vector<Damage> kDamages = {
      [](World& world) {
        world.regions.at<RegionIdentity>(1).cells.count = 17;
      }},
-    {"bodies row 0",
-     [](World& world) {
-       world.bodies.at<Entity>(0).generation = 3;
-     }},
-    {"tools row 2",
-     [](World& world) {
-       world.tool_handles.slots().push_back({1, 0});
-     }},
-    {"regions row 0",
-     [](World& world) {
-       world.region_handles.set_first_free(UINT32_MAX);
-     }},
-    {"regions row 0",
-     [](World& world) {
-       world.region_handles.slots()[3].row = 2;
-     }},
 };
 
 INSTANTIATE_TEST_SUITE_P(All, CheckWorldDamageTest, testing::ValuesIn(kDamages));

@@ -38,18 +38,6 @@ TEST(HashTest, EveryColumnOfEveryTableCounts) {
       world.tables());
 }
 
-TEST(HashTest, EveryEntityPoolCounts) {
-  World world = test::small_world(3);
-  std::apply(
-      [&world](auto&... pools) {
-        (expect_hash_to_change(world, std::as_writable_bytes(std::span(pools.slots()))), ...);
-      },
-      world.pools());
-  const std::uint64_t before = hash(world);
-  world.region_handles.set_first_free(world.region_handles.first_free() + 1);
-  EXPECT_NE(hash(world), before);
-}
-
 TEST(HashTest, RowsBeyondTheSizeDoNotCount) {
   World world = test::small_world(4);
   const std::uint64_t before = hash(world);

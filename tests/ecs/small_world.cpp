@@ -119,11 +119,6 @@ World small_world(unsigned seed) {
   world.settings.at<Settings>(0) = settings;
   mend_shapes(world);
   mend_owners(world);
-  for (std::uint32_t row = 0; row < 2; ++row) {
-    world.bodies.at<Entity>(row) = world.body_handles.create(row).value();
-    world.tools.at<Entity>(row) = world.tool_handles.create(row).value();
-    world.regions.at<RegionIdentity>(row).self = world.region_handles.create(row).value();
-  }
   return world;
 }
 

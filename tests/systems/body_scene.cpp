@@ -143,7 +143,6 @@ World body_world(const BodyDescription& body) {
   std::ranges::copy(prepared.sections, world.sections.column<BeamSection>().begin());
 
   world.bodies.append();
-  world.bodies.at<Entity>(0) = *world.body_handles.create(0);
   world.bodies.at<Pose>(0) = body.pose;
   world.bodies.at<Elasticity>(0) = body.elasticity;
   world.bodies.at<Friction>(0) = body.friction;
@@ -168,8 +167,7 @@ World body_world(const BodyDescription& body) {
 
 std::uint32_t add_region(World& world, const RegionOnBody& region) {
   const std::uint32_t row = world.regions.append()->first;
-  world.regions.at<RegionIdentity>(row) =
-      RegionIdentity{*world.region_handles.create(row), 0, 0, row, Range{row, 1}};
+  world.regions.at<RegionIdentity>(row) = RegionIdentity{0, 0, row, Range{row, 1}};
   const TransverseAxes axes = transverse_axes(region.normal, glm::dvec3(0.0, 1.0, 0.0));
   RegionFrame& frame = world.regions.at<RegionFrame>(row);
   frame =

@@ -9,6 +9,7 @@
 #include "app/session.hpp"
 #include "ecs/model_names.hpp"
 #include "scenes/load_gltf.hpp"
+#include "systems/scratch.hpp"
 
 namespace torsion {
 namespace {
@@ -69,7 +70,8 @@ std::size_t memory_of(const World& world) {
     table.each_column(
         [&](auto /*rows*/, std::size_t row_size) { bytes += row_size * table.capacity(); });
   };
-  std::apply([&add](const auto&... tables) { (add(tables), ...); }, world.tables());
+  std::apply([&add](const auto&... tables) { (add(tables), ...); }, world.model.tables());
+  std::apply([&add](const auto&... tables) { (add(tables), ...); }, world.state.tables());
   return bytes;
 }
 
@@ -83,7 +85,7 @@ struct BodyReport {
 BodyReport report_of(const SceneDescription& scene, const Simulation& simulation,
                      std::uint32_t row) {
   return {scene.bodies[row], simulation.choices[row],
-          simulation.world.bodies.at<OwnedRows>(row).anchors.count};
+          simulation.world.model.bodies.at<OwnedRows>(row).anchors.count};
 }
 
 void print_body(const BodyReport& report) {
@@ -126,7 +128,7 @@ void print_scene(const SceneDescription& scene, const Simulation& simulation,
     print_body(report_of(scene, simulation, row));
   }
   for (std::uint32_t row = 0; row < scene.tools.size(); ++row) {
-    print_tool(scene.tools[row], world.tools.at<OwnedRows>(row).samples.count);
+    print_tool(scene.tools[row], world.model.tools.at<OwnedRows>(row).samples.count);
   }
   for (const std::string& node : simulation.united_nodes) {
     fmt::print("\"{}\" has meshes that overlap: they count as one solid, their union\n", node);
@@ -135,9 +137,9 @@ void print_scene(const SceneDescription& scene, const Simulation& simulation,
              static_cast<double>(memory_of(world)) / (1024.0 * 1024.0));
 }
 
-void print_systems(const Schedule<StepContext>& schedule) {
+void print_systems(const Simulation& simulation) {
   fmt::print("what a step does, in order:\n");
-  for (const auto& row : schedule.rows()) {
+  for (const auto& row : simulation.scratch->schedule.rows()) {
     fmt::print("  {:3}  {:24}  {}{}\n", row.on ? "on" : "off", row.system.name, row.system.purpose,
                row.on ? "" : fmt::format(" (off: it needs {})", row.system.needs));
   }
@@ -163,14 +165,15 @@ nlohmann::ordered_json scene_json(const SceneDescription& scene, const Simulatio
   }
   for (std::uint32_t row = 0; row < scene.tools.size(); ++row) {
     const ToolDescription& tool = scene.tools[row];
-    json["tools"].push_back({{"node", tool.node},
-                             {"parts", tool.parts.size()},
-                             {"mass_kg", tool.mass.mass},
-                             {"device", tool.device},
-                             {"surface_samples", world.tools.at<OwnedRows>(row).samples.count}});
+    json["tools"].push_back(
+        {{"node", tool.node},
+         {"parts", tool.parts.size()},
+         {"mass_kg", tool.mass.mass},
+         {"device", tool.device},
+         {"surface_samples", world.model.tools.at<OwnedRows>(row).samples.count}});
   }
   json["united_nodes"] = simulation.united_nodes;
-  for (const auto& row : simulation.schedule.rows()) {
+  for (const auto& row : simulation.scratch->schedule.rows()) {
     json["systems"].push_back({{"name", row.system.name},
                                {"on", row.on},
                                {"purpose", row.system.purpose},
@@ -197,7 +200,7 @@ int check(const CheckOptions& options) {
     fmt::print("{}\n", scene_json(*loaded.scene, prepared.value(), warnings).dump(2));
   } else {
     print_scene(*loaded.scene, prepared.value(), warnings);
-    print_systems(prepared.value().schedule);
+    print_systems(prepared.value());
   }
   return kDone;
 }

@@ -64,11 +64,11 @@ WrittenMesh deformed_body(const Session& session, const FrameWorld& frame, std::
 
 std::vector<WrittenMesh> deformed_scene(const Session& session) {
   const World& world = session.simulation.world;
-  FrameWorld frame = prepare_frame(session.scene, world);
+  FrameWorld frame = prepare_frame(session.scene, world.model, world.state);
   Snapshot snapshot;
-  snapshot.reserve(world);
+  snapshot.reserve(world.model, world.state);
   take_snapshot(session.simulation, snapshot);
-  surface_field(world, snapshot, frame);
+  surface_field(world.model, snapshot, frame);
   std::vector<WrittenMesh> meshes;
   for (std::uint32_t body = 0; body < session.scene.bodies.size(); ++body) {
     meshes.push_back(deformed_body(session, frame, body));
@@ -77,7 +77,7 @@ std::vector<WrittenMesh> deformed_scene(const Session& session) {
     const ToolDescription& from = session.scene.tools[tool];
     WrittenMesh mesh;
     mesh.name = from.node;
-    mesh.pose = world.tools.at<ToolPose>(tool).now;
+    mesh.pose = world.state.tools.at<ToolPose>(tool).now;
     mesh.color = from.draw.color;
     mesh.positions = from.draw.positions;
     mesh.normals = from.draw.normals;

@@ -88,7 +88,7 @@ int export_scene(const ExportOptions& options) {
   }
   return write_out(options, file.value(), gltf_bytes(deformed_scene(session), extension == ".glb"),
                    fmt::format("{} as it is at {:.4g} s", options.scene.scene,
-                               session.simulation.world.clock.at<Clock>(0).time));
+                               session.simulation.world.state.clock.time));
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include <glm/geometric.hpp>
 
 #include "app/round_up.hpp"
-#include "ecs/state_io.hpp"
 #include "render/auto_camera.hpp"
 #include "systems/surface/surface_field.hpp"
 
@@ -47,9 +46,9 @@ double largest_twist(const FrameWorld& frame) {
 
 double largest_pressure(const World& world) {
   double largest = 0.0;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const double area = world.regions.at<RegionGeometry>(region).area;
-    const double force = world.regions.at<RegionNormal>(region).force;
+  for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
+    const double area = world.state.regions.at<RegionGeometry>(region).area;
+    const double force = world.state.regions.at<RegionNormal>(region).force;
     largest = std::max(largest, area > 0.0 ? force / area : 0.0);
   }
   return largest;
@@ -60,30 +59,26 @@ double largest_pressure(const World& world) {
 Result<PictureScales> find_scales(Session& session, std::uint64_t steps, std::uint64_t stride,
                                   Progress& progress) {
   World& world = session.simulation.world;
-  const std::vector<std::byte> start = to_bytes(world);
-  FrameWorld frame = prepare_frame(session.scene, world);
+  const State start = world.state;
+  FrameWorld frame = prepare_frame(session.scene, world.model, world.state);
   Snapshot snapshot;
-  snapshot.reserve(world);
+  snapshot.reserve(world.model, world.state);
   PictureScales scales;
   for (std::uint64_t i = 0; i < steps; ++i) {
     step_scripted(session);
-    for (const ToolWrench& wrench : world.tools.column<ToolWrench>()) {
+    for (const ToolWrench& wrench : world.state.tools.column<ToolWrench>()) {
       scales.force = std::max(scales.force, glm::length(wrench.total.force));
       scales.torque = std::max(scales.torque, glm::length(wrench.total.torque));
     }
     scales.pressure = std::max(scales.pressure, largest_pressure(world));
     if (i % stride == 0) {
       take_snapshot(session.simulation, snapshot);
-      surface_field(world, snapshot, frame);
+      surface_field(world.model, snapshot, frame);
       scales.twist = std::max(scales.twist, largest_twist(frame));
       progress.show(static_cast<double>(i) / static_cast<double>(steps));
     }
   }
-  Result<World> again = from_bytes(start, session.scene.path);
-  if (!again) {
-    return again.error();
-  }
-  world = std::move(again).value();
+  world.state = start;
   return PictureScales{rounded_angle(scales.twist), round_up(scales.pressure),
                        round_up(scales.force), round_up(scales.torque)};
 }
@@ -119,11 +114,11 @@ PictureRun::PictureRun(FrameWorld frame, Snapshot snapshot, Camera camera, Optio
 
 Result<PictureRun> PictureRun::create(const Session& session, const Options& options) {
   const World& world = session.simulation.world;
-  FrameWorld frame = prepare_frame(session.scene, world);
+  FrameWorld frame = prepare_frame(session.scene, world.model, world.state);
   Snapshot snapshot;
-  snapshot.reserve(world);
+  snapshot.reserve(world.model, world.state);
   take_snapshot(session.simulation, snapshot);
-  surface_field(world, snapshot, frame);
+  surface_field(world.model, snapshot, frame);
   const double aspect = static_cast<double>(options.width) / static_cast<double>(options.height);
   const Result<Camera> camera = choose_camera(session, frame, options.camera, aspect);
   if (!camera) {
@@ -151,18 +146,18 @@ void PictureRun::set_scales(const PictureScales& scales) {
 
 OverlayContent PictureRun::content_of(const Session& session) const {
   const World& world = session.simulation.world;
-  const auto& clock = world.clock.at<Clock>(0);
+  const auto& clock = world.state.clock;
   OverlayContent content;
   content.lines = {std::filesystem::path(session.scene.path).stem().string(),
                    fmt::format("time {:.3f} s", clock.time)};
-  for (std::uint32_t tool = 0; tool < world.tools.size(); ++tool) {
-    const Wrench& wrench = world.tools.at<ToolWrench>(tool).total;
+  for (std::uint32_t tool = 0; tool < world.model.tools.size(); ++tool) {
+    const Wrench& wrench = world.state.tools.at<ToolWrench>(tool).total;
     content.lines.push_back(
         fmt::format("force {:.3g} N", shown(glm::length(wrench.force), options_.draw.full_force)));
     content.lines.push_back(fmt::format(
         "torque {:.3g} N m", shown(glm::length(wrench.torque), options_.draw.full_torque)));
   }
-  content.lines.push_back(fmt::format("regions {}", world.regions.size()));
+  content.lines.push_back(fmt::format("regions {}", world.state.regions.size()));
   content.heat_map = options_.draw.heat_map;
   content.heat_limit = options_.draw.heat_limit;
   if (options_.draw.arrows) {
@@ -179,7 +174,7 @@ OverlayContent PictureRun::content_of(const Session& session) const {
 Result<Image> PictureRun::draw(const Session& session) {
   const World& world = session.simulation.world;
   take_snapshot(session.simulation, snapshot_);
-  surface_field(world, snapshot_, frame_);
+  surface_field(world.model, snapshot_, frame_);
   OverlayDrawList list;
   if (options_.overlay) {
     list = draw_overlay(font_, content_of(session), options_.width, options_.height);

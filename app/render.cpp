@@ -108,7 +108,7 @@ Result<std::unique_ptr<PictureSink>> open_sink(const RenderOptions& options) {
 /// step's.
 void step_to_frame(Session& session, double time) {
   const std::uint64_t wanted = steps_in(session, time) + 1;
-  while (session.simulation.world.clock.at<Clock>(0).step < wanted) {
+  while (session.simulation.world.state.clock.step < wanted) {
     step_scripted(session);
   }
 }

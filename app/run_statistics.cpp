@@ -74,17 +74,17 @@ double PatchStatistics::mean_sweeps() const {
 
 void RunStatistics::add_step(const World& world, double step_us) {
   steps += 1;
-  contact_steps += world.regions.size() > 0 ? 1U : 0U;
+  contact_steps += world.state.regions.size() > 0 ? 1U : 0U;
   step_times.add(step_us);
-  most_regions = std::max(most_regions, world.regions.size());
-  for (const ToolWrench& wrench : world.tools.column<ToolWrench>()) {
+  most_regions = std::max(most_regions, world.state.regions.size());
+  for (const ToolWrench& wrench : world.state.tools.column<ToolWrench>()) {
     peak_force = std::max(peak_force, glm::length(wrench.total.force));
     peak_torque = std::max(peak_torque, glm::length(wrench.total.torque));
   }
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    if (law_of(world, world.regions.at<RegionIdentity>(region).body).model ==
+  for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
+    if (law_of(world.model, world.state.regions.at<RegionIdentity>(region).body).model ==
         ContactModel::kPatch) {
-      patch.add(world.regions.at<PatchState>(region));
+      patch.add(world.state.regions.at<PatchState>(region));
     }
   }
 }

@@ -36,12 +36,13 @@ Approach approach_of(const World& world, std::uint32_t tool,
   Approach approach;
   for (const std::vector<Pose>& at_time : poses) {
     for (const SurfaceSample& sample :
-         world.samples.rows<SurfaceSample>(world.tools.at<OwnedRows>(tool).samples)) {
+         world.model.samples.rows<SurfaceSample>(world.model.tools.at<OwnedRows>(tool).samples)) {
       const glm::dvec3 point = to_outer(at_time[tool], sample.position);
-      for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
-        const double distance = signed_distance(world, world.bodies.at<OwnedRows>(body).parts,
-                                                to_inner(world.bodies.at<Pose>(body), point))
-                                    .value;
+      for (std::uint32_t body = 0; body < world.model.bodies.size(); ++body) {
+        const double distance =
+            signed_distance(world.model, world.model.bodies.at<OwnedRows>(body).parts,
+                            to_inner(world.model.bodies.at<Pose>(body), point))
+                .value;
         if (distance < approach.nearest) {
           approach.nearest = distance;
           approach.body = body;
@@ -139,7 +140,7 @@ double drawn_apart(const World& world, Range parts, const DrawMesh& draw) {
     highest = glm::max(highest, point);
     double nearest = 1e300;  // to the surface of any part: those inside others are drawn, too
     for (std::uint32_t part = parts.first; part < parts.first + parts.count; ++part) {
-      nearest = std::min(nearest, std::abs(signed_distance(world, {part, 1}, point).value));
+      nearest = std::min(nearest, std::abs(signed_distance(world.model, {part, 1}, point).value));
     }
     apart = std::max(apart, nearest);
   }
@@ -231,13 +232,13 @@ std::vector<std::string> scene_warnings(const SceneDescription& scene, const Sim
   double radius = 0.0;  // m, of the widest contact
   std::vector<ExpectedContact> contacts;
   for (std::uint32_t row = 0; row < scene.bodies.size(); ++row) {
-    contacts.push_back(expect_contact(world, row, poses));
+    contacts.push_back(expect_contact(world.model, row, poses));
     radius = std::max(radius, contacts.back().radius);
   }
   for (std::uint32_t row = 0; row < scene.tools.size(); ++row) {
     const ToolDescription& tool = scene.tools[row];
-    warn_of_drawing(world, tool.node, world.tools.at<OwnedRows>(row).parts, tool.parts, tool.draw,
-                    warnings);
+    warn_of_drawing(world, tool.node, world.model.tools.at<OwnedRows>(row).parts, tool.parts,
+                    tool.draw, warnings);
     if (poses.empty()) {
       continue;
     }
@@ -252,8 +253,8 @@ std::vector<std::string> scene_warnings(const SceneDescription& scene, const Sim
   }
   for (std::uint32_t row = 0; row < scene.bodies.size(); ++row) {
     const BodyDescription& body = scene.bodies[row];
-    warn_of_drawing(world, body.node, world.bodies.at<OwnedRows>(row).parts, body.parts, body.draw,
-                    warnings);
+    warn_of_drawing(world, body.node, world.model.bodies.at<OwnedRows>(row).parts, body.parts,
+                    body.draw, warnings);
     if (contacts[row].any) {
       warn_of_contact(scene, simulation, row, contacts[row], warnings);
     }

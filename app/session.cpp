@@ -66,7 +66,7 @@ std::vector<std::vector<Pose>> expected_poses(const SceneDescription& scene) {
 }
 
 double next_time(const World& world) {
-  const Clock& clock = world.clock.at<Clock>(0);
+  const Clock& clock = world.state.clock;
   return static_cast<double>(clock.step) * clock.dt;
 }
 
@@ -83,7 +83,7 @@ void step_scripted(Session& session) {
 }
 
 std::uint64_t steps_in(const Session& session, double seconds) {
-  const double dt = session.simulation.world.clock.at<Clock>(0).dt;
+  const double dt = session.simulation.world.state.clock.dt;
   return static_cast<std::uint64_t>(std::llround(seconds / dt));
 }
 

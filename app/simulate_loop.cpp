@@ -32,7 +32,7 @@ void write_trace(const Session& session, double step_us, std::vector<TraceRow>& 
 }
 
 void record_poses(const Session& session, RecordingWriter& recording) {
-  const std::uint64_t step = session.simulation.world.clock.at<Clock>(0).step;
+  const std::uint64_t step = session.simulation.world.state.clock.step;
   for (std::uint32_t tool = 0; tool < session.tool_poses.size(); ++tool) {
     const Pose& pose = session.tool_poses[tool];
     recording.add(pose_entry(step, tool, pose, pose));

@@ -12,7 +12,7 @@ namespace torsion {
 namespace {
 
 double simulated_time(const Session& session, const RunStatistics& statistics) {
-  return static_cast<double>(statistics.steps) * session.simulation.world.clock.at<Clock>(0).dt;
+  return static_cast<double>(statistics.steps) * session.simulation.world.state.clock.dt;
 }
 
 /// Rows [from us, to us, count].
@@ -82,7 +82,7 @@ std::string summary_text(const Session& session, const RunStatistics& statistics
   if (statistics.patch.region_steps() > 0) {
     text += patch_text(statistics.patch);
   }
-  for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
+  for (std::uint32_t body = 0; body < world.model.bodies.size(); ++body) {
     const ModelChoice& choice = session.simulation.choices[body];
     text += fmt::format("body     {}: contact model {} ({}); body model {} ({})\n",
                         session.scene.bodies[body].node, name_of(choice.models.contact),
@@ -104,7 +104,7 @@ std::string summary_text(const Session& session, const RunStatistics& statistics
   if (!facts.recording.empty()) {
     text += fmt::format("recorded {}\n", facts.recording);
   }
-  const std::uint32_t faults = world.clock.at<Clock>(0).faults_ever;
+  const std::uint32_t faults = world.state.clock.faults_ever;
   return faults == 0
              ? text
              : text + "FAULTS in this run; forces went to zero meanwhile:\n" + faults_text(faults);
@@ -132,7 +132,7 @@ std::string summary_json(const Session& session, const RunStatistics& statistics
   if (statistics.patch.region_steps() > 0) {
     json["patch"] = patch_json(statistics.patch);
   }
-  for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
+  for (std::uint32_t body = 0; body < world.model.bodies.size(); ++body) {
     const ModelChoice& choice = session.simulation.choices[body];
     json["bodies"].push_back({{"node", session.scene.bodies[body].node},
                               {"contact_model", name_of(choice.models.contact)},
@@ -141,7 +141,7 @@ std::string summary_json(const Session& session, const RunStatistics& statistics
                               {"body_model_why", choice.body_why}});
   }
   for (const Fault fault : kAllFaults) {
-    if (raised(world.clock.at<Clock>(0).faults_ever, fault)) {
+    if (raised(world.state.clock.faults_ever, fault)) {
       json["faults"].push_back(fault_text(fault));
     }
   }

@@ -25,17 +25,17 @@ std::string plain(std::string name) {
 
 TraceRow trace_row(const World& world, std::uint32_t tool, double step_us) {
   TraceRow row;
-  row.time = world.clock.at<Clock>(0).time;
-  row.pose = world.tools.at<ToolPose>(tool).now;
-  row.wrench = world.tools.at<ToolWrench>(tool).total;
-  row.work = world.tools.at<ToolWrench>(tool).work;
+  row.time = world.state.clock.time;
+  row.pose = world.state.tools.at<ToolPose>(tool).now;
+  row.wrench = world.state.tools.at<ToolWrench>(tool).total;
+  row.work = world.state.tools.at<ToolWrench>(tool).work;
   row.step_us = step_us;
-  for (const RegionIdentity& region : world.regions.column<RegionIdentity>()) {
+  for (const RegionIdentity& region : world.state.regions.column<RegionIdentity>()) {
     if (region.tool != tool) {
       continue;
     }
     row.regions += 1;
-    for (const CellTraction& cell : world.cells.rows<CellTraction>(region.cells)) {
+    for (const CellTraction& cell : world.state.cells.rows<CellTraction>(region.cells)) {
       row.cells += cell.pressure > 0.0 ? 1U : 0U;
       row.stuck_cells += cell.pressure > 0.0 ? cell.sticks : 0U;
     }

@@ -4,6 +4,8 @@
 #define XXH_INLINE_ALL
 #include <cstddef>
 #include <span>
+#include <tuple>
+#include <type_traits>
 
 #include <xxhash.h>
 
@@ -23,14 +25,40 @@ void add_table(XXH3_state_t& state, const AnyTable& table) {
   });
 }
 
+template <class Tables>
+void add_tables(XXH3_state_t& state, const Tables& tables) {
+  std::apply([&state](const auto&... table) { (add_table(state, table), ...); }, tables);
+}
+
+template <class T>
+void add_struct(XXH3_state_t& state, const T& value) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  XXH3_64bits_update(&state, &value, sizeof(value));
+}
+
 }  // namespace
 
-std::uint64_t hash(const World& world) {
+std::uint64_t hash(const Model& model) {
   XXH3_state_t state;
   XXH3_INITSTATE(&state);
   XXH3_64bits_reset(&state);
-  std::apply([&state](const auto&... tables) { (add_table(state, tables), ...); }, world.tables());
+  add_struct(state, model.settings);
+  add_tables(state, model.tables());
   return XXH3_64bits_digest(&state);
+}
+
+std::uint64_t hash(const State& of) {
+  XXH3_state_t state;
+  XXH3_INITSTATE(&state);
+  XXH3_64bits_reset(&state);
+  add_struct(state, of.clock);
+  add_tables(state, of.tables());
+  return XXH3_64bits_digest(&state);
+}
+
+std::uint64_t hash(const World& world) {
+  const std::uint64_t both[] = {hash(world.model), hash(world.state)};
+  return XXH3_64bits(both, sizeof(both));
 }
 
 }  // namespace torsion

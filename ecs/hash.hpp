@@ -6,9 +6,11 @@
 
 namespace torsion {
 
-/// XXH3 (64 bits) over every row of every column of every table, and over the entity pools: two
-/// worlds with the same hash hold the same bits. Capacities do not count. Allocates nothing; reads
-/// the whole world (about 10 GB/s).
+/// XXH3 (64 bits) over every row of every column of every table: two with the same hash hold the
+/// same bits. Capacities do not count. Allocates nothing; reads all of it (about 10 GB/s).
+[[nodiscard]] std::uint64_t hash(const Model& model);
+[[nodiscard]] std::uint64_t hash(const State& state);
+/// Of both.
 [[nodiscard]] std::uint64_t hash(const World& world);
 
 }  // namespace torsion

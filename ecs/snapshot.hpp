@@ -7,19 +7,19 @@ namespace torsion {
 /// What one step lets others see: values only, a few KiB, copied whole from the physics thread to
 /// the frame.
 struct Snapshot {
-  Table<Clock> clock;
+  Clock clock;
   Table<ToolPose, ToolMotion, ToolWrench> tools;
   RegionTable regions;
   // Found for who draws (systems/surface/take_snapshot.hpp), zero until then
   Table<RegionField, AnchorTurns> region_fields;  // (regions)
-  Table<AnchorMotion> anchors;                    // (anchors of the world)
+  Table<AnchorMotion> anchors;                    // (Model::anchors)
 
-  /// Takes memory for whatever `world` can hold.
-  void reserve(const World& world);
+  /// Takes memory for whatever a step can leave.
+  void reserve(const Model& model, const State& state);
 };
 
-/// Copies the state of `world` into `snapshot`, and zeroes the rest. Allocates nothing. @pre
-/// snapshot.reserve(world) was called.
-void capture(const World& world, Snapshot& snapshot);
+/// Copies what it has of `state`, and zeroes the rest. Allocates nothing. @pre snapshot.reserve was
+/// called with that state
+void capture(const State& state, Snapshot& snapshot);
 
 }  // namespace torsion

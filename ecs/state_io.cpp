@@ -10,7 +10,8 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-#include "ecs/check_world.hpp"
+#include "ecs/check_state.hpp"
+#include "ecs/hash.hpp"
 
 namespace torsion {
 namespace {
@@ -20,6 +21,7 @@ struct Header {
   std::uint32_t version;
   std::uint32_t padding;
   std::uint64_t layout;    // layout_hash()
+  std::uint64_t model;     // hash() of the model
   std::uint64_t size;      // bytes after the header
   std::uint64_t checksum;  // XXH3 of them
 };
@@ -27,7 +29,7 @@ struct Header {
 constexpr std::array<char, 8> kMagic = {'T', 'O', 'R', 'S', 'T', 'A', 'T', 'E'};
 constexpr std::uint32_t kVersion = 2;
 // Room beyond the rows that a file may ask for, bytes: the capacities are the one number in it that
-// its own length does not bound. A world of 64 bodies needs under 40 MiB.
+// its own length does not bound. A scene of 64 bodies needs under 40 MiB.
 constexpr std::uint64_t kLargestSpareRoom = std::uint64_t{1} << 28U;
 
 template <class T>
@@ -44,9 +46,10 @@ void describe_table(std::string& text, const Table<Ts...>& /*table*/) {
 // Changes with the name, size and place of every column; also with the byte order.
 std::uint64_t layout_hash() {
   std::string text;
-  const World world;
+  const State state;
+  describe<Clock>(text);
   std::apply([&text](const auto&... tables) { (describe_table(text, tables), ...); },
-             world.tables());
+             state.tables());
   const std::uint32_t order = 0x01020304;
   text.append(std::string(reinterpret_cast<const char*>(&order), sizeof(order)));
   return XXH3_64bits(text.data(), text.size());
@@ -136,26 +139,33 @@ Error failure(std::string_view origin, std::string_view what) {
 
 }  // namespace
 
-std::vector<std::byte> to_bytes(const World& world) {
+std::vector<std::byte> to_bytes(const Model& model, const State& state) {
   std::vector<std::byte> bytes(sizeof(Header));
   Writer writer(bytes);
-  std::apply([&writer](const auto&... tables) { (writer.table(tables), ...); }, world.tables());
+  writer.raw(std::as_bytes(std::span(&state.clock, 1)));
+  std::apply([&writer](const auto&... tables) { (writer.table(tables), ...); }, state.tables());
   const std::span<const std::byte> content = std::span(bytes).subspan(sizeof(Header));
-  const Header header{kMagic,        kVersion,       0,
-                      layout_hash(), content.size(), XXH3_64bits(content.data(), content.size())};
+  const Header header{kMagic,
+                      kVersion,
+                      0,
+                      layout_hash(),
+                      hash(model),
+                      content.size(),
+                      XXH3_64bits(content.data(), content.size())};
   std::memcpy(bytes.data(), &header, sizeof(header));
   return bytes;
 }
 
-Result<World> from_bytes(std::span<const std::byte> bytes, std::string_view origin) {
+Result<State> from_bytes(std::span<const std::byte> bytes, const Model& model,
+                         std::string_view origin) {
   Header header{};
   if (bytes.size() < sizeof(header)) {
-    return failure(origin, "is not a saved world: shorter than its header");
+    return failure(origin, "is not a saved state: shorter than its header");
   }
   std::memcpy(&header, bytes.data(), sizeof(header));
   const std::span<const std::byte> content = bytes.subspan(sizeof(header));
   if (header.magic != kMagic) {
-    return failure(origin, "is not a saved world: it does not begin with TORSTATE");
+    return failure(origin, "is not a saved state: it does not begin with TORSTATE");
   }
   if (header.version != kVersion) {
     return failure(origin, "has version " + std::to_string(header.version) +
@@ -164,6 +174,11 @@ Result<World> from_bytes(std::span<const std::byte> bytes, std::string_view orig
   if (header.layout != layout_hash()) {
     return failure(origin,
                    "was saved by another build of the program; save it again with this one");
+  }
+  if (header.model != hash(model)) {
+    return failure(origin,
+                   "was saved of another scene, or with other models or settings; load it with "
+                   "those");
   }
   if (header.size != content.size()) {
     return failure(origin, "should have " + std::to_string(header.size) +
@@ -174,20 +189,21 @@ Result<World> from_bytes(std::span<const std::byte> bytes, std::string_view orig
     return failure(origin, "is damaged: its checksum does not fit");
   }
 
-  World world;
+  State state;
   Reader reader(content);
-  std::apply([&reader](auto&... tables) { (reader.table(tables), ...); }, world.tables());
+  reader.raw(std::as_writable_bytes(std::span(&state.clock, 1)));
+  std::apply([&reader](auto&... tables) { (reader.table(tables), ...); }, state.tables());
   if (!reader.ok() || !reader.at_end()) {
     return failure(origin, "is damaged: its tables do not fill it");
   }
-  if (const Result<Done> checked = check_world(world); !checked) {
+  if (const Result<Done> checked = check_state(model, state); !checked) {
     return failure(origin, "is damaged: " + checked.error().text);
   }
-  return world;
+  return state;
 }
 
-Result<Done> save_world(const World& world, const std::filesystem::path& path) {
-  const std::vector<std::byte> bytes = to_bytes(world);
+Result<Done> save_state(const Model& model, const State& state, const std::filesystem::path& path) {
+  const std::vector<std::byte> bytes = to_bytes(model, state);
   // The process number keeps two programs that save to one path out of each other's temporary file.
   std::filesystem::path temporary = path;
   temporary += ".part" + std::to_string(::getpid());
@@ -211,7 +227,7 @@ Result<Done> save_world(const World& world, const std::filesystem::path& path) {
   return Done{};
 }
 
-Result<World> load_world(const std::filesystem::path& path) {
+Result<State> load_state(const Model& model, const std::filesystem::path& path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) {
@@ -223,7 +239,7 @@ Result<World> load_world(const std::filesystem::path& path) {
   if (!file) {
     return failure(path.string(), "cannot be read");
   }
-  return from_bytes(bytes, path.string());
+  return from_bytes(bytes, model, path.string());
 }
 
 }  // namespace torsion

@@ -21,7 +21,29 @@ class Table {
   template <class T>
   static constexpr bool kHas = (std::is_same_v<std::remove_const_t<T>, Ts> || ...);
 
-  /// Takes memory for `capacity` rows in every column and empties the table. The only allocation.
+  Table() = default;
+  /// A copy has memory for as many rows, and takes it.
+  Table(const Table& other) { *this = other; }
+  Table& operator=(const Table& other) {
+    if (this != &other) {
+      if (capacity_ != other.capacity_) {
+        reserve(other.capacity_);
+      }
+      copy_rows(other);
+    }
+    return *this;
+  }
+  Table(Table&& other) noexcept { *this = std::move(other); }
+  Table& operator=(Table&& other) noexcept {
+    columns_ = std::move(other.columns_);
+    size_ = std::exchange(other.size_, 0);
+    capacity_ = std::exchange(other.capacity_, 0);
+    return *this;
+  }
+  ~Table() = default;
+
+  /// Takes memory for `capacity` rows in every column and empties the table. Only this and a copy
+  /// allocate.
   void reserve(std::uint32_t capacity) {
     (std::get<Column<Ts>>(columns_).reserve(capacity), ...);
     capacity_ = capacity;

@@ -2,7 +2,8 @@
 
 #include <span>
 
-#include "ecs/world.hpp"
+#include "ecs/schedule.hpp"
+#include "ecs/state.hpp"
 #include "systems/body/compliance/compliance.hpp"
 #include "systems/contact/scratch.hpp"
 #include "systems/contact/step_context.hpp"
@@ -21,11 +22,14 @@ struct Scratch {
   PatchScratch patch;
   ComplianceScratch compliance;
 
-  /// Takes all memory that a step of `world` can need.
-  void reserve(const World& world);
+  /// The systems that the scene needs.
+  Schedule<StepContext> schedule;
 
-  /// What the systems of a step of `world` get.
-  StepContext context(World& world, std::span<const Pose> tool_poses);
+  /// Takes all memory that a step can need. Load time only.
+  void reserve(const Model& model, State& state);
+
+  /// What the systems of a step get.
+  StepContext context(const Model& model, State& state, std::span<const Pose> tool_poses);
 };
 
 }  // namespace torsion

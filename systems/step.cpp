@@ -24,14 +24,14 @@ namespace {
 bool any_compliance(const StepContext& context) {
   return any_tool_and_body(context) &&
          std::ranges::any_of(
-             context.world.bodies.column<BodyModels>(),
+             context.model.bodies.column<BodyModels>(),
              [](const BodyModels& models) { return models.body == BodyModel::kCompliance; });
 }
 
 bool any_paper_beam(const StepContext& context) {
   return any_tool_and_body(context) &&
          std::ranges::any_of(
-             context.world.bodies.column<BodyModels>(), [](const BodyModels& models) {
+             context.model.bodies.column<BodyModels>(), [](const BodyModels& models) {
                return models.contact == ContactModel::kPaper && models.body == BodyModel::kSkeleton;
              });
 }
@@ -93,26 +93,30 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
   simulation.world = std::move(prepared.value().world);
   simulation.choices = std::move(prepared.value().choices);
   simulation.united_nodes = std::move(prepared.value().united_nodes);
-  simulation.scratch->reserve(simulation.world);
+  World& world = simulation.world;
+  simulation.scratch->reserve(world.model, world.state);
   simulation.snapshot_tables =
-      std::make_unique<const SnapshotTables>(make_snapshot_tables(simulation.world));
-  simulation.schedule =
-      Schedule<StepContext>(step_systems(), simulation.scratch->context(simulation.world, {}));
+      std::make_unique<const SnapshotTables>(make_snapshot_tables(world.state));
   return simulation;
 }
 
-void step(Simulation& simulation, std::span<const Pose> tool_poses) {
-  TORSION_ASSERT(tool_poses.size() == simulation.world.tools.size());
-  StepContext context = simulation.scratch->context(simulation.world, tool_poses);
-  simulation.schedule.run(context);
-  Clock& clock = simulation.world.clock.at<Clock>(0);
+void step(const Model& model, State& state, std::span<const Pose> tool_poses, Scratch& scratch) {
+  TORSION_ASSERT(tool_poses.size() == model.tools.size());
+  StepContext context = scratch.context(model, state, tool_poses);
+  scratch.schedule.run(context);
+  Clock& clock = state.clock;
   clock.faults_ever |= clock.faults;
   clock.time = static_cast<double>(clock.step) * clock.dt;
   clock.step += 1;
 }
 
+void step(Simulation& simulation, std::span<const Pose> tool_poses) {
+  step(simulation.world.model, simulation.world.state, tool_poses, *simulation.scratch);
+}
+
 void take_snapshot(const Simulation& simulation, Snapshot& snapshot) {
-  take_snapshot(simulation.world, *simulation.snapshot_tables, snapshot);
+  take_snapshot(simulation.world.model, simulation.world.state, *simulation.snapshot_tables,
+                snapshot);
 }
 
 }  // namespace torsion

@@ -21,7 +21,7 @@ struct SnapshotTables;  // systems/surface/take_snapshot.hpp
 /// The systems of one step in the order of the paper's Fig. 4.
 std::vector<System<StepContext>> step_systems();
 
-/// A world with the schedule that moves it and the memory that the schedule needs.
+/// A scene at work, with what its steps need.
 struct Simulation {
   Simulation();
   Simulation(const Simulation&) = delete;
@@ -33,7 +33,6 @@ struct Simulation {
   World world;
   std::unique_ptr<Scratch> scratch;
   std::unique_ptr<const SnapshotTables> snapshot_tables;
-  Schedule<StepContext> schedule;
   std::vector<ModelChoice> choices;       // (bodies)
   std::vector<std::string> united_nodes;  // whose meshes overlap and count as one solid
 };
@@ -42,13 +41,16 @@ struct Simulation {
 /// does.
 Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options);
 
-/// One step of world.clock's dt: reads one pose a tool (that of the time clock.step * dt), writes
-/// every table that changes. Never throws, never allocates; what went wrong is in Clock::faults.
-/// @pre tool_poses.size() == tools
+/// One step of Clock::dt: reads one pose a tool (that of the time Clock::step * dt). Never throws,
+/// never allocates; what went wrong is in Clock::faults. Different states, each with a scratch of
+/// its own, may step in different threads.
+/// @pre tool_poses.size() == tools; scratch.reserve() was called
+void step(const Model& model, State& state, std::span<const Pose> tool_poses, Scratch& scratch);
+
 void step(Simulation& simulation, std::span<const Pose> tool_poses);
 
 /// What the last step has left, for those who draw it. Allocates nothing.
-/// @pre snapshot.reserve(simulation.world) was called
+/// @pre snapshot.reserve was called with the simulation's model and state
 void take_snapshot(const Simulation& simulation, Snapshot& snapshot);
 
 }  // namespace torsion

@@ -47,20 +47,20 @@ Pose next_pose(LiveLoop& loop, std::uint32_t row, Pose& handle) {
   LiveTool& tool = loop.tools[row];
   const World& world = loop.simulation->world;
   take_sample(tool);
-  if (tool.from == PoseFrom::kScript || world.clock.at<Clock>(0).step == 0) {
+  if (tool.from == PoseFrom::kScript || world.state.clock.step == 0) {
     handle = scripted_pose(loop.session->scene.tools[row].script, next_time(world));
     return handle;
   }
   if (tool.sample == 0) {  // nobody has taken it yet: it stays
-    handle = world.tools.at<ToolPose>(row).now;
+    handle = world.state.tools.at<ToolPose>(row).now;
     return handle;
   }
   handle = tool.handle;
   if (tool.still_steps > 0) {
     tool.still_steps -= 1;
-    return world.tools.at<ToolPose>(row).now;
+    return world.state.tools.at<ToolPose>(row).now;
   }
-  return next_held_pose(world, row, tool.hold, tool.coupling, handle);
+  return next_held_pose(world.model, world.state, row, tool.hold, tool.coupling, handle);
 }
 
 /// What the handle is to feel of the step just done.
@@ -71,10 +71,10 @@ void answer(LiveLoop& loop, std::uint32_t row) {
   }
   const World& world = loop.simulation->world;
   HandleAnswer& out = tool.slot->answer.back();
-  out.tool = world.tools.at<ToolPose>(row).now;
-  out.faults = world.clock.at<Clock>(0).faults;
+  out.tool = world.state.tools.at<ToolPose>(row).now;
+  out.faults = world.state.clock.faults;
   out.sample = tool.sample;
-  out.contact = wrench_about_frame(world, row);
+  out.contact = wrench_about_frame(world.state, row);
   out.wrench = Wrench{};
   out.distance = 0.0;
   if (tool.from == PoseFrom::kHandle && tool.sample != 0) {
@@ -82,7 +82,7 @@ void answer(LiveLoop& loop, std::uint32_t row) {
         tool.books, tool.limits,
         felt_wrench(tool.hold, tool.coupling, tool.handle, out.tool, out.contact),
         tool.handle.position - tool.last_handle.position,
-        turn_between(tool.last_handle.rotation, tool.handle.rotation), world.clock.at<Clock>(0).dt);
+        turn_between(tool.last_handle.rotation, tool.handle.rotation), world.state.clock.dt);
     tool.last_handle = tool.handle;
     out.distance = glm::length(tool.handle.position - out.tool.position);
   }
@@ -98,14 +98,14 @@ void push_input(LiveLoop& loop, const InputEntry& entry) {
 
 void go_over(LiveLoop& loop, Generation& to, bool carry) {
   const World& from = loop.simulation->world;
-  const std::uint64_t step = from.clock.at<Clock>(0).step;
+  const std::uint64_t step = from.state.clock.step;
   if (carry) {
     carry_over(from, to.simulation.world);
     for (std::uint32_t body = 0; body < to.picks.size(); ++body) {
       push_input(loop, body_entry(step, body, to.picks[body]));
     }
     push_input(loop, {InputKind::kRebuild, 0, step, {}});
-    const double dt = to.simulation.world.clock.at<Clock>(0).dt;
+    const double dt = to.simulation.world.state.clock.dt;
     for (LiveTool& tool : loop.tools) {
       tool.still_steps = static_cast<std::uint32_t>(std::ceil(kSettle / dt));
     }
@@ -164,15 +164,15 @@ LiveRow live_row(const LiveLoop& loop, std::uint32_t tool, double step_us, doubl
   row.late_us = late_us;
   row.generation = loop.generation;
   row.tool = tool;
-  row.faults = world.clock.at<Clock>(0).faults;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  row.faults = world.state.clock.faults;
+  for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
+    const RegionIdentity& identity = world.state.regions.at<RegionIdentity>(region);
     if (identity.tool == tool) {
-      const glm::dquat& to_world = world.bodies.at<Pose>(identity.body).rotation;
-      row.normal = to_world * world.regions.at<RegionFrame>(region).normal;
-      row.tangent_x = to_world * world.regions.at<RegionFrame>(region).tangent_x;
-      row.twist = world.regions.at<RegionMotion>(region).turn;
-      row.couple = world.regions.at<RegionFriction>(region).couple;
+      const glm::dquat& to_world = world.model.bodies.at<Pose>(identity.body).rotation;
+      row.normal = to_world * world.state.regions.at<RegionFrame>(region).normal;
+      row.tangent_x = to_world * world.state.regions.at<RegionFrame>(region).tangent_x;
+      row.twist = world.state.regions.at<RegionMotion>(region).turn;
+      row.couple = world.state.regions.at<RegionFriction>(region).couple;
       break;
     }
   }
@@ -182,13 +182,13 @@ LiveRow live_row(const LiveLoop& loop, std::uint32_t tool, double step_us, doubl
 /// Where the cells are that carry pressure.
 void mark_cells(const World& world, std::vector<CellMark>& marks) {
   marks.clear();
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-    const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-    const Pose& body = world.bodies.at<Pose>(identity.body);
-    const auto tractions = world.cells.rows<CellTraction>(identity.cells);
-    const auto geometry = world.cells.rows<CellGeometry>(identity.cells);
+  const std::uint32_t side = world.model.settings.grid_side;
+  for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
+    const RegionIdentity& identity = world.state.regions.at<RegionIdentity>(region);
+    const RegionFrame& frame = world.state.regions.at<RegionFrame>(region);
+    const Pose& body = world.model.bodies.at<Pose>(identity.body);
+    const auto tractions = world.state.cells.rows<CellTraction>(identity.cells);
+    const auto geometry = world.state.cells.rows<CellGeometry>(identity.cells);
     for (std::uint32_t i = 0; i < tractions.size() && marks.size() < kMostCellMarks; ++i) {
       if (tractions[i].pressure > 0.0) {
         const std::uint32_t row = i / side;
@@ -202,7 +202,7 @@ void mark_cells(const World& world, std::vector<CellMark>& marks) {
 
 void step_and_tell(LiveLoop& loop, double late_us) {
   World& world = loop.simulation->world;
-  const std::uint64_t number = world.clock.at<Clock>(0).step;
+  const std::uint64_t number = world.state.clock.step;
   const Nanoseconds start = monotonic_now();
   std::vector<Pose>& poses = loop.session->tool_poses;
   for (std::uint32_t row = 0; row < poses.size(); ++row) {
@@ -247,7 +247,7 @@ void publish_frame(LiveLoop& loop) {
 
 void reserve(LiveLoop& loop, Session& session, Simulation& simulation) {
   const World& world = simulation.world;
-  const double dt = world.clock.at<Clock>(0).dt;
+  const double dt = world.state.clock.dt;
   loop.session = &session;
   loop.simulation = &simulation;
   loop.schedule.period = static_cast<Nanoseconds>(std::llround(1e9 * dt));
@@ -258,7 +258,7 @@ void reserve(LiveLoop& loop, Session& session, Simulation& simulation) {
   loop.inputs.reserve(loop.wants_inputs ? rows : 1);
   loop.commands.reserve(kCommands);
   loop.frames.prepare([&world, &simulation](LiveFrame& frame) {
-    frame.snapshot.reserve(world);
+    frame.snapshot.reserve(world.model, world.state);
     frame.cells.reserve(kMostCellMarks);
     take_snapshot(simulation, frame.snapshot);
   });

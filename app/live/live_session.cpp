@@ -52,22 +52,23 @@ LiveSession::LiveSession(Session session, PrepareOptions options, std::filesyste
   auto first = std::make_unique<Generation>();
   first->simulation = std::move(session_.simulation);
   first->picks = picks_of(session_.scene, options_);
-  first->frame = prepare_frame(session_.scene, first->simulation.world);
+  first->frame =
+      prepare_frame(session_.scene, first->simulation.world.model, first->simulation.world.state);
   generations_.push_back(std::move(first));
   const World& world = generations_.front()->simulation.world;
   loop_.wants_rows = true;
   loop_.wants_inputs = true;
   reserve(loop_, session_, generations_.front()->simulation);
-  for (std::uint32_t tool = 0; tool < world.tools.size(); ++tool) {
-    const Bounds& bounds = world.tools.at<Bounds>(tool);
+  for (std::uint32_t tool = 0; tool < world.model.tools.size(); ++tool) {
+    const Bounds& bounds = world.model.tools.at<Bounds>(tool);
     slots_.push_back(std::make_unique<HandleSlot>());
     couplings_.push_back(
         mouse_coupling(session_.scene, 0.5 * glm::length(bounds.highest - bounds.lowest) / 1.75));
     loop_.tools[tool].slot = slots_.back().get();
     loop_.tools[tool].coupling = couplings_.back();
   }
-  samples_.resize(world.tools.size(), 0);
-  held_.resize(world.tools.size(), 0);
+  samples_.resize(world.model.tools.size(), 0);
+  held_.resize(world.model.tools.size(), 0);
 }
 
 LiveSession::~LiveSession() {
@@ -210,7 +211,8 @@ void LiveSession::prepare_in_background(std::vector<BodyPick> picks) {
   if (made) {
     prepared_ = std::make_unique<Generation>();
     prepared_->simulation = std::move(made).value();
-    prepared_->frame = prepare_frame(scene, prepared_->simulation.world);
+    prepared_->frame =
+        prepare_frame(scene, prepared_->simulation.world.model, prepared_->simulation.world.state);
     prepared_->picks = std::move(picks);
     if (restart_) {
       restarted_ =

@@ -28,16 +28,17 @@ void apply_picks(const std::vector<BodyPick>& picks, SceneDescription& scene) {
 }
 
 void carry_over(const World& from, World& to) {
-  TORSION_ASSERT(from.tools.size() == to.tools.size());
-  const Clock& old_clock = from.clock.at<Clock>(0);
-  Clock& clock = to.clock.at<Clock>(0);
+  TORSION_ASSERT(from.model.tools.size() == to.model.tools.size());
+  const Clock& old_clock = from.state.clock;
+  Clock& clock = to.state.clock;
   clock.time = old_clock.time;
   clock.step = old_clock.step;
   clock.faults_ever = old_clock.faults_ever;
-  std::ranges::copy(from.tools.column<ToolPose>(), to.tools.column<ToolPose>().begin());
-  std::ranges::copy(from.tools.column<ToolMotion>(), to.tools.column<ToolMotion>().begin());
-  for (std::uint32_t tool = 0; tool < to.tools.size(); ++tool) {
-    to.tools.at<ToolWrench>(tool).work = from.tools.at<ToolWrench>(tool).work;
+  std::ranges::copy(from.state.tools.column<ToolPose>(), to.state.tools.column<ToolPose>().begin());
+  std::ranges::copy(from.state.tools.column<ToolMotion>(),
+                    to.state.tools.column<ToolMotion>().begin());
+  for (std::uint32_t tool = 0; tool < to.model.tools.size(); ++tool) {
+    to.state.tools.at<ToolWrench>(tool).work = from.state.tools.at<ToolWrench>(tool).work;
   }
 }
 

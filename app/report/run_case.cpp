@@ -54,7 +54,7 @@ std::vector<double> surface_twists(const ReferenceCase& reference_case,
   const ReferenceField& field = reference_case.field;
   SceneDescription scene = reference_case.scene;
   const glm::dvec3 center = reference_case.path[field.point].tool.position;
-  const Bounds& bounds = simulation.world.bodies.at<Bounds>(0);
+  const Bounds& bounds = simulation.world.model.bodies.at<Bounds>(0);
   DrawMesh& drawn = scene.bodies[0].draw;
   drawn = DrawMesh{};
   for (const double r : field.radii) {
@@ -64,11 +64,11 @@ std::vector<double> surface_twists(const ReferenceCase& reference_case,
       drawn.normals.emplace_back(0.0F, 1.0F, 0.0F);
     }
   }
-  FrameWorld frame = prepare_frame(scene, simulation.world);
+  FrameWorld frame = prepare_frame(scene, simulation.world.model, simulation.world.state);
   Snapshot snapshot;
-  snapshot.reserve(simulation.world);
+  snapshot.reserve(simulation.world.model, simulation.world.state);
   take_snapshot(simulation, snapshot);
-  surface_field(simulation.world, snapshot, frame);
+  surface_field(simulation.world.model, snapshot, frame);
   std::vector<glm::vec4> moved(drawn.positions.size());
   deform_vertices(frame, 0, moved);
   std::vector<double> twists;
@@ -92,14 +92,13 @@ std::vector<double> surface_twists(const ReferenceCase& reference_case,
 
 std::size_t memory_of(const World& world) {
   std::size_t bytes = 0;
-  std::apply(
-      [&](const auto&... tables) {
-        (tables.each_column([&](std::span<const std::byte>, std::size_t row) {
-          bytes += row * tables.capacity();
-        }),
-         ...);
-      },
-      world.tables());
+  const auto add = [&](const auto&... tables) {
+    (tables.each_column(
+         [&](std::span<const std::byte>, std::size_t row) { bytes += row * tables.capacity(); }),
+     ...);
+  };
+  std::apply(add, world.model.tables());
+  std::apply(add, world.state.tables());
   return bytes;
 }
 
@@ -127,12 +126,12 @@ Result<CaseRun> run_case(const ReferenceCase& reference_case, const ModelPair& m
   std::vector<double> times;  // us
   for (std::size_t point = 0; point < reference_case.path.size(); ++point) {
     move_to_point(simulation, reference_case.path, point, [&](double seconds) {
-      if (world.regions.size() > 0) {
+      if (world.state.regions.size() > 0) {
         times.push_back(1e6 * seconds);
-        run.cells = world.regions.at<RegionIdentity>(0).cells.count;
+        run.cells = world.state.regions.at<RegionIdentity>(0).cells.count;
       }
     });
-    const Wrench& wrench = world.tools.at<ToolWrench>(0).total;
+    const Wrench& wrench = world.state.tools.at<ToolWrench>(0).total;
     run.forces.push_back(glm::dot(wrench.force, reference_case.force_axis));
     run.torques.push_back(glm::dot(wrench.torque, reference_case.torque_axis));
     if (point == reference_case.field.point && !reference_case.field.radii.empty()) {
@@ -140,11 +139,11 @@ Result<CaseRun> run_case(const ReferenceCase& reference_case, const ModelPair& m
     }
   }
   // Where the body model knows of the body's deformation.
-  run.anchors = std::max(world.anchors.size(), world.ports.size());
+  run.anchors = std::max(world.model.anchors.size(), world.model.ports.size());
   run.step_us_median = quantile(times, 0.5);
   run.step_us_p99 = quantile(times, 0.99);
   run.memory_bytes = memory_of(world);
-  run.faults_ever = world.clock.at<Clock>(0).faults_ever;
+  run.faults_ever = world.state.clock.faults_ever;
   return run;
 }
 

@@ -56,7 +56,7 @@ Result<std::string> scene_picture(const ReferenceCase& reference_case) {
     return run.error();
   }
   constexpr double kInPicture = 1.6;  // the arrow of a full force would reach beyond its top
-  const Wrench& wrench = session.simulation.world.tools.at<ToolWrench>(0).total;
+  const Wrench& wrench = session.simulation.world.state.tools.at<ToolWrench>(0).total;
   run.value().set_scales({std::max(farthest->abscissa, 1e-3), 1.0,
                           std::max(kInPicture * glm::length(wrench.force), 1e-9),
                           std::max(glm::length(wrench.torque), 1e-9)});

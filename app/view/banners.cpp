@@ -34,7 +34,7 @@ void banner(const char* id, const std::string& line, float& top, ImU32 color) {
 void draw_banners(const ViewState& state, const LiveSession& session, double now) {
   float top = 8.0F;
   const LiveFrame& frame = session.frame();
-  const std::uint32_t faults = frame.snapshot.clock.at<Clock>(0).faults;
+  const std::uint32_t faults = frame.snapshot.clock.faults;
   if (faults != 0) {
     banner("##fault", "FAULT, no force meanwhile: " + faults_text(faults), top, kRed);
   }

@@ -46,7 +46,7 @@ void draw_region(const Pencil& pencil, const LiveFrame& frame, const World& worl
                  std::uint32_t region) {
   constexpr int kSides = 32;
   const RegionTable& regions = frame.snapshot.regions;
-  const Pose& body = world.bodies.at<Pose>(regions.at<RegionIdentity>(region).body);
+  const Pose& body = world.model.bodies.at<Pose>(regions.at<RegionIdentity>(region).body);
   const RegionFrame& axes = regions.at<RegionFrame>(region);
   const RegionGeometry& geometry = regions.at<RegionGeometry>(region);
   const auto on_ring = [&](double angle) {
@@ -80,10 +80,10 @@ void draw_fixed(const Pencil& pencil, const FrameWorld& frame) {
 }
 
 void draw_anchors(const Pencil& pencil, const LiveFrame& frame, const World& world) {
-  for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
-    const Pose& pose = world.bodies.at<Pose>(body);
-    const Range rows = world.bodies.at<OwnedRows>(body).anchors;
-    const auto rest = world.anchors.rows<AnchorRest>(rows);
+  for (std::uint32_t body = 0; body < world.model.bodies.size(); ++body) {
+    const Pose& pose = world.model.bodies.at<Pose>(body);
+    const Range rows = world.model.bodies.at<OwnedRows>(body).anchors;
+    const auto rest = world.model.anchors.rows<AnchorRest>(rows);
     const auto moved = frame.snapshot.anchors.rows<AnchorMotion>(rows);
     for (std::size_t i = 0; i < rest.size(); ++i) {
       pencil.dot(in_world(pose, rest[i].position + moved[i].displacement), 3.0F, kAnchor);

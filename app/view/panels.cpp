@@ -97,7 +97,7 @@ void device_part(const DeviceView& device) {
 void state_lines(const ViewState& state, const LiveSession& session) {
   const LiveFrame& frame = session.frame();
   const RunStatistics& statistics = frame.statistics;
-  const Clock& clock = frame.snapshot.clock.at<Clock>(0);
+  const Clock& clock = frame.snapshot.clock;
   const Wrench& wrench = frame.snapshot.tools.at<ToolWrench>(state.tool).total;
   ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kBlue), "force %.3g N",
                      glm::length(wrench.force));

@@ -126,8 +126,6 @@ Result<Done> Viewer::begin(Session session) {
   grab_ = Grab{};
   if (!again) {
     FrameWorld& frame = session_->shown().frame;
-    Snapshot first;
-    first.reserve(session_->shown().simulation.world);
     const double aspect = static_cast<double>(kWidth) / kHeight;
     const std::vector<CameraDescription>& cameras = session_->scene().cameras;
     state_.camera = orbit_of(
@@ -236,7 +234,7 @@ bool Viewer::panels_due(const WindowInput& input) {
 Result<Done> Viewer::show(const WindowInput& input, const OverlayDrawList& overlay) {
   Generation& shown = session_->shown();
   const Snapshot& snapshot = session_->frame().snapshot;
-  surface_field(shown.simulation.world, snapshot, shown.frame);
+  surface_field(shown.simulation.world.model, snapshot, shown.frame);
   widen_scales(snapshot, state_.draw, twist_scale_, pressure_scale_);
   const bool filmed = film_due();
   const bool keep = state_.wants_screenshot || filmed;

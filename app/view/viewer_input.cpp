@@ -69,7 +69,8 @@ void Viewer::turn_axis(std::uint32_t tool, glm::dvec3& pivot, glm::dvec3& axis) 
   const Snapshot& snapshot = session_->frame().snapshot;
   const World& world = session_->shown().simulation.world;
   if (const auto region = region_of(snapshot, tool)) {
-    const Pose& body = world.bodies.at<Pose>(snapshot.regions.at<RegionIdentity>(*region).body);
+    const Pose& body =
+        world.model.bodies.at<Pose>(snapshot.regions.at<RegionIdentity>(*region).body);
     axis = body.rotation * snapshot.regions.at<RegionFrame>(*region).normal;
     pivot = body.position +
             body.rotation * snapshot.regions.at<RegionGeometry>(*region).equivalent_point;
@@ -89,7 +90,8 @@ void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
     if (session_->on_device(tool)) {
       continue;
     }
-    const auto met = meets_box(ray, tools.at<ToolPose>(tool).now, world.tools.at<Bounds>(tool));
+    const auto met =
+        meets_box(ray, tools.at<ToolPose>(tool).now, world.model.tools.at<Bounds>(tool));
     if (met && *met < nearest) {
       nearest = *met;
       const glm::dvec3 ahead = from.pose.rotation * glm::dvec3(0.0, 0.0, -1.0);

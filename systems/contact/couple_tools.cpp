@@ -42,12 +42,13 @@ void remember_axis(ToolMotion& motion, const glm::dvec3& turn) {
 }  // namespace
 
 void couple_tools(StepContext& context) {
-  World& world = context.world;
-  Clock& clock = world.clock.at<Clock>(0);
+  const Model& model = context.model;
+  State& state = context.state;
+  Clock& clock = state.clock;
   clock.faults = 0;
-  const auto poses = world.tools.column<ToolPose>();
-  const auto motions = world.tools.column<ToolMotion>();
-  const auto masses = world.tools.column<MassProperties>();
+  const auto poses = state.tools.column<ToolPose>();
+  const auto motions = state.tools.column<ToolMotion>();
+  const auto masses = model.tools.column<MassProperties>();
   for (std::size_t tool = 0; tool < poses.size(); ++tool) {
     ToolPose& pose = poses[tool];
     ToolMotion& motion = motions[tool];

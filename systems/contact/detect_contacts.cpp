@@ -20,7 +20,8 @@ constexpr double kSmallestStep =
 
 /// One tool over one body while it is searched.
 struct ContactSearch {
-  const World& world;
+  const Model& model;
+  const State& state;
   ContactScratch& scratch;
   Range body_parts;
   OwnedRows tool;
@@ -50,7 +51,7 @@ void look_at(ContactSearch& search, std::span<const SurfaceBall> balls,
   const auto front = [count](std::array<double, BallBlock::kBalls>& column) {
     return std::span(column).first(count);
   };
-  distance_values(search.world, search.body_parts, search.tool_in_body,
+  distance_values(search.model, search.body_parts, search.tool_in_body,
                   {front(block.x), front(block.y), front(block.z)}, front(block.distance));
   for (std::size_t i = 0; i < count; ++i) {
     const SurfaceBall& ball = balls[rows[i]];
@@ -73,7 +74,7 @@ void look_at(ContactSearch& search, std::span<const SurfaceBall> balls,
 /// than its radius holds no contact.
 void find_candidates(ContactSearch& search) {
   ContactScratch& scratch = search.scratch;
-  const auto balls = search.world.balls.rows<SurfaceBall>(search.tool.balls);
+  const auto balls = search.model.balls.rows<SurfaceBall>(search.tool.balls);
   scratch.candidates.clear();
   scratch.walk.clear();
   scratch.stamp += 1;
@@ -104,7 +105,7 @@ void find_candidates(ContactSearch& search) {
 /// Lowest among its neighbours; between equals the first. A neighbour that was not reached is
 /// farther away.
 bool is_local_minimum(const ContactSearch& search, const Candidate& candidate) {
-  const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(candidate.sample);
+  const SurfaceSample& sample = search.model.samples.at<SurfaceSample>(candidate.sample);
   for (const std::uint32_t neighbour : sample.neighbours) {
     if (neighbour == kNoRow) {
       continue;
@@ -122,7 +123,7 @@ bool is_local_minimum(const ContactSearch& search, const Candidate& candidate) {
 
 /// Whether no neighbour of a sample is in contact.
 bool stands_alone(const ContactSearch& search, const Candidate& candidate) {
-  const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(candidate.sample);
+  const SurfaceSample& sample = search.model.samples.at<SurfaceSample>(candidate.sample);
   return std::ranges::none_of(sample.neighbours, [&search](std::uint32_t neighbour) {
     if (neighbour == kNoRow) {
       return false;
@@ -135,14 +136,14 @@ bool stands_alone(const ContactSearch& search, const Candidate& candidate) {
 /// Slides a point on the tool's surface towards the body, with step halving.
 /// @return the point, m, body, and its distance to the body
 ContactPoint descend(const ContactSearch& search, const Candidate& start) {
-  const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(start.sample);
+  const SurfaceSample& sample = search.model.samples.at<SurfaceSample>(start.sample);
   const Pose& pose = search.tool_in_body;
   glm::dvec3 point = sample.position;  // tool frame
-  Distance to_body = signed_distance(search.world, search.body_parts, to_outer(pose, point));
+  Distance to_body = signed_distance(search.model, search.body_parts, to_outer(pose, point));
   double step = 0.5 * sample.spacing;
   for (int iteration = 0; iteration < kDescentSteps && step > kSmallestStep * sample.spacing;
        ++iteration) {
-    const glm::dvec3 normal = signed_distance(search.world, search.tool.parts, point).gradient;
+    const glm::dvec3 normal = signed_distance(search.model, search.tool.parts, point).gradient;
     const glm::dvec3 uphill = glm::conjugate(pose.rotation) * to_body.gradient;
     const glm::dvec3 along = uphill - normal * glm::dot(uphill, normal);
     const double slope = glm::length(along);
@@ -150,10 +151,10 @@ ContactPoint descend(const ContactSearch& search, const Candidate& start) {
       break;
     }
     glm::dvec3 trial = point - along * (step / slope);
-    const Distance off_surface = signed_distance(search.world, search.tool.parts, trial);
+    const Distance off_surface = signed_distance(search.model, search.tool.parts, trial);
     trial -= off_surface.gradient * off_surface.value;
     const Distance trial_distance =
-        signed_distance(search.world, search.body_parts, to_outer(pose, trial));
+        signed_distance(search.model, search.body_parts, to_outer(pose, trial));
     if (trial_distance.value < to_body.value) {
       point = trial;
       to_body = trial_distance;
@@ -179,7 +180,7 @@ void pair_neighbours(const ContactSearch& search, std::uint32_t first) {
     if (point == kNoRow) {
       continue;
     }
-    const SurfaceSample& sample = search.world.samples.at<SurfaceSample>(candidate.sample);
+    const SurfaceSample& sample = search.model.samples.at<SurfaceSample>(candidate.sample);
     for (const std::uint32_t neighbour : sample.neighbours) {
       if (neighbour == kNoRow) {
         continue;
@@ -214,7 +215,7 @@ void find_points(ContactSearch& search) {
     const bool inside = candidate.distance < 0.0;
     if (inside && !stands_alone(search, candidate)) {
       const glm::dvec3& position =
-          search.world.samples.at<SurfaceSample>(candidate.sample).position;
+          search.model.samples.at<SurfaceSample>(candidate.sample).position;
       add_point(scratch, candidate.sample,
                 {to_outer(search.tool_in_body, position), -candidate.distance, 0});
     } else if (inside || is_local_minimum(search, candidate)) {
@@ -229,17 +230,22 @@ void find_points(ContactSearch& search) {
 }  // namespace
 
 void detect_contacts(StepContext& context) {
-  World& world = context.world;
+  const Model& model = context.model;
+  State& state = context.state;
   ContactScratch& scratch = context.scratch;
   scratch.points.clear();
   scratch.near_pairs.clear();
   scratch.pairs.clear();
-  for (std::uint32_t tool = 0; tool < world.tools.size(); ++tool) {
-    for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
+  for (std::uint32_t tool = 0; tool < model.tools.size(); ++tool) {
+    for (std::uint32_t body = 0; body < model.bodies.size(); ++body) {
       const auto first = static_cast<std::uint32_t>(scratch.points.size());
       ContactSearch search{
-          world, scratch, world.bodies.at<OwnedRows>(body).parts, world.tools.at<OwnedRows>(tool),
-          relative(world.bodies.at<Pose>(body), world.tools.at<ToolPose>(tool).now)};
+          model,
+          state,
+          scratch,
+          model.bodies.at<OwnedRows>(body).parts,
+          model.tools.at<OwnedRows>(tool),
+          relative(model.bodies.at<Pose>(body), state.tools.at<ToolPose>(tool).now)};
       find_points(search);
       const Range points{first, static_cast<std::uint32_t>(scratch.points.size()) - first};
       const auto first_near = static_cast<std::uint32_t>(scratch.near_pairs.size());
@@ -247,9 +253,9 @@ void detect_contacts(StepContext& context) {
       const Range near{first_near,
                        static_cast<std::uint32_t>(scratch.near_pairs.size()) - first_near};
       scratch.pairs.push_back({tool, body, points, near, 0});
-      if (too_deep(search, world.bodies.at<Bounds>(body),
+      if (too_deep(search, model.bodies.at<Bounds>(body),
                    {scratch.points.data() + first, points.count})) {
-        raise(world.clock.at<Clock>(0), Fault::kTooDeep);
+        raise(state.clock, Fault::kTooDeep);
       }
     }
   }
@@ -266,7 +272,7 @@ void group_contact_points(StepContext& context) {
     }
     const std::span<std::uint32_t> order(scratch.order);
     const std::span<std::uint32_t> groups = order.subspan(order.size() / 2);
-    const double threshold = context.world.bodies.at<BodyModels>(pair.body).region_threshold;
+    const double threshold = context.model.bodies.at<BodyModels>(pair.body).region_threshold;
     const std::span<const NearPair> near(scratch.near_pairs.data() + pair.near.first,
                                          pair.near.count);
     pair.clusters = group_points(scratch.cluster_points, near, threshold,

@@ -28,8 +28,9 @@ struct RestOverlap {
 };
 
 RestOverlap rest_overlap(const StepContext& context, std::uint32_t region) {
-  const World& world = context.world;
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const Model& model = context.model;
+  const State& state = context.state;
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
   const RegionPoints& contact = context.scratch.region_points[block_of(identity)];
   const std::span<const ContactPoint> points(context.scratch.points.data() + contact.points.first,
                                              contact.points.count);
@@ -45,14 +46,14 @@ RestOverlap rest_overlap(const StepContext& context, std::uint32_t region) {
   }
   // Between samples it may be deeper, as cells show it; but where the body as a whole has moved,
   // theirs is the depth under the moved surface.
-  const double of_cells = world.regions.at<RegionGeometry>(region).largest_depth;
-  overlap.depth = std::max(overlap.depth, body_law_of(world, identity.body).moves_as_a_whole
+  const double of_cells = state.regions.at<RegionGeometry>(region).largest_depth;
+  overlap.depth = std::max(overlap.depth, body_law_of(model, identity.body).moves_as_a_whole
                                               ? std::min(of_cells, kDeeper * overlap.depth)
                                               : of_cells);
   // Samples lie within the overlap; it ends between them and their neighbours, which are at most as
   // far away as what makes two points one region.
-  const double threshold = world.bodies.at<BodyModels>(identity.body).region_threshold;
-  const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+  const double threshold = model.bodies.at<BodyModels>(identity.body).region_threshold;
+  const RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
   const double by_samples = overlap.depth > 0.0 ? 0.5 * glm::length(highest - lowest) : 0.0;
   overlap.radius = std::max(by_samples, geometry.radius) + threshold;
   return overlap;
@@ -62,7 +63,7 @@ RestOverlap rest_overlap(const StepContext& context, std::uint32_t region) {
 double deepest_cell(StepContext& context, std::uint32_t region) {
   const Grid grid = grid_of(context, region);
   const Pose moved = moved_grid_in_body(grid.frame, grid.carrier, grid.support);
-  const Range parts = grid.world.bodies.at<OwnedRows>(grid.identity.body).parts;
+  const Range parts = grid.model.bodies.at<OwnedRows>(grid.identity.body).parts;
   double deepest = 0.0;
   for (std::uint32_t j = 0; j < grid.side; ++j) {
     for (std::uint32_t i = 0; i < grid.side; ++i) {
@@ -70,7 +71,7 @@ double deepest_cell(StepContext& context, std::uint32_t region) {
       if (cell.coverage > 0.0) {
         const glm::dvec2 center = cell_center(grid.frame, grid.side, i, j);
         const glm::dvec3 on_tool = to_outer(moved, glm::dvec3(center, cell.height));
-        deepest = std::max(deepest, -signed_distance(grid.world, parts, on_tool).value);
+        deepest = std::max(deepest, -signed_distance(grid.model, parts, on_tool).value);
       }
     }
   }
@@ -80,8 +81,8 @@ double deepest_cell(StepContext& context, std::uint32_t region) {
 /// Of all of a body's regions together, m.
 double depth_by_cells(StepContext& context, std::uint32_t body) {
   double depth = 0.0;
-  for (std::uint32_t region = 0; region < context.world.regions.size(); ++region) {
-    if (context.world.regions.at<RegionIdentity>(region).body == body) {
+  for (std::uint32_t region = 0; region < context.state.regions.size(); ++region) {
+    if (context.state.regions.at<RegionIdentity>(region).body == body) {
       depth += deepest_cell(context, region);
     }
   }
@@ -91,13 +92,13 @@ double depth_by_cells(StepContext& context, std::uint32_t body) {
 /// A punch of radius a has 2 E* a on a half-space and 3 pi G a^4 / (2 h^3) on a thin bonded layer
 /// without volume change (Johnson, Contact Mechanics, 1985, (3.36), 5.8), N/m; twice their sum is
 /// for curved bodies and for cells that are too coarse.
-double stiffness_of_punch(const World& world, std::uint32_t body, double radius) {
+double stiffness_of_punch(const Model& model, std::uint32_t body, double radius) {
   constexpr double kSafety = 2.0;
   constexpr double kLayer = 0.6;  // 3 pi / 16
-  const Bounds& bounds = world.bodies.at<Bounds>(body);
+  const Bounds& bounds = model.bodies.at<Bounds>(body);
   const glm::dvec3 extent = bounds.highest - bounds.lowest;
   const double thin = radius / std::min({extent.x, extent.y, extent.z});
-  const double modulus = world.bodies.at<Elasticity>(body).contact_modulus();
+  const double modulus = model.bodies.at<Elasticity>(body).contact_modulus();
   return kSafety * 2.0 * modulus * radius * (1.0 + kLayer * thin * thin * thin);
 }
 
@@ -115,16 +116,16 @@ bool unannounced(std::uint32_t event) {
 }
 
 Regions regions_on(const StepContext& context, std::uint32_t body) {
-  const World& world = context.world;
+  const State& state = context.state;
   Regions regions;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    if (world.regions.at<RegionIdentity>(region).body == body) {
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    if (state.regions.at<RegionIdentity>(region).body == body) {
       const RestOverlap overlap = rest_overlap(context, region);
       regions.count += 1;
       regions.overlap.depth += overlap.depth;
       regions.overlap.radius = std::max(regions.overlap.radius, overlap.radius);
-      regions.force = std::max(regions.force, world.regions.at<RegionNormal>(region).force);
-      regions.unannounced |= unannounced(world.regions.at<RegionWrench>(region).event_now);
+      regions.force = std::max(regions.force, state.regions.at<RegionNormal>(region).force);
+      regions.unannounced |= unannounced(state.regions.at<RegionWrench>(region).event_now);
     }
   }
   return regions;
@@ -133,14 +134,15 @@ Regions regions_on(const StepContext& context, std::uint32_t body) {
 void bound_forces_on(StepContext& context, std::uint32_t body) {
   constexpr double kSameSize = 1.1;  // the contact's, as samples and cells show it step by step
   constexpr double kDrift = 0.02;  // of the peak: a closed path may give 1 % (scene_properties.cpp)
-  World& world = context.world;
-  StoredEnergy& energy = world.bodies.at<StoredEnergy>(body);
+  const Model& model = context.model;
+  State& state = context.state;
+  StoredEnergy& energy = state.bodies.at<StoredEnergy>(body);
   const Regions regions = regions_on(context, body);
   if (regions.count == 0) {
     energy = {};
     return;
   }
-  const double stiffness = stiffness_of_punch(world, body, regions.overlap.radius);
+  const double stiffness = stiffness_of_punch(model, body, regions.overlap.radius);
   // A force that is wrong has done no work, neither in its own step nor in the next.
   const double work = energy.faulty == 0 && std::isfinite(energy.work) ? energy.work : 0.0;
   // The sum of the work drifts by what steps leave unsolved, but what the last force needs has been
@@ -148,7 +150,7 @@ void bound_forces_on(StepContext& context, std::uint32_t body) {
   const double needed = 0.5 * energy.force * energy.force / stiffness;
   double most = std::max(energy.most + work, kSameSize * needed + std::max(work, 0.0));
   if (regions.unannounced) {
-    const double depth = body_law_of(world, body).moves_as_a_whole
+    const double depth = body_law_of(model, body).moves_as_a_whole
                              ? std::max(regions.overlap.depth, depth_by_cells(context, body))
                              : regions.overlap.depth;
     most = std::max(most, 0.5 * stiffness * depth * depth);
@@ -157,8 +159,8 @@ void bound_forces_on(StepContext& context, std::uint32_t body) {
   const double allowed = std::max(most, kDrift * energy.peak);
   const bool too_much = regions.force * regions.force > 2.0 * stiffness * allowed;
   const bool too_hard = regions.force > stiffness * regions.overlap.depth;
-  if (too_much || (too_hard && !body_law_of(world, body).moves_as_a_whole)) {
-    raise(world.clock.at<Clock>(0), Fault::kForceTooLarge);
+  if (too_much || (too_hard && !body_law_of(model, body).moves_as_a_whole)) {
+    raise(state.clock, Fault::kForceTooLarge);
     energy.faulty = 1;
     return;
   }
@@ -168,8 +170,8 @@ void bound_forces_on(StepContext& context, std::uint32_t body) {
 }  // namespace
 
 void bound_forces(StepContext& context) {
-  for (std::uint32_t body = 0; body < context.world.bodies.size(); ++body) {
-    if (law_of(context.world, body).is_bounded) {
+  for (std::uint32_t body = 0; body < context.model.bodies.size(); ++body) {
+    if (law_of(context.model, body).is_bounded) {
       bound_forces_on(context, body);
     }
   }

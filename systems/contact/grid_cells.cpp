@@ -16,9 +16,9 @@ namespace {
 
 /// Distance of the cells' places on the tool to the body's rest surface.
 void find_rest_surface(const Grid& grid) {
-  const auto parts = parts_under(grid, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts,
+  const auto parts = parts_under(grid, grid.model.bodies.at<OwnedRows>(grid.identity.body).parts,
                                  grid.frame.origin);
-  signed_distances(grid.world, parts, grid_in_body(grid.frame), grid.scratch.cell_columns.points);
+  signed_distances(grid.model, parts, grid_in_body(grid.frame), grid.scratch.cell_columns.points);
 }
 
 /// Depth under the body's rest surface, how much it changes across a cell, and the share of the
@@ -143,7 +143,7 @@ CellBits find_coverage(const Grid& grid, bool rims) {
   if (rims) {
     take_rims(columns);
   }
-  const ContactLaw& law = law_of(grid.world, grid.identity.body);
+  const ContactLaw& law = law_of(grid.model, grid.identity.body);
   const std::uint32_t spare = law.spare_columns != nullptr ? law.spare_columns(grid.side) : 0;
   for (std::size_t first = 0; spare > 0 && first < count; first += grid.side) {
     std::fill_n(&coverage[first], spare, 0.0);
@@ -260,8 +260,8 @@ Pose moved_grid_in_body(const RegionFrame& frame, const RegionCarrier& carrier,
 }
 
 Pose grid_in_tool(const Grid& grid) {
-  const Pose tool_in_body = relative(grid.world.bodies.at<Pose>(grid.identity.body),
-                                     grid.world.tools.at<ToolPose>(grid.identity.tool).now);
+  const Pose tool_in_body = relative(grid.model.bodies.at<Pose>(grid.identity.body),
+                                     grid.state.tools.at<ToolPose>(grid.identity.tool).now);
   return relative(tool_in_body, moved_grid_in_body(grid.frame, grid.carrier, grid.support));
 }
 

@@ -13,7 +13,8 @@ namespace torsion {
 
 /// One region's cells and what finding them needs of the tables.
 struct Grid {
-  World& world;
+  const Model& model;
+  State& state;
   ContactScratch& scratch;
   RegionIdentity identity;
   RegionFrame& frame;
@@ -24,16 +25,18 @@ struct Grid {
 };
 
 inline Grid grid_of(StepContext& context, std::uint32_t region) {
-  World& world = context.world;
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  return {world,
+  const Model& model = context.model;
+  State& state = context.state;
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  return {model,
+          state,
           context.scratch,
           identity,
-          world.regions.at<RegionFrame>(region),
-          world.regions.at<RegionCarrier>(region),
-          world.regions.at<RegionSupport>(region),
-          world.settings.at<Settings>(0).grid_side,
-          world.cells.rows<CellGeometry>(identity.cells)};
+          state.regions.at<RegionFrame>(region),
+          state.regions.at<RegionCarrier>(region),
+          state.regions.at<RegionSupport>(region),
+          model.settings.grid_side,
+          state.cells.rows<CellGeometry>(identity.cells)};
 }
 
 inline glm::dvec2 cell_half_size(const Grid& grid) {

@@ -75,7 +75,7 @@ PlaneBox covered_box(const Grid& grid, const CellBits& covered, double angle) {
 
 glm::dvec2 half_size_for(const Grid& grid, const PlaneBox& box) {
   const glm::dvec2 half = 0.5 * (box.highest - box.lowest);
-  const ContactLaw& law = law_of(grid.world, grid.identity.body);
+  const ContactLaw& law = law_of(grid.model, grid.identity.body);
   if (law.half_size != nullptr) {
     return law.half_size(kGridMargin * glm::max(half, glm::dvec2(kSmallestHalf)));
   }
@@ -83,15 +83,15 @@ glm::dvec2 half_size_for(const Grid& grid, const PlaneBox& box) {
   return kGridMargin * glm::max(half, glm::dvec2(least));
 }
 
-glm::dvec2 overlap_extent(const World& world, std::uint32_t region) {
-  const glm::dvec2 of_grid = world.regions.at<RegionFrame>(region).half_size / kGridMargin;
-  const SmoothContact& contact = world.regions.at<SmoothContact>(region);
+glm::dvec2 overlap_extent(const State& state, std::uint32_t region) {
+  const glm::dvec2 of_grid = state.regions.at<RegionFrame>(region).half_size / kGridMargin;
+  const SmoothContact& contact = state.regions.at<SmoothContact>(region);
   return contact.depth > 0.0 ? glm::mix(of_grid, contact.extent, contact.share) : of_grid;
 }
 
 glm::dvec3 body_normal(const Grid& grid, const glm::dvec3& point) {
   return glm::normalize(
-      signed_distance(grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts, point)
+      signed_distance(grid.model, grid.model.bodies.at<OwnedRows>(grid.identity.body).parts, point)
           .gradient);
 }
 
@@ -100,7 +100,7 @@ void lay(const Grid& grid, const glm::dvec2& shift, const glm::dvec2& half_size)
   frame.half_size = half_size;
   frame.origin += tangent_to_body(frame, shift);
   const Distance surface = signed_distance(
-      grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts, frame.origin);
+      grid.model, grid.model.bodies.at<OwnedRows>(grid.identity.body).parts, frame.origin);
   frame.origin -= frame.normal *
                   (surface.value / std::max(glm::dot(surface.gradient, frame.normal), kSteepest));
 }

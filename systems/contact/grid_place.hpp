@@ -32,7 +32,7 @@ glm::dvec2 half_size_for(const Grid& grid, const PlaneBox& box);
 
 /// Half of the overlap's extent along the grid's axes, m: that of the shapes as far as
 /// SmoothContact is known, else the grid's own.
-glm::dvec2 overlap_extent(const World& world, std::uint32_t region);
+glm::dvec2 overlap_extent(const State& state, std::uint32_t region);
 
 /// Outward normal of the body's surface nearest to a point of its frame.
 glm::dvec3 body_normal(const Grid& grid, const glm::dvec3& point);

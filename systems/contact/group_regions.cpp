@@ -28,13 +28,12 @@ struct PairPoints {
 
 /// A region's cells under contact points.
 struct RegionCells {
-  RegionCells(const World& world, std::uint32_t region)
-      : finder(moved_grid_in_body(world.regions.at<RegionFrame>(region),
-                                  world.regions.at<RegionCarrier>(region),
-                                  world.regions.at<RegionSupport>(region)),
-               world.regions.at<RegionFrame>(region).half_size,
-               world.settings.at<Settings>(0).grid_side),
-        cells(world.cells.rows<CellGeometry>(world.regions.at<RegionIdentity>(region).cells)) {}
+  RegionCells(const Model& model, const State& state, std::uint32_t region)
+      : finder(moved_grid_in_body(state.regions.at<RegionFrame>(region),
+                                  state.regions.at<RegionCarrier>(region),
+                                  state.regions.at<RegionSupport>(region)),
+               state.regions.at<RegionFrame>(region).half_size, model.settings.grid_side),
+        cells(state.cells.rows<CellGeometry>(state.regions.at<RegionIdentity>(region).cells)) {}
 
   /// Share of a point that lies over the region: 1 on its covered cells, a little on the others of
   /// its grid.
@@ -55,25 +54,25 @@ bool of_pair(const RegionIdentity& region, const ContactPair& pair) {
 }
 
 /// Ends a region and lets `heir`, if any, take over what it exerted.
-void end_region(World& world, std::uint32_t region, std::uint32_t heir) {
+void end_region(const Model& model, State& state, std::uint32_t region, std::uint32_t heir) {
   if (heir != kNoRow) {
-    RegionWrench& wrench = world.regions.at<RegionWrench>(heir);
-    const RegionWrench& ended = world.regions.at<RegionWrench>(region);
+    RegionWrench& wrench = state.regions.at<RegionWrench>(heir);
+    const RegionWrench& ended = state.regions.at<RegionWrench>(region);
     wrench.on_tool.force += ended.on_tool.force;
     wrench.on_tool.torque += ended.on_tool.torque;
     wrench.event_now = kTakesOver;
-    const ContactLaw& law = law_of(world, world.regions.at<RegionIdentity>(heir).body);
+    const ContactLaw& law = law_of(model, state.regions.at<RegionIdentity>(heir).body);
     if (law.end != nullptr) {
-      law.end(world, region, heir);
+      law.end(state, region, heir);
     }
   }
 }
 
 /// Whether a region on the body took over in the last step.
-bool any_took_over(const World& world, std::uint32_t body) {
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    if (world.regions.at<RegionIdentity>(region).body == body &&
-        world.regions.at<RegionWrench>(region).event_now == kTakesOver) {
+bool any_took_over(const State& state, std::uint32_t body) {
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    if (state.regions.at<RegionIdentity>(region).body == body &&
+        state.regions.at<RegionWrench>(region).event_now == kTakesOver) {
       return true;
     }
   }
@@ -83,14 +82,14 @@ bool any_took_over(const World& world, std::uint32_t body) {
 /// Ends the last step's events. A body with compliance answers to regions that took over from the
 /// next step on, and moves all its regions. Of answers that follow upon each other within the fade
 /// a region that stands by waits for the first alone, lest the force stand still.
-void end_events(World& world) {
-  for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
+void end_events(const Model& model, State& state) {
+  for (std::uint32_t body = 0; body < model.bodies.size(); ++body) {
     const bool begins_to_follow =
-        body_law_of(world, body).moves_as_a_whole && any_took_over(world, body);
-    for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-      RegionWrench& wrench = world.regions.at<RegionWrench>(region);
+        body_law_of(model, body).moves_as_a_whole && any_took_over(state, body);
+    for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+      RegionWrench& wrench = state.regions.at<RegionWrench>(region);
       std::uint32_t& event = wrench.event_now;
-      if (world.regions.at<RegionIdentity>(region).body != body) {
+      if (state.regions.at<RegionIdentity>(region).body != body) {
         continue;
       }
       if (begins_to_follow && (event == kTakesOver || wrench.event_share == 0.0)) {
@@ -106,67 +105,68 @@ void end_events(World& world) {
 
 /// A block of cells that no region uses. There are as many blocks as rows, so one is free when a
 /// row is.
-Range free_cells(const World& world) {
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+Range free_cells(const Model& model, const State& state) {
+  const std::uint32_t side = model.settings.grid_side;
   const std::uint32_t count = side * side;
-  for (std::uint32_t block = 0; block < world.regions.capacity(); ++block) {
+  for (std::uint32_t block = 0; block < state.regions.capacity(); ++block) {
     const Range cells{block * count, count};
     const auto uses = [&](const RegionIdentity& region) {
       return region.cells == cells;
     };
-    if (std::ranges::none_of(world.regions.column<RegionIdentity>(), uses)) {
+    if (std::ranges::none_of(state.regions.column<RegionIdentity>(), uses)) {
       return cells;
     }
   }
   return {};
 }
 
-std::uint32_t regions_on(const World& world, std::uint32_t body) {
+std::uint32_t regions_on(const State& state, std::uint32_t body) {
   return static_cast<std::uint32_t>(
-      std::ranges::count(world.regions.column<RegionIdentity>(), body, &RegionIdentity::body));
+      std::ranges::count(state.regions.column<RegionIdentity>(), body, &RegionIdentity::body));
 }
 
 /// Begins a region where there was none, or one that splits off another.
 /// @param split_from  kNoRow, or that one
 void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t cluster,
                   std::uint32_t split_from) {
-  World& world = context.world;
-  Clock& clock = world.clock.at<Clock>(0);
-  const std::uint32_t row = world.regions.size();
+  const Model& model = context.model;
+  State& state = context.state;
+  Clock& clock = state.clock;
+  const std::uint32_t row = state.regions.size();
   const bool full =
-      regions_on(world, pair.body) >= kMaxRegionsPerBody || row == world.regions.capacity();
+      regions_on(state, pair.body) >= kMaxRegionsPerBody || row == state.regions.capacity();
   if (full) {
     raise(clock, Fault::kRegionsFull);
     return;
   }
-  const Range cells = free_cells(world);
-  const std::optional<Range> appended = world.regions.append();
+  const Range cells = free_cells(model, state);
+  const std::optional<Range> appended = state.regions.append();
   TORSION_ASSERT(appended.has_value());
-  world.regions.at<RegionIdentity>(row) = {pair.body, pair.tool, clock.regions_formed, cells};
+  state.regions.at<RegionIdentity>(row) = {pair.body, pair.tool, clock.regions_formed, cells};
   clock.regions_formed += 1;
-  std::ranges::fill(world.cells.rows<CellGeometry>(cells), CellGeometry{});
-  std::ranges::fill(world.cells.rows<CellTraction>(cells), CellTraction{});
+  std::ranges::fill(state.cells.rows<CellGeometry>(cells), CellGeometry{});
+  std::ranges::fill(state.cells.rows<CellTraction>(cells), CellTraction{});
   const std::uint32_t block = cells.first / cells.count;
-  if (!world.footings.empty()) {
-    world.footings.at<Footing>(block) = Footing{};
+  if (!state.footings.empty()) {
+    state.footings.at<Footing>(block) = Footing{};
   }
-  const ContactLaw& law = law_of(world, pair.body);
+  const ContactLaw& law = law_of(model, pair.body);
   if (law.begin != nullptr) {
-    law.begin(world, block);
+    law.begin(model, state, block);
   }
   place_new_grid(context, row, {pair.points, cluster});
-  const BodyLaw& body = body_law_of(world, pair.body);
+  const BodyLaw& body = body_law_of(model, pair.body);
   if (split_from == kNoRow && body.begin != nullptr) {
-    body.begin(world, row);
+    body.begin(model, state, row);
   }
   if (split_from != kNoRow && body.begin_split != nullptr) {
-    body.begin_split(world, split_from, row);
+    body.begin_split(model, state, split_from, row);
   }
   if (split_from != kNoRow && law.split != nullptr) {
-    law.split(world, split_from, row);
+    law.split(state, split_from, row);
   }
   // on_tool is zero: what it exerts at birth fades in.
-  world.regions.at<RegionWrench>(row).event_now = static_cast<std::uint32_t>(
+  state.regions.at<RegionWrench>(row).event_now = static_cast<std::uint32_t>(
       split_from != kNoRow ? RegionEvent::kTakesOver : RegionEvent::kBegins);
 }
 
@@ -177,15 +177,15 @@ bool owns_cluster(const ContactScratch& scratch, std::uint32_t region) {
 
 /// Regions continue in the cluster that they overlap most; the oldest comes first and keeps what it
 /// takes.
-void match_by_overlap(const World& world, ContactScratch& scratch, const ContactPair& pair,
-                      std::span<const ContactPoint> points) {
-  const auto regions = world.regions.column<RegionIdentity>();
+void match_by_overlap(const Model& model, const State& state, ContactScratch& scratch,
+                      const ContactPair& pair, std::span<const ContactPoint> points) {
+  const auto regions = state.regions.column<RegionIdentity>();
   for (std::uint32_t region = 0; region < regions.size(); ++region) {
     if (!of_pair(regions[region], pair)) {
       continue;
     }
     scratch.overlaps.assign(pair.clusters, 0.0);
-    const RegionCells cells(world, region);
+    const RegionCells cells(model, state, region);
     for (const ContactPoint& point : points) {
       scratch.overlaps[point.cluster] += cells.overlap_with(point.position);
     }
@@ -202,10 +202,10 @@ void match_by_overlap(const World& world, ContactScratch& scratch, const Contact
 
 /// A small region may slide or roll past its own size in a step: what is left over on both sides is
 /// matched when it is nearer than two regions can be to each other.
-void match_by_distance(const World& world, ContactScratch& scratch, const ContactPair& pair,
-                       std::span<const ContactPoint> points) {
-  const double threshold = world.bodies.at<BodyModels>(pair.body).region_threshold;
-  const auto regions = world.regions.column<RegionIdentity>();
+void match_by_distance(const Model& model, const State& state, ContactScratch& scratch,
+                       const ContactPair& pair, std::span<const ContactPoint> points) {
+  const double threshold = model.bodies.at<BodyModels>(pair.body).region_threshold;
+  const auto regions = state.regions.column<RegionIdentity>();
   for (std::uint32_t region = 0; region < regions.size(); ++region) {
     if (!of_pair(regions[region], pair) || owns_cluster(scratch, region)) {
       continue;
@@ -214,7 +214,7 @@ void match_by_distance(const World& world, ContactScratch& scratch, const Contac
     std::uint32_t cluster = kNoRow;
     for (const ContactPoint& point : points) {
       const double distance =
-          glm::distance(point.position, world.regions.at<RegionGeometry>(region).equivalent_point);
+          glm::distance(point.position, state.regions.at<RegionGeometry>(region).equivalent_point);
       if (scratch.owners[point.cluster].region == kNoRow && distance < nearest) {
         nearest = distance;
         cluster = point.cluster;
@@ -227,18 +227,18 @@ void match_by_distance(const World& world, ContactScratch& scratch, const Contac
 }
 
 /// Fills scratch.owners: which region each cluster continues.
-void match_clusters(const World& world, ContactScratch& scratch, const ContactPair& pair,
-                    std::span<const ContactPoint> points) {
+void match_clusters(const Model& model, const State& state, ContactScratch& scratch,
+                    const ContactPair& pair, std::span<const ContactPoint> points) {
   scratch.owners.assign(pair.clusters, ClusterOwner{});
-  match_by_overlap(world, scratch, pair, points);
-  match_by_distance(world, scratch, pair, points);
+  match_by_overlap(model, state, scratch, pair, points);
+  match_by_distance(model, state, scratch, pair, points);
 }
 
 /// Where the region's contact went: the region that now owns the cluster over its old place, or
 /// kNoRow.
-std::uint32_t heir_of(const World& world, const ContactScratch& scratch, std::uint32_t region,
-                      std::span<const ContactPoint> points) {
-  const RegionCells cells(world, region);
+std::uint32_t heir_of(const Model& model, const State& state, const ContactScratch& scratch,
+                      std::uint32_t region, std::span<const ContactPoint> points) {
+  const RegionCells cells(model, state, region);
   for (const ContactPoint& point : points) {
     if (cells.overlap_with(point.position) >= 1.0) {
       return scratch.owners[point.cluster].region;
@@ -249,15 +249,16 @@ std::uint32_t heir_of(const World& world, const ContactScratch& scratch, std::ui
 
 /// A cluster without an owner that lies over a living region was split off it. Leaves that region
 /// in scratch.owners.
-void note_splits(World& world, ContactScratch& scratch, std::span<const ContactPoint> points) {
+void note_splits(const Model& model, State& state, ContactScratch& scratch,
+                 std::span<const ContactPoint> points) {
   for (const ContactPoint& point : points) {
     if (scratch.owners[point.cluster].region != kNoRow) {
       continue;
     }
     for (const ClusterOwner& owner : scratch.owners) {
       if (owner.region != kNoRow &&
-          RegionCells(world, owner.region).overlap_with(point.position) >= 1.0) {
-        world.regions.at<RegionWrench>(owner.region).event_now = kTakesOver;
+          RegionCells(model, state, owner.region).overlap_with(point.position) >= 1.0) {
+        state.regions.at<RegionWrench>(owner.region).event_now = kTakesOver;
         scratch.owners[point.cluster].split_from = owner.region;
       }
     }
@@ -268,25 +269,27 @@ void note_splits(World& world, ContactScratch& scratch, std::span<const ContactP
 /// friction until the tool stands beside that shape with all its points: cells that carry a force
 /// where they are now are a contact without them. Where there are points they say which contacts
 /// there are.
-bool lives_without_points(const World& world, const ContactPair& pair, std::uint32_t region) {
-  return pair.points.count == 0 && body_law_of(world, pair.body).moves_as_a_whole &&
-         world.regions.at<RegionNormal>(region).force > 0.0;
+bool lives_without_points(const Model& model, const State& state, const ContactPair& pair,
+                          std::uint32_t region) {
+  return pair.points.count == 0 && body_law_of(model, pair.body).moves_as_a_whole &&
+         state.regions.at<RegionNormal>(region).force > 0.0;
 }
 
 /// Regions that own no cluster go on without points, or end.
 void end_or_go_on(StepContext& context, const ContactPair& pair,
                   std::span<const ContactPoint> points) {
-  World& world = context.world;
+  const Model& model = context.model;
+  State& state = context.state;
   ContactScratch& scratch = context.scratch;
-  const auto regions = world.regions.column<RegionIdentity>();
+  const auto regions = state.regions.column<RegionIdentity>();
   for (std::uint32_t region = 0; region < regions.size(); ++region) {
     if (!of_pair(regions[region], pair) || owns_cluster(scratch, region)) {
       continue;
     }
-    if (lives_without_points(world, pair, region)) {
+    if (lives_without_points(model, state, pair, region)) {
       follow_contact(context, region, {pair.points, kNoRow});
     } else {
-      end_region(world, region, heir_of(world, scratch, region, points));
+      end_region(model, state, region, heir_of(model, state, scratch, region, points));
       scratch.ended_regions.push_back(region);
     }
   }
@@ -295,12 +298,13 @@ void end_or_go_on(StepContext& context, const ContactPair& pair,
 /// Regions that others take over hand them what they hold.
 void join_regions(StepContext& context, const ContactPair& pair,
                   std::span<const ContactPoint> points) {
-  const World& world = context.world;
-  const ContactLaw& law = law_of(world, pair.body);
-  const auto regions = world.regions.column<RegionIdentity>();
+  const Model& model = context.model;
+  const State& state = context.state;
+  const ContactLaw& law = law_of(model, pair.body);
+  const auto regions = state.regions.column<RegionIdentity>();
   for (std::uint32_t region = 0; law.join != nullptr && region < regions.size(); ++region) {
     if (of_pair(regions[region], pair) && !owns_cluster(context.scratch, region)) {
-      const std::uint32_t heir = heir_of(world, context.scratch, region, points);
+      const std::uint32_t heir = heir_of(model, state, context.scratch, region, points);
       if (heir != kNoRow) {
         law.join(context, region, heir);
       }
@@ -309,25 +313,26 @@ void join_regions(StepContext& context, const ContactPair& pair,
 }
 
 /// Takes the rows of regions that have ended out of the table.
-void erase_ended(World& world, ContactScratch& scratch) {
+void erase_ended(State& state, ContactScratch& scratch) {
   // The last first: rows behind one that goes move up. They were noted in the order of rows.
   for (; !scratch.ended_regions.empty(); scratch.ended_regions.pop_back()) {
-    world.regions.erase(scratch.ended_regions.back());
+    state.regions.erase(scratch.ended_regions.back());
   }
 }
 
 }  // namespace
 
 void group_regions(StepContext& context) {
-  World& world = context.world;
+  const Model& model = context.model;
+  State& state = context.state;
   ContactScratch& scratch = context.scratch;
-  end_events(world);
+  end_events(model, state);
   for (ContactPair& pair : scratch.pairs) {
-    join_clusters(world, scratch, pair);
+    join_clusters(model, state, scratch, pair);
     const std::span<const ContactPoint> points(scratch.points.data() + pair.points.first,
                                                pair.points.count);
-    match_clusters(world, scratch, pair, points);
-    note_splits(world, scratch, points);
+    match_clusters(model, state, scratch, pair, points);
+    note_splits(model, state, scratch, points);
     end_or_go_on(context, pair, points);
     for (std::uint32_t cluster = 0; cluster < pair.clusters; ++cluster) {
       const std::uint32_t owner = scratch.owners[cluster].region;
@@ -342,7 +347,7 @@ void group_regions(StepContext& context) {
         begin_region(context, pair, cluster, owner.split_from);
       }
     }
-    erase_ended(world, scratch);
+    erase_ended(state, scratch);
   }
 }
 

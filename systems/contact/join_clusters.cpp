@@ -24,13 +24,13 @@ constexpr double kLeastAgreement = 0.9;  // cosine between the normals of region
 
 /// A region's covered cells, and which contact points lie on them.
 struct RegionCover {
-  RegionCover(const World& world, std::uint32_t region)
-      : frame(world.regions.at<RegionFrame>(region)),
-        finder(moved_grid_in_body(frame, world.regions.at<RegionCarrier>(region),
-                                  world.regions.at<RegionSupport>(region)),
-               frame.half_size, world.settings.at<Settings>(0).grid_side),
+  RegionCover(const Model& model, const State& state, std::uint32_t region)
+      : frame(state.regions.at<RegionFrame>(region)),
+        finder(moved_grid_in_body(frame, state.regions.at<RegionCarrier>(region),
+                                  state.regions.at<RegionSupport>(region)),
+               frame.half_size, model.settings.grid_side),
         normal(glm::cross(finder.tangent_x, finder.tangent_y)),
-        cells(world.cells.rows<CellGeometry>(world.regions.at<RegionIdentity>(region).cells)) {}
+        cells(state.cells.rows<CellGeometry>(state.regions.at<RegionIdentity>(region).cells)) {}
 
   /// By more than what the slope at the rim of a contact that ends before it may feign.
   [[nodiscard]] bool is_covered(const CellPlace& cell) const {
@@ -158,24 +158,24 @@ void renumber(std::span<std::uint32_t> parent, std::span<std::uint32_t> numbers,
   pair.clusters = count;
 }
 
-bool is_of_pair(const World& world, std::uint32_t region, const ContactPair& pair) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+bool is_of_pair(const State& state, std::uint32_t region, const ContactPair& pair) {
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
   return identity.tool == pair.tool && identity.body == pair.body;
 }
 
 /// Links the clusters on a region's cells, and its own with those of other regions that it touches.
-void join_on(const World& world, std::uint32_t region, const ContactPair& pair,
+void join_on(const Model& model, const State& state, std::uint32_t region, const ContactPair& pair,
              std::span<const ContactPoint> points, std::span<std::uint32_t> parent) {
-  const RegionCover cover(world, region);
+  const RegionCover cover(model, state, region);
   if (several_clusters_on(cover, points)) {
     link_joined(cover, points, parent);
   }
   const std::uint32_t cluster = cluster_on(cover, points);
-  for (std::uint32_t other = 0; cluster != kNoRow && other < world.regions.size(); ++other) {
-    if (other == region || !is_of_pair(world, other, pair)) {
+  for (std::uint32_t other = 0; cluster != kNoRow && other < state.regions.size(); ++other) {
+    if (other == region || !is_of_pair(state, other, pair)) {
       continue;
     }
-    const RegionCover beside(world, other);
+    const RegionCover beside(model, state, other);
     if (!touch(cover, beside)) {
       continue;
     }
@@ -201,15 +201,15 @@ class ClusterBoxes {
   }
 
   /// How many clusters, of as many as it knows, may have points on a region or beside it.
-  [[nodiscard]] std::size_t near(const World& world, std::uint32_t region) const {
+  [[nodiscard]] std::size_t near(const State& state, std::uint32_t region) const {
     if (count_ > boxes_.size()) {
       return count_;
     }
-    const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-    const glm::dvec3 middle = frame.origin + world.regions.at<RegionCarrier>(region).translation +
-                              world.regions.at<RegionSupport>(region).translation;
+    const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+    const glm::dvec3 middle = frame.origin + state.regions.at<RegionCarrier>(region).translation +
+                              state.regions.at<RegionSupport>(region).translation;
     const double reach = 2.0 * (glm::length(frame.half_size) +
-                                world.regions.at<RegionGeometry>(region).largest_depth);
+                                state.regions.at<RegionGeometry>(region).largest_depth);
     return static_cast<std::size_t>(
         std::count_if(boxes_.begin(), boxes_.begin() + count_, [&](const Bounds& box) {
           return boxes_meet(box, {middle, middle}, reach);
@@ -223,7 +223,8 @@ class ClusterBoxes {
 
 }  // namespace
 
-void join_clusters(const World& world, ContactScratch& scratch, ContactPair& pair) {
+void join_clusters(const Model& model, const State& state, ContactScratch& scratch,
+                   ContactPair& pair) {
   if (pair.clusters < 2) {
     return;
   }
@@ -232,10 +233,10 @@ void join_clusters(const World& world, ContactScratch& scratch, ContactPair& pai
   const std::span<std::uint32_t> parent(scratch.parent.data(), pair.clusters);
   std::iota(parent.begin(), parent.end(), 0U);
   const ClusterBoxes boxes(points, pair.clusters);
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
     // A region far from all clusters but one has nothing to join, and no near neighbour.
-    if (is_of_pair(world, region, pair) && boxes.near(world, region) > 1) {
-      join_on(world, region, pair, points, parent);
+    if (is_of_pair(state, region, pair) && boxes.near(state, region) > 1) {
+      join_on(model, state, region, pair, points, parent);
     }
   }
   renumber(parent, scratch.order, points, pair);

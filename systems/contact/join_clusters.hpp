@@ -10,6 +10,7 @@ namespace torsion {
 /// corners too, and so do those of two regions whose cells touch. Without this the region of a
 /// facet with four samples would fall in two when one of them leaves the contact, and a ring would
 /// be sixteen.
-void join_clusters(const World& world, ContactScratch& scratch, ContactPair& pair);
+void join_clusters(const Model& model, const State& state, ContactScratch& scratch,
+                   ContactPair& pair);
 
 }  // namespace torsion

@@ -55,18 +55,18 @@ struct ContactLaw {
   bool follows_material = false;
   /// The grid's axes have been turned: what it keeps in them of the region is turned by `back`.
   /// Null: nothing.
-  void (*turn)(World& world, std::uint32_t region, const glm::dmat2& back) = nullptr;
+  void (*turn)(State& state, std::uint32_t region, const glm::dmat2& back) = nullptr;
 
   // What it keeps of a region from step to step. Null: nothing that an event would change.
   /// A new region has this block of cells: forgets whose it was.
-  void (*begin)(World& world, std::uint32_t block) = nullptr;
+  void (*begin)(const Model& model, State& state, std::uint32_t block) = nullptr;
   /// `region` splits off `from`, in group_regions; once its cells are known, `share_out`.
-  void (*split)(World& world, std::uint32_t from, std::uint32_t region) = nullptr;
+  void (*split)(State& state, std::uint32_t from, std::uint32_t region) = nullptr;
   void (*share_out)(StepContext& context, std::uint32_t region) = nullptr;
   /// `heir` takes over what `ended` holds. Their rows are still what they were.
   void (*join)(StepContext& context, std::uint32_t ended, std::uint32_t heir) = nullptr;
   /// `ended` goes, with or without a join.
-  void (*end)(World& world, std::uint32_t ended, std::uint32_t heir) = nullptr;
+  void (*end)(State& state, std::uint32_t ended, std::uint32_t heir) = nullptr;
 };
 
 /// @pre model is not kAuto
@@ -75,8 +75,8 @@ const ContactLaw& contact_law(ContactModel model);
 /// All of them.
 std::span<const ContactLaw* const> contact_laws();
 
-inline const ContactLaw& law_of(const World& world, std::uint32_t body) {
-  return contact_law(world.bodies.at<BodyModels>(body).contact);
+inline const ContactLaw& law_of(const Model& model, std::uint32_t body) {
+  return contact_law(model.bodies.at<BodyModels>(body).contact);
 }
 
 /// Whether the scene has a tool and a body.

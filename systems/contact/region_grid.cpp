@@ -25,11 +25,11 @@ constexpr double kSettled =
 /// with it, and the place of the tractions moves with it. Without this a long contact that sticks
 /// and turns would seem to leave the area that it holds, for contact is found against the rest
 /// shape.
-void follow_material(World& world, std::uint32_t region) {
-  RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  RegionFrame& tractions = world.regions.at<TractionFrame>(region).frame;
-  const RegionMotion& motion = world.regions.at<RegionMotion>(region);
-  const double share = world.regions.at<RegionFriction>(region).stick_share;
+void follow_material(State& state, std::uint32_t region) {
+  RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  RegionFrame& tractions = state.regions.at<TractionFrame>(region).frame;
+  const RegionMotion& motion = state.regions.at<RegionMotion>(region);
+  const double share = state.regions.at<RegionFriction>(region).stick_share;
   const double angle = share * motion.spin;
   const glm::dvec3 pivot = grid_to_body(frame, {motion.pivot, 0.0});
   const glm::dvec3 slide = tangent_to_body(frame, share * motion.slide);
@@ -63,11 +63,11 @@ bool settled(const Grid& grid, const PlaneBox& box) {
 void turn_grid(const Grid& grid, std::uint32_t region, double angle) {
   turn_axes(grid.frame, angle);
   const glm::dmat2 back(std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle));
-  const ContactLaw& law = law_of(grid.world, grid.identity.body);
+  const ContactLaw& law = law_of(grid.model, grid.identity.body);
   if (law.turn != nullptr) {
-    law.turn(grid.world, region, back);
+    law.turn(grid.state, region, back);
   }
-  RegionFriction& friction = grid.world.regions.at<RegionFriction>(region);
+  RegionFriction& friction = grid.state.regions.at<RegionFriction>(region);
   friction.force = back * friction.force;
 }
 
@@ -160,7 +160,7 @@ void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoin
   contact_of(context, grid.identity) = contact;
   const ContactPoint deepest = deepest_of_cluster(grid, contact);
   const Distance surface = signed_distance(
-      grid.world, grid.world.bodies.at<OwnedRows>(grid.identity.body).parts, deepest.position);
+      grid.model, grid.model.bodies.at<OwnedRows>(grid.identity.body).parts, deepest.position);
   RegionFrame& frame = grid.frame;
   frame = RegionFrame{};
   frame.origin = deepest.position;
@@ -175,10 +175,10 @@ void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoin
 
 void follow_overlap(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const Grid grid = grid_of(context, region);
-  const MotionOverBody motion = motion_over_body(context.world, region);
+  const MotionOverBody motion = motion_over_body(context.model, context.state, region);
   const bool moves = motion.shift != glm::dvec3(0.0) || motion.turn != glm::dvec3(0.0);
-  if (law_of(context.world, grid.identity.body).follows_material) {
-    follow_material(context.world, region);
+  if (law_of(context.model, grid.identity.body).follows_material) {
+    follow_material(context.state, region);
   }
   const CellBits covered = covered_cells(grid);
   PlaneBox box = moves ? align_grid(grid, region, covered, kTurn) : covered_box(grid, covered);
@@ -192,33 +192,34 @@ void follow_overlap(StepContext& context, std::uint32_t region, const RegionPoin
   }
   include_points(grid, contact, box);
   approach(grid, box, moves);
-  turn_normal_to(grid.frame, context.world.regions.at<RegionGeometry>(region).mean_normal);
+  turn_normal_to(grid.frame, context.state.regions.at<RegionGeometry>(region).mean_normal);
 }
 
 void find_overlap(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const Grid grid = grid_of(context, region);
   const double depth = deepest_of_cluster(grid, contact).depth;
-  const bool event_now = context.world.regions.at<RegionWrench>(region).event_now != 0;
+  const bool event_now = context.state.regions.at<RegionWrench>(region).event_now != 0;
   if (fit_to_contact(grid, region, contact, depth, event_now)) {
     look_along_normal(grid, contact);
   }
 }
 
 void follow_contact(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
-  const RegionIdentity& identity = context.world.regions.at<RegionIdentity>(region);
+  const RegionIdentity& identity = context.state.regions.at<RegionIdentity>(region);
   contact_of(context, identity) = contact;
-  law_of(context.world, identity.body).follow(context, region, contact);
+  law_of(context.model, identity.body).follow(context, region, contact);
 }
 
 void region_grids(StepContext& context) {
-  World& world = context.world;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-    law_of(world, identity.body).find_cells(context, region, contact_of(context, identity));
-    world.regions.at<RegionGeometry>(region) = summarize_cells(grid_of(context, region));
+  const Model& model = context.model;
+  State& state = context.state;
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+    law_of(model, identity.body).find_cells(context, region, contact_of(context, identity));
+    state.regions.at<RegionGeometry>(region) = summarize_cells(grid_of(context, region));
   }
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const ContactLaw& law = law_of(world, world.regions.at<RegionIdentity>(region).body);
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    const ContactLaw& law = law_of(model, state.regions.at<RegionIdentity>(region).body);
     if (law.share_out != nullptr) {
       law.share_out(context, region);
     }

@@ -31,9 +31,9 @@ struct AxisInBody {
   glm::dvec3 along;   // unit or zero
 };
 
-AxisInBody axis_in_body(const World& world, const RegionIdentity& region) {
-  const Pose& body = world.bodies.at<Pose>(region.body);
-  const ToolMotion& motion = world.tools.at<ToolMotion>(region.tool);
+AxisInBody axis_in_body(const Model& model, const State& state, const RegionIdentity& region) {
+  const Pose& body = model.bodies.at<Pose>(region.body);
+  const ToolMotion& motion = state.tools.at<ToolMotion>(region.tool);
   return {to_inner(body, motion.mass_center), glm::conjugate(body.rotation) * motion.axis};
 }
 
@@ -57,12 +57,12 @@ void aim_axis(const AxisInBody& axis, const RegionFrame& frame, const RegionGeom
 
 }  // namespace
 
-MotionOverBody motion_over_body(const World& world, std::uint32_t region) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const Pose& body = world.bodies.at<Pose>(identity.body);
-  const ToolMotion& tool = world.tools.at<ToolMotion>(identity.tool);
-  const RegionSupport& support = world.regions.at<RegionSupport>(region);
-  const double dt = world.clock.at<Clock>(0).dt;
+MotionOverBody motion_over_body(const Model& model, const State& state, std::uint32_t region) {
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  const Pose& body = model.bodies.at<Pose>(identity.body);
+  const ToolMotion& tool = state.tools.at<ToolMotion>(identity.tool);
+  const RegionSupport& support = state.regions.at<RegionSupport>(region);
+  const double dt = state.clock.dt;
   const glm::dquat to_body = glm::conjugate(body.rotation);
   const glm::dvec3 shift = to_body * tool.velocity * dt;
   return {shift,
@@ -74,18 +74,19 @@ MotionOverBody motion_over_body(const World& world, std::uint32_t region) {
 }
 
 void region_motion(StepContext& context) {
-  World& world = context.world;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-    const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-    const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-    RegionMotion& motion = world.regions.at<RegionMotion>(region);
-    const AxisInBody axis = axis_in_body(world, identity);
+  const Model& model = context.model;
+  State& state = context.state;
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+    const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+    const RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+    RegionMotion& motion = state.regions.at<RegionMotion>(region);
+    const AxisInBody axis = axis_in_body(model, state, identity);
     motion.axis = axis.along;
     aim_axis(axis, frame, geometry, motion);
     const glm::dvec3 height(0.0, 0.0, body_to_grid(frame, geometry.equivalent_point).z);
     const glm::dvec3 pivot = grid_to_body(frame, glm::dvec3(motion.pivot, 0.0) + height);
-    const MotionOverBody over = motion_over_body(world, region);
+    const MotionOverBody over = motion_over_body(model, state, region);
     motion.slide = glm::dvec2(body_to_grid_direction(frame, shift_after(over, pivot)));
     motion.spin = glm::dot(turn_of(over), frame.normal);
     motion.turn += motion.spin;
@@ -94,7 +95,7 @@ void region_motion(StepContext& context) {
     motion.largest_rotation = std::max(motion.largest_rotation, glm::length(motion.rotation));
     const bool has_axis = glm::dot(axis.along, axis.along) > 0.0;
     motion.lever =
-        lever_to_fixed(world.bodies.at<FixedRegion>(identity.body), geometry.equivalent_point,
+        lever_to_fixed(model.bodies.at<FixedRegion>(identity.body), geometry.equivalent_point,
                        has_axis ? axis.along : frame.normal, geometry.radius);
   }
 }

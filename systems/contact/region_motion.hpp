@@ -17,7 +17,7 @@ struct MotionOverBody {
   glm::dvec3 carried_about{0.0};
 };
 
-MotionOverBody motion_over_body(const World& world, std::uint32_t region);
+MotionOverBody motion_over_body(const Model& model, const State& state, std::uint32_t region);
 
 /// How the tool goes over the material that is at `point` and stays there, m, body axes. Turned
 /// about where the mass centre is halfway: turning and sliding in one step come in no order, and

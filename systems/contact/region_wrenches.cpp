@@ -30,17 +30,17 @@ Wrench operator*(const Wrench& a, double share) {
   return {a.force * share, a.torque * share};
 }
 
-Wrench computed_wrench(const World& world, std::uint32_t region) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const RegionFriction& friction = world.regions.at<RegionFriction>(region);
-  const Pose& body = world.bodies.at<Pose>(identity.body);
-  glm::dvec3 force = frame.normal * world.regions.at<RegionNormal>(region).force +
+Wrench computed_wrench(const Model& model, const State& state, std::uint32_t region) {
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const RegionFriction& friction = state.regions.at<RegionFriction>(region);
+  const Pose& body = model.bodies.at<Pose>(identity.body);
+  glm::dvec3 force = frame.normal * state.regions.at<RegionNormal>(region).force +
                      tangent_to_body(frame, friction.force);
   glm::dvec3 couple = frame.normal * friction.couple;
-  glm::dvec3 point = world.regions.at<RegionGeometry>(region).equivalent_point;
+  glm::dvec3 point = state.regions.at<RegionGeometry>(region).equivalent_point;
   // The contact was found in the axes of the material under it, which has gone with the body.
-  const RegionSupport& support = world.regions.at<RegionSupport>(region);
+  const RegionSupport& support = state.regions.at<RegionSupport>(region);
   const double turn = glm::length(support.rotation);
   if (turn > 0.0) {
     const glm::dquat rotation = glm::angleAxis(turn, support.rotation / turn);
@@ -49,7 +49,7 @@ Wrench computed_wrench(const World& world, std::uint32_t region) {
     point = support.about + rotation * (point - support.about) + support.translation;
   }
   const glm::dvec3 arm =
-      to_outer(body, point) - world.tools.at<ToolMotion>(identity.tool).mass_center;
+      to_outer(body, point) - state.tools.at<ToolMotion>(identity.tool).mass_center;
   const glm::dvec3 force_in_world = body.rotation * force;
   return {force_in_world, glm::cross(arm, force_in_world) + body.rotation * couple};
 }
@@ -57,11 +57,12 @@ Wrench computed_wrench(const World& world, std::uint32_t region) {
 /// Of a new region's force, what the tool's way in this step has made of it: all where it came to
 /// the body within the step. What it finds there deeper than that did not come by the motion, but
 /// when the run began or because samples had missed it. By Hertz' law, F ~ d^(3/2).
-double share_by_motion(const World& world, std::uint32_t region) {
+double share_by_motion(const Model& model, const State& state, std::uint32_t region) {
   constexpr double kMore = 1.2;  // times the way: depths are told by cells
-  const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-  const glm::dvec3 shift = shift_at(motion_over_body(world, region), geometry.equivalent_point);
-  const double way = -glm::dot(shift, world.regions.at<RegionFrame>(region).normal);
+  const RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+  const glm::dvec3 shift =
+      shift_at(motion_over_body(model, state, region), geometry.equivalent_point);
+  const double way = -glm::dot(shift, state.regions.at<RegionFrame>(region).normal);
   const double share = kMore * way / std::max(geometry.largest_depth, 1e-300);
   return share < 1.0 ? std::pow(std::max(share, 0.0), 1.5) : 1.0;
 }
@@ -136,45 +137,47 @@ void let_out(ToolWrench& wrench, const Wrench& computed, bool faulty, double dt)
 }  // namespace
 
 void region_wrenches(StepContext& context) {
-  World& world = context.world;
-  const double dt = world.clock.at<Clock>(0).dt;
-  for (StoredEnergy& energy : world.bodies.column<StoredEnergy>()) {
+  const Model& model = context.model;
+  State& state = context.state;
+  const double dt = state.clock.dt;
+  for (StoredEnergy& energy : state.bodies.column<StoredEnergy>()) {
     energy.work = 0.0;
   }
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    RegionWrench& wrench = world.regions.at<RegionWrench>(region);
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    RegionWrench& wrench = state.regions.at<RegionWrench>(region);
     const bool begins = wrench.event_now == static_cast<std::uint32_t>(RegionEvent::kBegins);
     const Wrench before = wrench.on_tool;
-    fade_event(wrench, computed_wrench(world, region),
-               world.regions.at<PatchState>(region).along_last,
-               begins ? share_by_motion(world, region) : 0.0, dt / kEventFade);
-    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-    world.bodies.at<StoredEnergy>(identity.body).work += work_against(
-        (before + wrench.on_tool) * 0.5, world.tools.at<ToolMotion>(identity.tool), dt);
+    fade_event(wrench, computed_wrench(model, state, region),
+               state.regions.at<PatchState>(region).along_last,
+               begins ? share_by_motion(model, state, region) : 0.0, dt / kEventFade);
+    const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+    state.bodies.at<StoredEnergy>(identity.body).work += work_against(
+        (before + wrench.on_tool) * 0.5, state.tools.at<ToolMotion>(identity.tool), dt);
   }
   bound_forces(context);
 }
 
 void sum_wrenches(StepContext& context) {
-  World& world = context.world;
-  Clock& clock = world.clock.at<Clock>(0);
-  for (std::uint32_t tool = 0; tool < world.tools.size(); ++tool) {
+  const Model& model = context.model;
+  State& state = context.state;
+  Clock& clock = state.clock;
+  for (std::uint32_t tool = 0; tool < model.tools.size(); ++tool) {
     Wrench computed;
-    for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-      if (world.regions.at<RegionIdentity>(region).tool == tool) {
-        computed = computed + world.regions.at<RegionWrench>(region).on_tool;
+    for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+      if (state.regions.at<RegionIdentity>(region).tool == tool) {
+        computed = computed + state.regions.at<RegionWrench>(region).on_tool;
       }
     }
     if (!finite(computed)) {
       raise(clock, Fault::kResultNotFinite);
       computed = Wrench{};
     }
-    ToolWrench& wrench = world.tools.at<ToolWrench>(tool);
+    ToolWrench& wrench = state.tools.at<ToolWrench>(tool);
     const Wrench before = wrench.total;
     let_out(wrench, computed, clock.faults != 0, clock.dt);
     // By the trapezoidal rule.
     wrench.work +=
-        work_against((before + wrench.total) * 0.5, world.tools.at<ToolMotion>(tool), clock.dt);
+        work_against((before + wrench.total) * 0.5, state.tools.at<ToolMotion>(tool), clock.dt);
   }
 }
 

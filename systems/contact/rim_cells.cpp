@@ -151,8 +151,8 @@ DistanceColumns distances_above(const Grid& grid, std::size_t count, double abov
   }
   const Pose frame = grid_in_tool(grid);
   const auto parts =
-      parts_under(grid, grid.world.tools.at<OwnedRows>(grid.identity.tool).parts, frame.position);
-  signed_distances(grid.world, parts, frame, points);
+      parts_under(grid, grid.model.tools.at<OwnedRows>(grid.identity.tool).parts, frame.position);
+  signed_distances(grid.model, parts, frame, points);
   return points;
 }
 

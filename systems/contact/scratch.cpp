@@ -2,26 +2,26 @@
 
 namespace torsion {
 
-void ContactScratch::reserve(const World& world) {
-  const std::uint32_t samples = world.samples.size();
-  const std::uint32_t bodies = world.bodies.size();
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+void ContactScratch::reserve(const Model& model, const State& state) {
+  const std::uint32_t samples = model.samples.size();
+  const std::uint32_t bodies = model.bodies.size();
+  const std::uint32_t side = model.settings.grid_side;
   sample_states.assign(samples, SampleState{});
   found_samples.assign((samples + 63) / 64, 0);
-  walk.reserve(world.balls.size());
+  walk.reserve(model.balls.size());
   candidates.reserve(samples);
   // Every sample of every tool may be inside every body.
   const std::size_t most_points = std::size_t{samples} * bodies;
   points.reserve(most_points);
   near_pairs.reserve(most_points * kSampleNeighbours);
-  pairs.reserve(std::size_t{world.tools.size()} * bodies);
+  pairs.reserve(std::size_t{model.tools.size()} * bodies);
   order.assign(2 * std::size_t{samples}, 0);
   parent.assign(samples, 0);
   cluster_points.reserve(samples);
   owners.reserve(samples);
   overlaps.reserve(std::size_t{kMaxRegionsPerBody} * samples);
-  ended_regions.reserve(world.regions.capacity());
-  region_points.assign(world.regions.capacity(), RegionPoints{});
+  ended_regions.reserve(state.regions.capacity());
+  region_points.assign(state.regions.capacity(), RegionPoints{});
   const std::size_t cells = std::size_t{side} * side;
   column_memory.reserve(26, cells);
   for (DistanceColumns* found : {&cell_columns.points, &left_cells.points}) {
@@ -39,8 +39,8 @@ void ContactScratch::reserve(const World& world) {
   }
   cell_memory.assign(cells, 0);
   left_cells.cells = cell_memory;
-  near_parts.assign(world.parts.size(), 0);
-  beams.assign(world.regions.capacity(), BeamSpring{});
+  near_parts.assign(model.parts.size(), 0);
+  beams.assign(state.regions.capacity(), BeamSpring{});
 }
 
 }  // namespace torsion

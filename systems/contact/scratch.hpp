@@ -33,7 +33,7 @@ struct ContactPair {
 
 /// A candidate sample while one pair is searched.
 struct Candidate {
-  std::uint32_t sample = 0;  // row in World::samples
+  std::uint32_t sample = 0;  // row in Model::samples
   double distance = 0.0;     // m, to the body; negative inside
 };
 
@@ -144,8 +144,8 @@ struct ContactScratch {
   CellColumnMemory column_memory;          // what the columns above are in
   std::vector<std::uint32_t> cell_memory;  // what the cells of left_cells are in
 
-  /// Takes all memory that a step of `world` can need.
-  void reserve(const World& world);
+  /// Takes all memory that a step can need.
+  void reserve(const Model& model, const State& state);
 };
 
 }  // namespace torsion

@@ -16,7 +16,8 @@ struct ComplianceScratch;
 
 /// What a system of the physics step may touch.
 struct StepContext {
-  World& world;
+  const Model& model;
+  State& state;
   std::span<const Pose> tool_poses;  // (tools) the tool frames in the world at the end of this step
   ContactScratch& scratch;           // what the systems of contact/ tell each other within a step
   PaperScratch& paper;

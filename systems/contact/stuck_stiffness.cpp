@@ -31,13 +31,14 @@ double axes_of(const glm::dvec2& half, double radius, bool grid_fits) {
 
 }  // namespace
 
-StuckStiffness stuck_stiffness(const World& world, std::uint32_t region, double radius) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
+StuckStiffness stuck_stiffness(const Model& model, const State& state, std::uint32_t region,
+                               double radius) {
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  const Elasticity& elasticity = model.bodies.at<Elasticity>(identity.body);
   const double g = elasticity.shear_modulus();
   const double nu = elasticity.poisson_ratio;
-  const glm::dvec2 half = overlap_extent(world, region);
-  const double axes = axes_of(half, radius, !law_of(world, identity.body).by_cells);
+  const glm::dvec2 half = overlap_extent(state, region);
+  const double axes = axes_of(half, radius, !law_of(model, identity.body).by_cells);
   const double cube = cube_of(radius);
   const double share = ellipse_shares(axes).force;
   StuckStiffness stiffness;
@@ -45,9 +46,9 @@ StuckStiffness stuck_stiffness(const World& world, std::uint32_t region, double 
   stiffness.along_normal = 4.0 * g * radius / (1.0 - nu) * share;
   stiffness.about_normal = 16.0 / 3.0 * g * cube * bonded_turn_share(axes, nu);
   stiffness.about_tangents = glm::dvec2(8.0 / 3.0 * g * cube / (1.0 - nu));
-  const double depth = world.regions.at<RegionGeometry>(region).largest_depth;
+  const double depth = state.regions.at<RegionGeometry>(region).largest_depth;
   if (depth > 0.0) {
-    const double moved = 0.6 * world.regions.at<RegionNormal>(region).force / depth;
+    const double moved = 0.6 * state.regions.at<RegionNormal>(region).force / depth;
     stiffness.about_tangents =
         glm::max(stiffness.about_tangents, moved * glm::dvec2(half.y * half.y, half.x * half.x));
   }

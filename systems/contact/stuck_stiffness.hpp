@@ -25,6 +25,7 @@ struct StuckStiffness {
 /// the bonded disc's. A flat contact's force goes to t 2 h^2 / (3 d) (contact_shape.hpp). Between
 /// the two: 0.6.
 /// @param radius  m, of the disc of equal area
-StuckStiffness stuck_stiffness(const World& world, std::uint32_t region, double radius);
+StuckStiffness stuck_stiffness(const Model& model, const State& state, std::uint32_t region,
+                               double radius);
 
 }  // namespace torsion

@@ -133,7 +133,7 @@ void step_left_cells(const Grid& grid, std::span<const std::uint32_t> parts, con
     left.points.y[k] = columns.points.y[cell];
     left.points.z[k] = columns.points.z[cell];
   }
-  signed_distances(grid.world, parts, frame, left.points);
+  signed_distances(grid.model, parts, frame, left.points);
   step_to_surface(size, left.points, left.tool_x, left.tool_y, left.gradient_square);
   for (std::size_t k = 0; k < left.cells.size(); ++k) {
     const std::uint32_t cell = left.cells[k];
@@ -151,7 +151,7 @@ std::span<const std::uint32_t> parts_under(const Grid& grid, Range parts,
   // There is no choice of one.
   const double reach =
       parts.count > 1 ? glm::length(grid.frame.half_size) + deepest_place(grid) : 0.0;
-  return parts_near(grid.world, parts, origin, reach, grid.scratch.near_parts);
+  return parts_near(grid.model, parts, origin, reach, grid.scratch.near_parts);
 }
 
 void find_tool_surface(const Grid& grid) {
@@ -162,8 +162,8 @@ void find_tool_surface(const Grid& grid) {
   const double cell_length = size / static_cast<double>(grid.side);
   const Pose frame = grid_in_tool(grid);
   const auto parts =
-      parts_under(grid, grid.world.tools.at<OwnedRows>(grid.identity.tool).parts, frame.position);
-  signed_distances(grid.world, parts, frame, columns.points);
+      parts_under(grid, grid.model.tools.at<OwnedRows>(grid.identity.tool).parts, frame.position);
+  signed_distances(grid.model, parts, frame, columns.points);
   step_to_surface(size, columns.points, columns.tool_x, columns.tool_y, columns.gradient_square);
   if (extreme_of(columns.points.value, 1.0) < kCloseEnough * cell_length) {
     return;

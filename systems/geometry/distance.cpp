@@ -20,9 +20,9 @@ bool is_turned(const glm::dquat& rotation) {
 
 /// Calls f with the distance function of `part` in its own frame.
 template <class F>
-void with_shape(const World& world, const ShapePart& part, F&& f) {
+void with_shape(const Model& model, const ShapePart& part, F&& f) {
   if (part.kind == ShapeKind::kMesh) {
-    f(FieldDistance(world, part.field));
+    f(FieldDistance(model, part.field));
   } else {
     with_exact_shape(part, f);
   }
@@ -92,17 +92,17 @@ TORSION_WIDEST void evaluate_value(Shape shape, const ColumnPlacement& placement
 
 }  // namespace
 
-Distance signed_distance(const World& world, Range parts, const glm::dvec3& point) {
+Distance signed_distance(const Model& model, Range parts, const glm::dvec3& point) {
   Distance nearest{std::numeric_limits<double>::infinity(), glm::dvec3(0.0)};
   bool first_part = true;
-  for (const ShapePart& part : world.parts.rows<ShapePart>(parts)) {
+  for (const ShapePart& part : model.parts.rows<ShapePart>(parts)) {
     const glm::dquat& turn = part.pose.rotation;
     const bool turned = is_turned(turn);
     glm::dvec3 local = point - part.pose.position;
     if (turned) {
       local = glm::conjugate(turn) * local;
     }
-    with_shape(world, part, [&](const auto& shape) {
+    with_shape(model, part, [&](const auto& shape) {
       const Distance distance = shape(local.x, local.y, local.z);
       if (first_part || distance.value < nearest.value) {
         nearest = {distance.value, turned ? turn * distance.gradient : distance.gradient};
@@ -113,13 +113,13 @@ Distance signed_distance(const World& world, Range parts, const glm::dvec3& poin
   return nearest;
 }
 
-std::span<const std::uint32_t> parts_near(const World& world, Range parts, const glm::dvec3& center,
+std::span<const std::uint32_t> parts_near(const Model& model, Range parts, const glm::dvec3& center,
                                           double reach, std::span<std::uint32_t> rows) {
   TORSION_ASSERT(rows.size() >= parts.count);
   constexpr std::size_t kKept = 32;  // distances; those of further parts are asked for twice
   std::array<double, kKept> kept;
   const auto distance = [&](std::uint32_t part) {
-    return signed_distance(world, Range{parts.first + part, 1}, center).value;
+    return signed_distance(model, Range{parts.first + part, 1}, center).value;
   };
   double nearest = std::numeric_limits<double>::infinity();
   for (std::uint32_t part = 0; part < parts.count && parts.count > 1; ++part) {
@@ -144,21 +144,21 @@ std::span<const std::uint32_t> parts_near(const World& world, Range parts, const
   return rows.first(count);
 }
 
-void signed_distances(const World& world, std::span<const std::uint32_t> rows, const Pose& frame,
+void signed_distances(const Model& model, std::span<const std::uint32_t> rows, const Pose& frame,
                       const DistanceColumns& columns) {
   const DistanceColumns& at = columns;
   if (rows.empty()) {
     std::ranges::fill(at.value, std::numeric_limits<double>::infinity());
   }
   for (const std::uint32_t& row : rows) {
-    const ShapePart& part = world.parts.at<ShapePart>(row);
+    const ShapePart& part = model.parts.at<ShapePart>(row);
     const ColumnPlacement placement = column_placement(part.pose, frame);
     const auto into = [&](const auto& shape, auto&& evaluate_part) {
       evaluate_part(shape, placement, at.x.size(), at.x.data(), at.y.data(), at.z.data(),
                     at.value.data(), at.gradient_x.data(), at.gradient_y.data(),
                     at.gradient_z.data());
     };
-    with_shape(world, part, [&]<class Shape>(const Shape& shape) {
+    with_shape(model, part, [&]<class Shape>(const Shape& shape) {
       if (&row == rows.data()) {
         into(shape, evaluate<true, Shape>);
       } else {
@@ -168,15 +168,15 @@ void signed_distances(const World& world, std::span<const std::uint32_t> rows, c
   }
 }
 
-void distance_values(const World& world, Range parts, const Pose& frame, const PointColumns& points,
+void distance_values(const Model& model, Range parts, const Pose& frame, const PointColumns& points,
                      std::span<double> values) {
   if (parts.count == 0) {
     std::ranges::fill(values, std::numeric_limits<double>::infinity());
   }
   for (std::uint32_t row = parts.first; row < parts.end(); ++row) {
-    const ShapePart& part = world.parts.at<ShapePart>(row);
+    const ShapePart& part = model.parts.at<ShapePart>(row);
     const ColumnPlacement placement = column_placement(part.pose, frame);
-    with_shape(world, part, [&]<class Shape>(const Shape& shape) {
+    with_shape(model, part, [&]<class Shape>(const Shape& shape) {
       const auto evaluate_part =
           row == parts.first ? evaluate_value<true, Shape> : evaluate_value<false, Shape>;
       evaluate_part(shape, placement, values.size(), points.x.data(), points.y.data(),

@@ -18,12 +18,12 @@ struct Distance {
 /// (systems/geometry/distance_field.hpp). Never overestimates |distance| by more than a mesh
 /// field's error.
 /// @param point  m, the owner's frame
-Distance signed_distance(const World& world, Range parts, const glm::dvec3& point);
+Distance signed_distance(const Model& model, Range parts, const glm::dvec3& point);
 
 /// Which of `parts` can be the nearest to any point within `reach` [m] of `center`.
 /// @param rows  at least parts.count long; its front is filled
-/// @return the filled front: rows of World::parts, rising; not empty unless `parts` is
-std::span<const std::uint32_t> parts_near(const World& world, Range parts, const glm::dvec3& center,
+/// @return the filled front: rows of Model::parts, rising; not empty unless `parts` is
+std::span<const std::uint32_t> parts_near(const Model& model, Range parts, const glm::dvec3& center,
                                           double reach, std::span<std::uint32_t> rows);
 
 /// Columns of one length: points, and what is found there.
@@ -33,11 +33,11 @@ struct DistanceColumns {
   std::span<double> gradient_x, gradient_y, gradient_z;  // unit
 };
 
-/// The same as signed_distance for many points and the parts in `rows` of World::parts, in another
+/// The same as signed_distance for many points and the parts in `rows` of Model::parts, in another
 /// frame: a step's hot loop.
 /// @param frame    the frame of points and gradients, in the owner's
 /// @param columns  in: x, y, z; out: the rest
-void signed_distances(const World& world, std::span<const std::uint32_t> rows, const Pose& frame,
+void signed_distances(const Model& model, std::span<const std::uint32_t> rows, const Pose& frame,
                       const DistanceColumns& columns);
 
 /// Columns of one length, m.
@@ -48,7 +48,7 @@ struct PointColumns {
 /// The same for all of `parts` without the gradients.
 /// @param frame   the frame of the points, in the owner's
 /// @param values  m, (n) out
-void distance_values(const World& world, Range parts, const Pose& frame, const PointColumns& points,
+void distance_values(const Model& model, Range parts, const Pose& frame, const PointColumns& points,
                      std::span<double> values);
 
 }  // namespace torsion

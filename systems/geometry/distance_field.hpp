@@ -12,11 +12,11 @@ namespace torsion {
 class FieldDistance {
  public:
   /// @param row  of world.fields
-  FieldDistance(const World& world, std::uint32_t row)
-      : field_(world.fields.at<DistanceField>(row)),
+  FieldDistance(const Model& model, std::uint32_t row)
+      : field_(model.fields.at<DistanceField>(row)),
         inverse_spacing_(1.0 / field_.spacing),
-        nodes_(world.field_nodes.column<DistanceNode>().data()),
-        bricks_(world.field_bricks.rows<DistanceBrick>(field_.bricks).data()) {}
+        nodes_(model.field_nodes.column<DistanceNode>().data()),
+        bricks_(model.field_bricks.rows<DistanceBrick>(field_.bricks).data()) {}
 
   /// @param x, y, z  m, part frame
   Distance operator()(double x, double y, double z) const;

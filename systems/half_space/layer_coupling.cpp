@@ -10,18 +10,18 @@
 
 namespace torsion {
 
-bool has_layer_kernel(const World& world, std::uint32_t body) {
-  const std::size_t tables = world.bodies.at<BodyModels>(body).contact == ContactModel::kPatch
-                                 ? influence_count(world.settings.at<Settings>(0).grid_side)
+bool has_layer_kernel(const Model& model, std::uint32_t body) {
+  const std::size_t tables = model.bodies.at<BodyModels>(body).contact == ContactModel::kPatch
+                                 ? influence_count(model.settings.grid_side)
                                  : 0;
-  return world.bodies.at<OwnedRows>(body).influences.count == tables + kLayerKernelSize;
+  return model.bodies.at<OwnedRows>(body).influences.count == tables + kLayerKernelSize;
 }
 
-glm::dmat3 layer_coupling(const World& world, std::uint32_t body, const glm::dvec3& normal,
+glm::dmat3 layer_coupling(const Model& model, std::uint32_t body, const glm::dvec3& normal,
                           const glm::dvec3& offset, double thickness) {
-  const auto rows = world.influences.rows<Influence>(world.bodies.at<OwnedRows>(body).influences);
+  const auto rows = model.influences.rows<Influence>(model.bodies.at<OwnedRows>(body).influences);
   const std::span<const double> values(&rows.front().value, rows.size());
-  const Elasticity& elasticity = world.bodies.at<Elasticity>(body);
+  const Elasticity& elasticity = model.bodies.at<Elasticity>(body);
   const glm::dvec3 other =
       std::abs(normal.x) < 0.6 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
   const glm::dvec3 first = glm::normalize(glm::cross(normal, other));

@@ -14,10 +14,10 @@ namespace torsion {
 /// @param normal     body, unit, out of the layer
 /// @param offset     m, body: from the force
 /// @param thickness  m
-glm::dmat3 layer_coupling(const World& world, std::uint32_t body, const glm::dvec3& normal,
+glm::dmat3 layer_coupling(const Model& model, std::uint32_t body, const glm::dvec3& normal,
                           const glm::dvec3& offset, double thickness);
 
 /// Whether the body has a layer's kernel.
-bool has_layer_kernel(const World& world, std::uint32_t body);
+bool has_layer_kernel(const Model& model, std::uint32_t body);
 
 }  // namespace torsion

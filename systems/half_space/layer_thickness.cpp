@@ -10,9 +10,9 @@ namespace {
 constexpr double kWide = 4.0;  // a body at least so many times as wide as thick is a layer
 
 /// @param thickness  m, along the fixed face's normal
-bool is_wide(const World& world, std::uint32_t body, double thickness) {
-  const FixedRegion& fixed = world.bodies.at<FixedRegion>(body);
-  const Bounds& bounds = world.bodies.at<Bounds>(body);
+bool is_wide(const Model& model, std::uint32_t body, double thickness) {
+  const FixedRegion& fixed = model.bodies.at<FixedRegion>(body);
+  const Bounds& bounds = model.bodies.at<Bounds>(body);
   const glm::dvec3 along = glm::abs(fixed.normal);
   const glm::dvec3 across = (bounds.highest - bounds.lowest) * (1.0 - along);
   // Along two of the axes; the third is nearest to the normal.
@@ -31,21 +31,21 @@ bool is_wide(const World& world, std::uint32_t body, double thickness) {
 
 }  // namespace
 
-bool is_layer(const World& world, std::uint32_t body) {
-  const FixedRegion& fixed = world.bodies.at<FixedRegion>(body);
-  const Bounds& bounds = world.bodies.at<Bounds>(body);
+bool is_layer(const Model& model, std::uint32_t body) {
+  const FixedRegion& fixed = model.bodies.at<FixedRegion>(body);
+  const Bounds& bounds = model.bodies.at<Bounds>(body);
   const double thickness = glm::dot(bounds.highest - bounds.lowest, glm::abs(fixed.normal));
-  return fixed.kind == FixedKind::kFace && is_wide(world, body, thickness);
+  return fixed.kind == FixedKind::kFace && is_wide(model, body, thickness);
 }
 
-double layer_thickness(const World& world, std::uint32_t body, const glm::dvec3& normal,
+double layer_thickness(const Model& model, std::uint32_t body, const glm::dvec3& normal,
                        const glm::dvec3& point) {
-  const FixedRegion& fixed = world.bodies.at<FixedRegion>(body);
+  const FixedRegion& fixed = model.bodies.at<FixedRegion>(body);
   if (fixed.kind != FixedKind::kFace || glm::dot(fixed.normal, normal) < 0.9) {
     return 0.0;
   }
   const double thickness = glm::dot(point - fixed.point, fixed.normal);
-  return thickness > 0.0 && is_wide(world, body, thickness) ? thickness : 0.0;
+  return thickness > 0.0 && is_wide(model, body, thickness) ? thickness : 0.0;
 }
 
 }  // namespace torsion

@@ -17,17 +17,18 @@ constexpr double kLongestFreeStep = 5e-3;  // m: off every contact
 constexpr double kWidestFreeTurn = 0.2;    // rad
 
 /// Of one region that sticks, about the tool's mass centre.
-Matrix6 contact_stiffness(const World& world, std::uint32_t region, const glm::dvec3& center) {
-  const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-  const Pose& body = world.bodies.at<Pose>(world.regions.at<RegionIdentity>(region).body);
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const StuckStiffness stuck = stuck_stiffness(world, region, geometry.radius);
+Matrix6 contact_stiffness(const Model& model, const State& state, std::uint32_t region,
+                          const glm::dvec3& center) {
+  const RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+  const Pose& body = model.bodies.at<Pose>(state.regions.at<RegionIdentity>(region).body);
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const StuckStiffness stuck = stuck_stiffness(model, state, region, geometry.radius);
   const Eigen::Vector3d axis = eigen(body.rotation * frame.normal);
   const Eigen::Vector3d x = eigen(body.rotation * frame.tangent_x);
   const Eigen::Vector3d y = eigen(body.rotation * frame.tangent_y);
   const Eigen::Matrix3d normal = axis * axis.transpose();
   const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - normal;
-  const double along = world.regions.at<RegionNormal>(region).stiffness;
+  const double along = state.regions.at<RegionNormal>(region).stiffness;
   return spring_about(to_outer(body, geometry.equivalent_point) - center,
                       along * normal + stuck.along_tangents * across,
                       stuck.about_normal * normal + stuck.about_tangents.x * (x * x.transpose()) +
@@ -36,14 +37,14 @@ Matrix6 contact_stiffness(const World& world, std::uint32_t region, const glm::d
 
 /// What the contacts do to the tool as they are now. What is let out of a region lags behind while
 /// it forms, merges or splits, and a tool without mass that fell through that lag would bounce.
-Wrench contact_wrench(const World& world, std::uint32_t tool) {
-  Wrench contact = world.tools.at<ToolWrench>(tool).total;
-  if (world.tools.at<ToolWrench>(tool).state != WrenchState::kLive) {
+Wrench contact_wrench(const State& state, std::uint32_t tool) {
+  Wrench contact = state.tools.at<ToolWrench>(tool).total;
+  if (state.tools.at<ToolWrench>(tool).state != WrenchState::kLive) {
     return contact;
   }
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    if (world.regions.at<RegionIdentity>(region).tool == tool) {
-      const RegionWrench& wrench = world.regions.at<RegionWrench>(region);
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    if (state.regions.at<RegionIdentity>(region).tool == tool) {
+      const RegionWrench& wrench = state.regions.at<RegionWrench>(region);
       contact.force -= wrench.event_share * wrench.event_change.force;
       contact.torque -= wrench.event_share * wrench.event_change.torque;
     }
@@ -64,20 +65,20 @@ Matrix6 spring_about(const glm::dvec3& arm, const Eigen::Matrix3d& shifting,
   return stiffness;
 }
 
-ToolBalance balance_of(const World& world, std::uint32_t tool, const VirtualCoupling& coupling,
-                       const Pose& handle) {
-  const Pose& now = world.tools.at<ToolPose>(tool).now;
-  const glm::dvec3 center = world.tools.at<ToolMotion>(tool).mass_center;
-  const Wrench contact = contact_wrench(world, tool);
+ToolBalance balance_of(const Model& model, const State& state, std::uint32_t tool,
+                       const VirtualCoupling& coupling, const Pose& handle) {
+  const Pose& now = state.tools.at<ToolPose>(tool).now;
+  const glm::dvec3 center = state.tools.at<ToolMotion>(tool).mass_center;
+  const Wrench contact = contact_wrench(state, tool);
   const Wrench pull = coupling_wrench(coupling, {handle}, {now});
   const glm::dvec3 arm = now.position - center;
   ToolBalance balance;
   balance.touches = contact.force != glm::dvec3(0.0) || contact.torque != glm::dvec3(0.0);
   balance.stiffness = spring_about(arm, coupling.stiffness * Eigen::Matrix3d::Identity(),
                                    coupling.turn_stiffness * Eigen::Matrix3d::Identity());
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    if (world.regions.at<RegionIdentity>(region).tool == tool) {
-      balance.stiffness += contact_stiffness(world, region, center);
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    if (state.regions.at<RegionIdentity>(region).tool == tool) {
+      balance.stiffness += contact_stiffness(model, state, region, center);
     }
   }
   balance.wrench << eigen(pull.force + contact.force),
@@ -85,12 +86,12 @@ ToolBalance balance_of(const World& world, std::uint32_t tool, const VirtualCoup
   return balance;
 }
 
-Vector6 last_motion(const World& world, std::uint32_t tool) {
-  if (world.clock.at<Clock>(0).step < 2) {
+Vector6 last_motion(const Model& model, const State& state, std::uint32_t tool) {
+  if (state.clock.step < 2) {
     return Vector6::Zero();
   }
-  const ToolPose& pose = world.tools.at<ToolPose>(tool);
-  const glm::dvec3& center = world.tools.at<MassProperties>(tool).center;
+  const ToolPose& pose = state.tools.at<ToolPose>(tool);
+  const glm::dvec3& center = model.tools.at<MassProperties>(tool).center;
   Vector6 last;
   last << eigen(to_outer(pose.now, center) - to_outer(pose.before, center)),
       eigen(turn_between(pose.before.rotation, pose.now.rotation));
@@ -104,9 +105,9 @@ double safe_share(const Vector6& motion, bool touches) {
                   widest / std::max(motion.tail<3>().norm(), widest));
 }
 
-Pose moved(const World& world, std::uint32_t tool, const Vector6& motion) {
-  const Pose& now = world.tools.at<ToolPose>(tool).now;
-  const glm::dvec3 center = world.tools.at<ToolMotion>(tool).mass_center;
+Pose moved(const State& state, std::uint32_t tool, const Vector6& motion) {
+  const Pose& now = state.tools.at<ToolPose>(tool).now;
+  const glm::dvec3 center = state.tools.at<ToolMotion>(tool).mass_center;
   const glm::dvec3 shift(motion[0], motion[1], motion[2]);
   const glm::dvec3 turn(motion[3], motion[4], motion[5]);
   const double angle = glm::length(turn);

@@ -12,9 +12,9 @@ namespace torsion {
 namespace {
 
 /// Moments of inertia about the mass centre, world axes, kg m^2.
-glm::dmat3 world_inertia(const World& world, std::uint32_t tool) {
-  const glm::dmat3 to_world = glm::mat3_cast(world.tools.at<ToolPose>(tool).now.rotation);
-  return to_world * world.tools.at<MassProperties>(tool).inertia * glm::transpose(to_world);
+glm::dmat3 world_inertia(const Model& model, const State& state, std::uint32_t tool) {
+  const glm::dmat3 to_world = glm::mat3_cast(state.tools.at<ToolPose>(tool).now.rotation);
+  return to_world * model.tools.at<MassProperties>(tool).inertia * glm::transpose(to_world);
 }
 
 }  // namespace
@@ -26,14 +26,14 @@ ToolDamping choose_damping(const VirtualCoupling& coupling, const MassProperties
           kOfCritical * 2.0 * std::sqrt(coupling.turn_stiffness * inertia)};
 }
 
-Pose next_heavy_tool_pose(const World& world, std::uint32_t tool, const VirtualCoupling& coupling,
-                          const Pose& handle) {
-  const MassProperties& properties = world.tools.at<MassProperties>(tool);
-  const double h = world.clock.at<Clock>(0).dt;
-  const ToolBalance balance = balance_of(world, tool, coupling, handle);
-  const Vector6 velocity = last_motion(world, tool) / h;
+Pose next_heavy_tool_pose(const Model& model, const State& state, std::uint32_t tool,
+                          const VirtualCoupling& coupling, const Pose& handle) {
+  const MassProperties& properties = model.tools.at<MassProperties>(tool);
+  const double h = state.clock.dt;
+  const ToolBalance balance = balance_of(model, state, tool, coupling, handle);
+  const Vector6 velocity = last_motion(model, state, tool) / h;
   const ToolDamping tool_damping = choose_damping(coupling, properties);
-  const glm::dmat3 inertia = world_inertia(world, tool);
+  const glm::dmat3 inertia = world_inertia(model, state, tool);
   Matrix6 mass = Matrix6::Zero();
   mass.topLeftCorner<3, 3>() = properties.mass * Eigen::Matrix3d::Identity();
   for (int column = 0; column < 3; ++column) {
@@ -50,9 +50,9 @@ Pose next_heavy_tool_pose(const World& world, std::uint32_t tool, const VirtualC
   system.diagonal() += damping;
   const Vector6 motion = h * solve_ldlt(system, mass / h * velocity + wrench);
   if (!motion.allFinite()) {
-    return world.tools.at<ToolPose>(tool).now;
+    return state.tools.at<ToolPose>(tool).now;
   }
-  return moved(world, tool, safe_share(motion, balance.touches) * motion);
+  return moved(state, tool, safe_share(motion, balance.touches) * motion);
 }
 
 }  // namespace torsion

@@ -25,7 +25,7 @@ ToolDamping choose_damping(const VirtualCoupling& coupling, const MassProperties
 /// nothing. Source: Otaduy & Lin, 2006.
 /// @param tool    row in `tools`; its pose and wrench are those of the last step
 /// @param handle  pose that the handle asks of the tool's frame, world
-Pose next_heavy_tool_pose(const World& world, std::uint32_t tool, const VirtualCoupling& coupling,
-                          const Pose& handle);
+Pose next_heavy_tool_pose(const Model& model, const State& state, std::uint32_t tool,
+                          const VirtualCoupling& coupling, const Pose& handle);
 
 }  // namespace torsion

@@ -23,12 +23,12 @@ double share_of_step(const Matrix6& stiffness, const Vector6& last, const Vector
 
 }  // namespace
 
-Pose next_tool_pose(const World& world, std::uint32_t tool, const VirtualCoupling& coupling,
-                    const Pose& handle) {
-  const Pose& now = world.tools.at<ToolPose>(tool).now;
-  const ToolBalance balance = balance_of(world, tool, coupling, handle);
+Pose next_tool_pose(const Model& model, const State& state, std::uint32_t tool,
+                    const VirtualCoupling& coupling, const Pose& handle) {
+  const Pose& now = state.tools.at<ToolPose>(tool).now;
+  const ToolBalance balance = balance_of(model, state, tool, coupling, handle);
   Vector6 step = solve_ldlt(balance.stiffness, balance.wrench);
-  step *= share_of_step(balance.stiffness, last_motion(world, tool), step);
+  step *= share_of_step(balance.stiffness, last_motion(model, state, tool), step);
   if (!step.allFinite()) {
     return now;
   }
@@ -36,7 +36,7 @@ Pose next_tool_pose(const World& world, std::uint32_t tool, const VirtualCouplin
   if (!balance.touches && share == 1.0) {
     return handle;
   }
-  return moved(world, tool, share * step);
+  return moved(state, tool, share * step);
 }
 
 }  // namespace torsion

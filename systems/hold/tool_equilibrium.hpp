@@ -13,7 +13,7 @@ namespace torsion {
 /// @param tool    row in `tools`; its pose and wrench are those of the last step
 /// @param handle  pose that the handle asks of the tool's frame, world
 /// @return the tool's pose for the next step
-Pose next_tool_pose(const World& world, std::uint32_t tool, const VirtualCoupling& coupling,
-                    const Pose& handle);
+Pose next_tool_pose(const Model& model, const State& state, std::uint32_t tool,
+                    const VirtualCoupling& coupling, const Pose& handle);
 
 }  // namespace torsion

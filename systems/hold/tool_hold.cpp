@@ -7,23 +7,23 @@
 
 namespace torsion {
 
-Pose next_held_pose(const World& world, std::uint32_t tool, ToolHold hold,
+Pose next_held_pose(const Model& model, const State& state, std::uint32_t tool, ToolHold hold,
                     const VirtualCoupling& coupling, const Pose& handle) {
   switch (hold) {
     case ToolHold::kMassless:
-      return next_tool_pose(world, tool, coupling, handle);
+      return next_tool_pose(model, state, tool, coupling, handle);
     case ToolHold::kMass:
-      return next_heavy_tool_pose(world, tool, coupling, handle);
+      return next_heavy_tool_pose(model, state, tool, coupling, handle);
     case ToolHold::kDirect:
       break;
   }
   return handle;
 }
 
-Wrench wrench_about_frame(const World& world, std::uint32_t tool) {
-  const Wrench& total = world.tools.at<ToolWrench>(tool).total;
+Wrench wrench_about_frame(const State& state, std::uint32_t tool) {
+  const Wrench& total = state.tools.at<ToolWrench>(tool).total;
   const glm::dvec3 arm =
-      world.tools.at<ToolMotion>(tool).mass_center - world.tools.at<ToolPose>(tool).now.position;
+      state.tools.at<ToolMotion>(tool).mass_center - state.tools.at<ToolPose>(tool).now.position;
   return {total.force, total.torque + glm::cross(arm, total.force)};
 }
 

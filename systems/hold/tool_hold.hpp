@@ -20,11 +20,11 @@ inline constexpr std::array<std::string_view, 3> kToolHoldNames = {"massless", "
 /// Where the tool goes next.
 /// @param tool    row in `tools`; its pose and wrench are those of the last step
 /// @param handle  pose that the handle asks of the tool's frame, world
-Pose next_held_pose(const World& world, std::uint32_t tool, ToolHold hold,
+Pose next_held_pose(const Model& model, const State& state, std::uint32_t tool, ToolHold hold,
                     const VirtualCoupling& coupling, const Pose& handle);
 
 /// What the contacts do to the tool, about its frame's origin, world axes.
-Wrench wrench_about_frame(const World& world, std::uint32_t tool);
+Wrench wrench_about_frame(const State& state, std::uint32_t tool);
 
 /// What the hand is to feel, about the handle's origin, world axes: the coupling's spring, or held
 /// directly the contacts, brought smoothly below the coupling's largest force and torque.

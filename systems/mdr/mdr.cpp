@@ -32,13 +32,13 @@ double pressure_share(double square, double flat_share) {
 
 /// Pressure and what sticks for those who draw it and count cells.
 /// @param stick_radius  over the contact's
-void set_cells(World& world, std::uint32_t region, const RoundContact& contact,
+void set_cells(const Model& model, State& state, std::uint32_t region, const RoundContact& contact,
                double stick_radius) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
-  const auto cells = world.cells.rows<CellGeometry>(identity.cells);
-  const auto tractions = world.cells.rows<CellTraction>(identity.cells);
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const std::uint32_t side = model.settings.grid_side;
+  const auto cells = state.cells.rows<CellGeometry>(identity.cells);
+  const auto tractions = state.cells.rows<CellTraction>(identity.cells);
   const double pressure =
       contact.radius > 0.0 ? contact.force / (pi * contact.radius * contact.radius) : 0.0;
   const double per_radius = 1.0 / std::max(contact.radius, 1e-300);
@@ -64,12 +64,13 @@ glm::dvec2 slide_at(const RegionMotion& motion, const glm::dvec2& center) {
 }
 
 /// What the layers are asked, of the motion since the last step.
-MdrContact layers_contact(const World& world, std::uint32_t region, const RoundContact& round) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const RegionMotion& motion = world.regions.at<RegionMotion>(region);
-  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
-  const Friction& friction = world.bodies.at<Friction>(identity.body);
-  const double kinetic_share = world.regions.at<MdrState>(region).kinetic_share;
+MdrContact layers_contact(const Model& model, const State& state, std::uint32_t region,
+                          const RoundContact& round) {
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  const RegionMotion& motion = state.regions.at<RegionMotion>(region);
+  const Elasticity& elasticity = model.bodies.at<Elasticity>(identity.body);
+  const Friction& friction = model.bodies.at<Friction>(identity.body);
+  const double kinetic_share = state.regions.at<MdrState>(region).kinetic_share;
   MdrContact contact;
   contact.radius = round.radius;
   contact.force = round.force;
@@ -101,17 +102,17 @@ void move_friction(const MdrContact& contact, double slipped, double& kinetic_sh
 }
 
 /// The contact's middle on the body's rest surface, m, body.
-glm::dvec3 middle_of(const World& world, std::uint32_t region, const RoundContact& round) {
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const double height = body_to_grid(frame, world.regions.at<RegionGeometry>(region).rest_point).z;
+glm::dvec3 middle_of(const State& state, std::uint32_t region, const RoundContact& round) {
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const double height = body_to_grid(frame, state.regions.at<RegionGeometry>(region).rest_point).z;
   return grid_to_body(frame, {round.center, height});
 }
 
 /// Where the contact is, for the systems after this one.
-void set_geometry(World& world, std::uint32_t region, const RoundContact& round) {
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-  geometry.rest_point = middle_of(world, region, round);
+void set_geometry(State& state, std::uint32_t region, const RoundContact& round) {
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+  geometry.rest_point = middle_of(state, region, round);
   geometry.equivalent_point = geometry.rest_point - frame.normal * round.depth;
   geometry.radius = round.radius;
   geometry.area = pi * round.radius * round.radius;
@@ -157,7 +158,8 @@ glm::dvec4 stiffness_of(const Outcome& outcome, double modulus) {
 
 /// A contact on a body that gives way, and what it was asked.
 struct Balance {
-  const World& world;
+  const Model& model;
+  const State& state;
   std::uint32_t region;
   const Springs& springs;
   RoundContact seen;  // when the body has not given way in this step
@@ -169,7 +171,7 @@ struct Balance {
   /// @param motion  along x and y, turning times the radius, and the depth, m
   ContactLoads load_at(const glm::dvec4& motion, Outcome& outcome) const {
     outcome.round = pressed_to(motion.w, modulus, seen);
-    outcome.contact = layers_contact(world, region, outcome.round);
+    outcome.contact = layers_contact(model, state, region, outcome.round);
     outcome.contact.slide = glm::dvec2(motion);
     outcome.contact.spin = motion.z / turns.z;
     outcome.forces = move_springs(springs, outcome.round, outcome.contact);
@@ -196,7 +198,7 @@ ContactLoads settle(const Balance& balance, const OwnAnswer& body, const glm::dv
   for (int column = 0; column < 4; ++column) {
     compliance[column] *= turns[column] * turns;
   }
-  outcome.contact = layers_contact(balance.world, balance.region, seen);
+  outcome.contact = layers_contact(balance.model, balance.state, balance.region, seen);
   const glm::dvec4 free =
       turns * glm::dvec4(outcome.contact.slide, outcome.contact.spin, seen.depth);
   const glm::dvec4 stiffness = stiffness_of(outcome, balance.modulus);
@@ -235,81 +237,83 @@ ContactLoads settle(const Balance& balance, const OwnAnswer& body, const glm::dv
 }
 
 /// The contact and its springs in this step, with the body's answer to them where it is known.
-Outcome find_outcome(World& world, std::uint32_t region, const Springs& springs) {
-  RegionSupport& support = world.regions.at<RegionSupport>(region);
+Outcome find_outcome(const Model& model, State& state, std::uint32_t region,
+                     const Springs& springs) {
+  RegionSupport& support = state.regions.at<RegionSupport>(region);
   support.translation_step = support.rotation_step = glm::dvec3(0.0);  // region_motion has it
   Outcome outcome;
-  outcome.round = round_contact(world, region);
+  outcome.round = round_contact(model, state, region);
   if (outcome.round.force <= 0.0) {
     return outcome;
   }
-  const OwnAnswer body = own_answer(world, region, middle_of(world, region, outcome.round));
+  const OwnAnswer body = own_answer(model, state, region, middle_of(state, region, outcome.round));
   if (!body.any) {
-    outcome.contact = layers_contact(world, region, outcome.round);
+    outcome.contact = layers_contact(model, state, region, outcome.round);
     outcome.forces = move_springs(springs, outcome.round, outcome.contact);
     return outcome;
   }
   const double modulus =
-      world.bodies.at<Elasticity>(world.regions.at<RegionIdentity>(region).body).contact_modulus();
-  const Balance balance{world,         region,  springs,
-                        outcome.round, modulus, {1.0, 1.0, outcome.round.radius, 1.0}};
-  const RegionFriction& friction = world.regions.at<RegionFriction>(region);
+      model.bodies.at<Elasticity>(state.regions.at<RegionIdentity>(region).body).contact_modulus();
+  const Balance balance{
+      model, state, region, springs, outcome.round, modulus, {1.0, 1.0, outcome.round.radius, 1.0}};
+  const RegionFriction& friction = state.regions.at<RegionFriction>(region);
   const ContactLoads more =
       settle(balance, body, -glm::dvec3(friction.force, friction.couple), outcome);
-  const RegionMotion& motion = world.regions.at<RegionMotion>(region);
+  const RegionMotion& motion = state.regions.at<RegionMotion>(region);
   const glm::dvec2 slide = slide_at(motion, outcome.round.center) - outcome.contact.slide;
-  move_by_own_answer(world, region, body, more,
+  move_by_own_answer(model, state, region, body, more,
                      ContactLoads(slide, motion.spin - outcome.contact.spin, 0.0));
   return outcome;
 }
 
 void move_region(StepContext& context, const MdrTables& tables, std::uint32_t region) {
-  World& world = context.world;
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  MdrState& state = world.regions.at<MdrState>(region);
-  RegionNormal& normal = world.regions.at<RegionNormal>(region);
-  RegionFriction& tangential = world.regions.at<RegionFriction>(region);
+  const Model& model = context.model;
+  State& state = context.state;
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  MdrState& own = state.regions.at<MdrState>(region);
+  RegionNormal& normal = state.regions.at<RegionNormal>(region);
+  RegionFriction& tangential = state.regions.at<RegionFriction>(region);
   const auto layers =
-      world.mdr_layers.rows<MdrLayer>({block_of(identity) * kMdrLayers, kMdrLayers});
-  Springs springs{tables, {state.flat_share, state.elongation}, state.radius, {}, layers};
+      state.mdr_layers.rows<MdrLayer>({block_of(identity) * kMdrLayers, kMdrLayers});
+  Springs springs{tables, {own.flat_share, own.elongation}, own.radius, {}, layers};
   std::ranges::copy(layers, springs.before.begin());
-  const Outcome outcome = find_outcome(world, region, springs);
+  const Outcome outcome = find_outcome(model, state, region, springs);
   const RoundContact& round = outcome.round;
   const MdrForces& forces = outcome.forces;
   normal = RegionNormal{};
   tangential = RegionFriction{};
   if (round.force <= 0.0) {
     std::ranges::fill(layers, MdrLayer{});
-    state = MdrState{};
-    set_cells(world, region, round, 0.0);
+    own = MdrState{};
+    set_cells(model, state, region, round, 0.0);
     return;
   }
-  state.radius = round.radius;
-  state.flat_share = round.pressure.flat_share;
-  state.elongation = round.pressure.elongation;
-  move_friction(outcome.contact, forces.slipped, state.kinetic_share);
+  own.radius = round.radius;
+  own.flat_share = round.pressure.flat_share;
+  own.elongation = round.pressure.elongation;
+  move_friction(outcome.contact, forces.slipped, own.kinetic_share);
   normal.force = round.force;
   normal.stiffness =
-      normal_slope(round, world.bodies.at<Elasticity>(identity.body).contact_modulus());
+      normal_slope(round, model.bodies.at<Elasticity>(identity.body).contact_modulus());
   tangential.force = forces.force;
   tangential.couple = forces.couple;
   tangential.stick_share = forces.stick_radius * forces.stick_radius;
   tangential.stick_radius = forces.stick_radius * round.radius;
   tangential.stick_turn = layers.back().turn;
-  set_geometry(world, region, round);
-  set_cells(world, region, round, forces.stick_radius);
+  set_geometry(state, region, round);
+  set_cells(model, state, region, round, forces.stick_radius);
 }
 
-std::span<MdrLayer> layers_of(World& world, std::uint32_t block) {
-  return world.mdr_layers.rows<MdrLayer>({block * kMdrLayers, kMdrLayers});
+std::span<MdrLayer> layers_of(State& state, std::uint32_t block) {
+  return state.mdr_layers.rows<MdrLayer>({block * kMdrLayers, kMdrLayers});
 }
 
-void forget_layers(World& world, std::uint32_t block) {
-  std::ranges::fill(layers_of(world, block), MdrLayer{});
+void forget_layers(const Model& /*model*/, State& state, std::uint32_t block) {
+  std::ranges::fill(layers_of(state, block), MdrLayer{});
 }
 
-void turn_layers(World& world, std::uint32_t region, const glm::dmat2& back) {
-  for (MdrLayer& layer : layers_of(world, block_of(world.regions.at<RegionIdentity>(region)))) {
+void turn_layers(State& state, std::uint32_t region, const glm::dmat2& back) {
+  for (MdrLayer& layer : layers_of(state, block_of(state.regions.at<RegionIdentity>(region)))) {
     layer.shift = back * layer.shift;
   }
 }
@@ -339,10 +343,11 @@ const ContactLaw kMdrLaw{
 };
 
 void mdr_forces(StepContext& context) {
-  World& world = context.world;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
-    if (world.bodies.at<BodyModels>(body).contact == ContactModel::kMdr) {
+  const Model& model = context.model;
+  State& state = context.state;
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    const std::uint32_t body = state.regions.at<RegionIdentity>(region).body;
+    if (model.bodies.at<BodyModels>(body).contact == ContactModel::kMdr) {
       move_region(context, context.mdr, region);
     }
   }

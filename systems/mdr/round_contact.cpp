@@ -57,13 +57,13 @@ RoundContact contact_of_shapes(const SmoothContact& smooth, const Elasticity& el
 /// would be, it ends there, and the rest of the depth presses like a flat stamp: a half-space gives
 /// way to a stamp by d at 2 E* a d, to a ball at (4/3) E* a d, and to a cylinder between two edges
 /// in between.
-RoundContact contact_of_cells(const World& world, std::uint32_t region,
+RoundContact contact_of_cells(const Model& model, const State& state, std::uint32_t region,
                               const Elasticity& elasticity) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-  const ContactShape shape = fit_contact_shape(world.regions.at<RegionFrame>(region),
-                                               world.settings.at<Settings>(0).grid_side,
-                                               world.cells.rows<CellGeometry>(identity.cells));
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  const RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+  const ContactShape shape =
+      fit_contact_shape(state.regions.at<RegionFrame>(region), model.settings.grid_side,
+                        state.cells.rows<CellGeometry>(identity.cells));
   RoundContact contact;
   if (shape.depth <= 0.0 || geometry.area <= 0.0) {
     return contact;
@@ -110,24 +110,24 @@ RoundContact mix(const RoundContact& cells, const RoundContact& shapes, double s
 
 }  // namespace
 
-RoundContact round_contact(const World& world, std::uint32_t region) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
-  const SmoothContact& smooth = world.regions.at<SmoothContact>(region);
+RoundContact round_contact(const Model& model, const State& state, std::uint32_t region) {
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  const Elasticity& elasticity = model.bodies.at<Elasticity>(identity.body);
+  const SmoothContact& smooth = state.regions.at<SmoothContact>(region);
   RoundContact contact;
   if (smooth.share < 1.0) {
-    contact = contact_of_cells(world, region, elasticity);
+    contact = contact_of_cells(model, state, region, elasticity);
   }
   if (smooth.share > 0.0) {
     contact = mix(contact, contact_of_shapes(smooth, elasticity), smooth.share);
   }
   // A body model in series has the body's thickness itself.
-  const bool in_series = body_law_of(world, identity.body).moves_as_a_whole;
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const bool in_series = body_law_of(model, identity.body).moves_as_a_whole;
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const double thickness =
       in_series ? 0.0
-                : layer_thickness(world, identity.body, frame.normal,
-                                  world.regions.at<RegionGeometry>(region).rest_point);
+                : layer_thickness(model, identity.body, frame.normal,
+                                  state.regions.at<RegionGeometry>(region).rest_point);
   if (thickness > 0.0) {
     contact.force *= layer_force_share(contact.radius / thickness, elasticity.poisson_ratio);
   }

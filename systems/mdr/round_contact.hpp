@@ -25,7 +25,7 @@ struct RoundContact {
 };
 
 /// From the shapes where those are known, else from the region's cells.
-RoundContact round_contact(const World& world, std::uint32_t region);
+RoundContact round_contact(const Model& model, const State& state, std::uint32_t region);
 
 /// dF/dd, which of all round contacts is 2 E* a. Source: Popov and Hess, 2015, 2.2.
 /// @param modulus  E*, Pa

@@ -63,7 +63,7 @@ struct Nearest {
   double other = 1e300;  // m
 };
 
-Nearest nearest_part(const World& world, Range parts, const Pose& grid, const glm::dvec3& point) {
+Nearest nearest_part(const Model& model, Range parts, const Pose& grid, const glm::dvec3& point) {
   Nearest nearest;
   nearest.row = parts.first;
   if (parts.count < 2) {
@@ -72,7 +72,7 @@ Nearest nearest_part(const World& world, Range parts, const Pose& grid, const gl
   const glm::dvec3 place = to_outer(grid, point);
   double least = 1e300;
   for (std::uint32_t row = parts.first; row < parts.first + parts.count; ++row) {
-    const double distance = signed_distance(world, Range{row, 1}, place).value;
+    const double distance = signed_distance(model, Range{row, 1}, place).value;
     if (distance < least) {
       nearest = {row, least};
       least = distance;
@@ -219,16 +219,16 @@ double beyond_paraboloid(const PlacedPart& tool, const PlacedPart& body, const C
 /// @param at  out: the deepest place, when share > 0
 SmoothContact find_contact(const Grid& grid, const RegionGeometry& geometry,
                            std::optional<CommonNormal>& at) {
-  const World& world = grid.world;
+  const Model& model = grid.model;
   const Pose in_tool = grid_in_tool(grid);
   const Pose in_body = grid_in_body(grid.frame);
   const glm::dvec3 start = body_to_grid(grid.frame, geometry.equivalent_point);
   const Nearest of_tool =
-      nearest_part(world, world.tools.at<OwnedRows>(grid.identity.tool).parts, in_tool, start);
+      nearest_part(model, model.tools.at<OwnedRows>(grid.identity.tool).parts, in_tool, start);
   const Nearest of_body =
-      nearest_part(world, world.bodies.at<OwnedRows>(grid.identity.body).parts, in_body, start);
-  const ShapePart& tool_part = world.parts.at<ShapePart>(of_tool.row);
-  const ShapePart& body_part = world.parts.at<ShapePart>(of_body.row);
+      nearest_part(model, model.bodies.at<OwnedRows>(grid.identity.body).parts, in_body, start);
+  const ShapePart& tool_part = model.parts.at<ShapePart>(of_tool.row);
+  const ShapePart& body_part = model.parts.at<ShapePart>(of_body.row);
   SmoothContact contact;
   if (tool_part.kind == ShapeKind::kMesh || body_part.kind == ShapeKind::kMesh) {
     return contact;
@@ -296,14 +296,15 @@ glm::dvec2 move_region_to(const CommonNormal& at, double share, RegionFrame& fra
 }  // namespace
 
 void mdr_contacts(StepContext& context) {
-  World& world = context.world;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+  const Model& model = context.model;
+  State& state = context.state;
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
     const Grid grid = grid_of(context, region);
-    if (world.bodies.at<BodyModels>(grid.identity.body).contact != ContactModel::kMdr) {
+    if (model.bodies.at<BodyModels>(grid.identity.body).contact != ContactModel::kMdr) {
       continue;
     }
-    RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-    SmoothContact& contact = world.regions.at<SmoothContact>(region);
+    RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+    SmoothContact& contact = state.regions.at<SmoothContact>(region);
     std::optional<CommonNormal> at;
     contact = geometry.area > 0.0 ? find_contact(grid, geometry, at) : SmoothContact{};
     if (contact.share > 0.0 && contact.depth > 0.0) {

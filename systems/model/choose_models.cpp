@@ -58,17 +58,17 @@ struct Touch {
 };
 
 /// That part on whose surface a point of its owner's frame lies, or next to it.
-const ShapePart& part_at(const World& world, Range parts, const glm::dvec3& point) {
+const ShapePart& part_at(const Model& model, Range parts, const glm::dvec3& point) {
   std::uint32_t at = parts.first;
   double nearest = 1e300;
   for (std::uint32_t row = parts.first; row < parts.first + parts.count; ++row) {
-    const double distance = std::abs(signed_distance(world, {row, 1}, point).value);
+    const double distance = std::abs(signed_distance(model, {row, 1}, point).value);
     if (distance < nearest) {
       nearest = distance;
       at = row;
     }
   }
-  return world.parts.at<ShapePart>(at);
+  return model.parts.at<ShapePart>(at);
 }
 
 /// Whether the body's surface has an edge nearer to `point` than the next sample, so that it cuts
@@ -90,17 +90,17 @@ bool makes_long_contacts(ShapeKind kind) {
 }
 
 /// @param before  of the pose before
-void touch_with_tool(const World& world, std::uint32_t body, std::uint32_t tool, const Pose& pose,
+void touch_with_tool(const Model& model, std::uint32_t body, std::uint32_t tool, const Pose& pose,
                      std::span<const TouchedPlace> before, Touch& touch) {
-  const Pose& body_pose = world.bodies.at<Pose>(body);
-  const Range parts = world.bodies.at<OwnedRows>(body).parts;
-  const OwnedRows& owned = world.tools.at<OwnedRows>(tool);
+  const Pose& body_pose = model.bodies.at<Pose>(body);
+  const Range parts = model.bodies.at<OwnedRows>(body).parts;
+  const OwnedRows& owned = model.tools.at<OwnedRows>(tool);
   std::vector<TouchingPoint> points;
-  for (const SurfaceSample& sample : world.samples.rows<SurfaceSample>(owned.samples)) {
+  for (const SurfaceSample& sample : model.samples.rows<SurfaceSample>(owned.samples)) {
     const glm::dvec3 point = to_inner(body_pose, to_outer(pose, sample.position));
-    const Distance distance = signed_distance(world, parts, point);
+    const Distance distance = signed_distance(model, parts, point);
     if (distance.value < 0.0) {
-      const ShapePart& part = part_at(world, owned.parts, sample.position);
+      const ShapePart& part = part_at(model, owned.parts, sample.position);
       touch.points.push_back(point);
       points.push_back({point, sample.position, -distance.value, &part});
       if (-distance.value > touch.depth) {
@@ -109,24 +109,24 @@ void touch_with_tool(const World& world, std::uint32_t body, std::uint32_t tool,
       }
       const ShapeKind kind = part.kind;
       touch.smooth = touch.smooth &&
-                     !near_edge(part_at(world, parts, point), point, sample.spacing) &&
+                     !near_edge(part_at(model, parts, point), point, sample.spacing) &&
                      (kind == ShapeKind::kSphere || kind == ShapeKind::kEllipsoid ||
                       kind == ShapeKind::kCapsule);
       touch.round = touch.round && kind == ShapeKind::kSphere;
     }
   }
   const glm::dquat tool_to_body = glm::conjugate(body_pose.rotation) * pose.rotation;
-  for (const TouchedPlace& place : touched_places(world, body, tool, pose, points, before)) {
+  for (const TouchedPlace& place : touched_places(model, body, tool, pose, points, before)) {
     touch.rolled = std::max(touch.rolled, rolled_way(place, tool_to_body));
     touch.places.push_back(place);
   }
 }
 
-Touch touch_with_tools(const World& world, std::uint32_t body, std::span<const Pose> poses,
+Touch touch_with_tools(const Model& model, std::uint32_t body, std::span<const Pose> poses,
                        std::span<const TouchedPlace> before) {
   Touch touch;
-  for (std::uint32_t tool = 0; tool < world.tools.size(); ++tool) {
-    touch_with_tool(world, body, tool, poses[tool], before, touch);
+  for (std::uint32_t tool = 0; tool < model.tools.size(); ++tool) {
+    touch_with_tool(model, body, tool, poses[tool], before, touch);
   }
   for (const glm::dvec3& point : touch.points) {
     touch.center += point / static_cast<double>(touch.points.size());
@@ -135,8 +135,8 @@ Touch touch_with_tools(const World& world, std::uint32_t body, std::span<const P
 }
 
 /// Distance from `point` to what holds the body, m.
-double distance_to_fixed(const World& world, std::uint32_t body, const glm::dvec3& point) {
-  const FixedRegion& fixed = world.bodies.at<FixedRegion>(body);
+double distance_to_fixed(const Model& model, std::uint32_t body, const glm::dvec3& point) {
+  const FixedRegion& fixed = model.bodies.at<FixedRegion>(body);
   return fixed.kind == FixedKind::kFace ? std::abs(glm::dot(point - fixed.point, fixed.normal))
                                         : glm::distance(point, fixed.point);
 }
@@ -187,12 +187,12 @@ double spin_between(const Pose& from, const Pose& to, const glm::dvec3& normal) 
   return 2.0 * std::abs(glm::dot(glm::dvec3(turn.x, turn.y, turn.z), normal));
 }
 
-bool slides_while_turning(const World& world, std::uint32_t body, const Touch& before,
+bool slides_while_turning(const Model& model, std::uint32_t body, const Touch& before,
                           const Touch& after, double radius, std::span<const Pose> poses_before,
                           std::span<const Pose> poses_after) {
   const glm::dvec3 way = after.center - before.center;
   const double slide = glm::length(way - after.normal * glm::dot(way, after.normal));
-  const glm::dvec3 axis = world.bodies.at<Pose>(body).rotation * after.normal;
+  const glm::dvec3 axis = model.bodies.at<Pose>(body).rotation * after.normal;
   double spin = 0.0;
   for (std::size_t tool = 0; tool < poses_after.size(); ++tool) {
     spin = std::max(spin, spin_between(poses_before[tool], poses_after[tool], axis));
@@ -255,18 +255,18 @@ std::pair<BodyModel, std::string> auto_body(const ExpectedContact& contact, doub
 
 }  // namespace
 
-ExpectedContact expect_contact(const World& world, std::uint32_t body,
+ExpectedContact expect_contact(const Model& model, std::uint32_t body,
                                std::span<const std::vector<Pose>> poses) {
   ExpectedContact contact;
   contact.known = !poses.empty();
   contact.body_depth = 1e300;
-  const double threshold = world.bodies.at<BodyModels>(body).region_threshold;
+  const double threshold = model.bodies.at<BodyModels>(body).region_threshold;
   const bool body_is_long =
-      std::ranges::any_of(world.parts.rows<ShapePart>(world.bodies.at<OwnedRows>(body).parts),
+      std::ranges::any_of(model.parts.rows<ShapePart>(model.bodies.at<OwnedRows>(body).parts),
                           [](const ShapePart& part) { return makes_long_contacts(part.kind); });
   Touch last;
   for (std::size_t time = 0; time < poses.size(); ++time) {
-    Touch touch = touch_with_tools(world, body, poses[time], last.places);
+    Touch touch = touch_with_tools(model, body, poses[time], last.places);
     if (!touch.points.empty()) {
       const auto [radius, regions] = extent_of_groups(touch.points, threshold);
       for (const glm::dvec3& point : touch.points) {
@@ -284,9 +284,9 @@ ExpectedContact expect_contact(const World& world, std::uint32_t body,
       contact.radius = std::max(contact.radius, radius);
       contact.rolled = std::max(contact.rolled, touch.rolled / radius);
       contact.body_depth =
-          std::min(contact.body_depth, distance_to_fixed(world, body, touch.center));
+          std::min(contact.body_depth, distance_to_fixed(model, body, touch.center));
       contact.slides = contact.slides || (!last.points.empty() &&
-                                          slides_while_turning(world, body, last, touch, radius,
+                                          slides_while_turning(model, body, last, touch, radius,
                                                                poses[time - 1], poses[time]));
     }
     last = std::move(touch);

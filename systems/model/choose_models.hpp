@@ -28,7 +28,7 @@ struct ExpectedContact {
 /// Looks where the samples of all tools come to lie in `body` on their expected poses.
 /// @param world  shapes, samples, tools and bodies are there
 /// @param poses  (times) of (tools); empty: unknown
-ExpectedContact expect_contact(const World& world, std::uint32_t body,
+ExpectedContact expect_contact(const Model& model, std::uint32_t body,
                                std::span<const std::vector<Pose>> poses);
 
 /// What contact model mdr misses of the torque, over its largest, on such a contact of a body with

@@ -35,7 +35,7 @@ glm::dvec3 outermost(const SurfacePiece& piece, const glm::dvec3& direction,
 }
 
 /// Moves a place from the mean of its points to where the part lies deepest.
-void find_deepest(const World& world, std::uint32_t body, const Pose& pose,
+void find_deepest(const Model& model, std::uint32_t body, const Pose& pose,
                   const TouchingPoint& deepest, TouchedPlace& place) {
   constexpr int kSteps = 4;  // the body's normal is that of the point before
   const ShapePart& part = *deepest.part;
@@ -46,23 +46,23 @@ void find_deepest(const World& world, std::uint32_t body, const Pose& pose,
   if (piece.quadric == glm::dvec3(0.0)) {
     return;
   }
-  const Pose& body_pose = world.bodies.at<Pose>(body);
-  const Range parts = world.bodies.at<OwnedRows>(body).parts;
+  const Pose& body_pose = model.bodies.at<Pose>(body);
+  const Range parts = model.bodies.at<OwnedRows>(body).parts;
   const glm::dquat to_part =
       glm::conjugate(pose.rotation * part.pose.rotation) * body_pose.rotation;
   const glm::dvec3 mean = to_inner(part.pose, place.on_tool);
-  Distance distance = signed_distance(world, parts, deepest.on_body);
+  Distance distance = signed_distance(model, parts, deepest.on_body);
   for (int step = 0; step < kSteps; ++step) {
     const glm::dvec3 point = outermost(piece, to_part * -distance.gradient, mean);
     place.on_tool = to_outer(part.pose, point);
     place.on_body = to_inner(body_pose, to_outer(pose, place.on_tool));
-    distance = signed_distance(world, parts, place.on_body);
+    distance = signed_distance(model, parts, place.on_body);
   }
   place.on_body -= distance.value * distance.gradient;
 }
 
 /// Groups' places, as if each began.
-std::vector<TouchedPlace> new_places(const World& world, std::uint32_t body, std::uint32_t tool,
+std::vector<TouchedPlace> new_places(const Model& model, std::uint32_t body, std::uint32_t tool,
                                      const Pose& pose, std::span<const TouchingPoint> points) {
   std::vector<glm::dvec3> on_body;
   for (const TouchingPoint& point : points) {
@@ -72,7 +72,7 @@ std::vector<TouchedPlace> new_places(const World& world, std::uint32_t body, std
   std::vector<std::uint32_t> parent(points.size());
   std::vector<std::uint32_t> groups(points.size());
   const std::uint32_t count = group_points(
-      on_body, {}, world.bodies.at<BodyModels>(body).region_threshold, order, parent, groups);
+      on_body, {}, model.bodies.at<BodyModels>(body).region_threshold, order, parent, groups);
   std::vector<TouchedPlace> places(count);
   std::vector<const TouchingPoint*> deepest(count, nullptr);
   std::vector<double> depths(count, 0.0);
@@ -90,7 +90,7 @@ std::vector<TouchedPlace> new_places(const World& world, std::uint32_t body, std
     place.tool = tool;
     place.on_body /= depths[group];
     place.on_tool /= depths[group];
-    find_deepest(world, body, pose, *deepest[group], place);
+    find_deepest(model, body, pose, *deepest[group], place);
     place.began_on_body = place.on_body;
     place.began_on_tool = place.on_tool;
   }
@@ -112,10 +112,10 @@ const TouchedPlace* nearest_of(std::span<const TouchedPlace> places, const Touch
 
 }  // namespace
 
-std::vector<TouchedPlace> touched_places(const World& world, std::uint32_t body, std::uint32_t tool,
+std::vector<TouchedPlace> touched_places(const Model& model, std::uint32_t body, std::uint32_t tool,
                                          const Pose& pose, std::span<const TouchingPoint> points,
                                          std::span<const TouchedPlace> before) {
-  std::vector<TouchedPlace> places = new_places(world, body, tool, pose, points);
+  std::vector<TouchedPlace> places = new_places(model, body, tool, pose, points);
   for (TouchedPlace& place : places) {
     const TouchedPlace* const last = nearest_of(before, place);
     if (last != nullptr && nearest_of(places, *last) == &place) {

@@ -33,7 +33,7 @@ struct TouchedPlace {
 /// and one of the pose before are nearest to each other; else it begins.
 /// @param pose    of the tool
 /// @param before  places of the pose before, of all tools
-std::vector<TouchedPlace> touched_places(const World& world, std::uint32_t body, std::uint32_t tool,
+std::vector<TouchedPlace> touched_places(const Model& model, std::uint32_t body, std::uint32_t tool,
                                          const Pose& pose, std::span<const TouchingPoint> points,
                                          std::span<const TouchedPlace> before);
 

@@ -113,97 +113,94 @@ Range append_rows(AnyTable& table, std::span<const T> rows) {
   return *range;
 }
 
-std::uint32_t append_field(World& world, const BuiltField& built) {
+std::uint32_t append_field(Model& model, const BuiltField& built) {
   DistanceField field = built.header;
-  const Range nodes = append_rows<DistanceNode>(world.field_nodes, built.nodes);
-  const Range bricks = append_rows<DistanceBrick>(world.field_bricks, built.bricks);
-  for (DistanceBrick& brick : world.field_bricks.rows<DistanceBrick>(bricks)) {
+  const Range nodes = append_rows<DistanceNode>(model.field_nodes, built.nodes);
+  const Range bricks = append_rows<DistanceBrick>(model.field_bricks, built.bricks);
+  for (DistanceBrick& brick : model.field_bricks.rows<DistanceBrick>(bricks)) {
     brick.first_node += brick.first_node == kNoRow ? 0 : nodes.first;
   }
   field.coarse_nodes.first += nodes.first;
   field.bricks = bricks;
-  return append_rows<DistanceField>(world.fields, {&field, 1}).first;
+  return append_rows<DistanceField>(model.fields, {&field, 1}).first;
 }
 
 /// @param next_field  which of the built fields the next mesh part uses; in and out
-Range append_parts(World& world, std::span<const PartDescription> parts, const Built& built,
+Range append_parts(Model& model, std::span<const PartDescription> parts, const Built& built,
                    std::size_t& next_field) {
-  const Range range{world.parts.size(), static_cast<std::uint32_t>(parts.size())};
+  const Range range{model.parts.size(), static_cast<std::uint32_t>(parts.size())};
   for (const PartDescription& part : parts) {
     ShapePart shape = part.shape;
     shape.field =
-        shape.kind == ShapeKind::kMesh ? append_field(world, built.fields[next_field++]) : kNoRow;
-    append_rows<ShapePart>(world.parts, {&shape, 1});
+        shape.kind == ShapeKind::kMesh ? append_field(model, built.fields[next_field++]) : kNoRow;
+    append_rows<ShapePart>(model.parts, {&shape, 1});
   }
   return range;
 }
 
-double default_threshold(const World& world) {
-  const auto samples = world.samples.column<SurfaceSample>();
+double default_threshold(const Model& model) {
+  const auto samples = model.samples.column<SurfaceSample>();
   const double sum =
       std::transform_reduce(samples.begin(), samples.end(), 0.0, std::plus<>{},
                             [](const SurfaceSample& sample) { return sample.spacing; });
   return samples.empty() ? 0.0 : kThresholdOverSpacing * sum / static_cast<double>(samples.size());
 }
 
-void append_tool(World& world, const ToolDescription& tool, const SampledSurface& surface,
+void append_tool(Model& model, const ToolDescription& tool, const SampledSurface& surface,
                  const Built& built, std::size_t& next_field) {
   OwnedRows owned;
-  owned.parts = append_parts(world, tool.parts, built, next_field);
-  owned.samples = append_rows<SurfaceSample>(world.samples, surface.samples);
-  owned.balls = append_rows<SurfaceBall>(world.balls, surface.balls);
-  const std::uint32_t row = world.tools.append()->first;
-  world.tools.at<ToolPose>(row) = ToolPose{};
-  world.tools.at<ToolMotion>(row) = ToolMotion{};
-  world.tools.at<MassProperties>(row) = tool.mass;
-  world.tools.at<ToolWrench>(row) = ToolWrench{};
-  world.tools.at<OwnedRows>(row) = owned;
-  world.tools.at<Bounds>(row) = bounds_of(tool.parts);
+  owned.parts = append_parts(model, tool.parts, built, next_field);
+  owned.samples = append_rows<SurfaceSample>(model.samples, surface.samples);
+  owned.balls = append_rows<SurfaceBall>(model.balls, surface.balls);
+  const std::uint32_t row = model.tools.append()->first;
+  model.tools.at<MassProperties>(row) = tool.mass;
+  model.tools.at<OwnedRows>(row) = owned;
+  model.tools.at<Bounds>(row) = bounds_of(tool.parts);
 }
 
-void append_body(World& world, const BodyDescription& body, const Built& built,
+void append_body(Model& model, const BodyDescription& body, const Built& built,
                  std::size_t& next_field) {
   OwnedRows owned;
-  owned.parts = append_parts(world, body.parts, built, next_field);
+  owned.parts = append_parts(model, body.parts, built, next_field);
   FixedRegion fixed = body.fixed;
-  fixed.volumes = append_rows<FixedVolume>(world.fixed_volumes, body.fixed_volumes);
-  const std::uint32_t row = world.bodies.append()->first;
-  world.bodies.at<Pose>(row) = body.pose;
-  world.bodies.at<Elasticity>(row) = body.elasticity;
-  world.bodies.at<Friction>(row) = body.friction;
-  world.bodies.at<FixedRegion>(row) = fixed;
-  world.bodies.at<BodyModels>(row) = body.models;
-  world.bodies.at<OwnedRows>(row) = owned;
-  world.bodies.at<Bounds>(row) = bounds_of(body.parts);
+  fixed.volumes = append_rows<FixedVolume>(model.fixed_volumes, body.fixed_volumes);
+  const std::uint32_t row = model.bodies.append()->first;
+  model.bodies.at<Pose>(row) = body.pose;
+  model.bodies.at<Elasticity>(row) = body.elasticity;
+  model.bodies.at<Friction>(row) = body.friction;
+  model.bodies.at<FixedRegion>(row) = fixed;
+  model.bodies.at<BodyModels>(row) = body.models;
+  model.bodies.at<OwnedRows>(row) = owned;
+  model.bodies.at<Bounds>(row) = bounds_of(body.parts);
 }
 
 /// All that knows nothing of models: shapes, bodies, tools.
-void append_scene(World& world, const SceneDescription& scene, const Built& built) {
+void append_scene(Model& model, const SceneDescription& scene, const Built& built) {
   std::size_t next_field = 0;
   for (const BodyDescription& body : scene.bodies) {
-    append_body(world, body, built, next_field);
+    append_body(model, body, built, next_field);
   }
   for (std::size_t tool = 0; tool < scene.tools.size(); ++tool) {
-    append_tool(world, scene.tools[tool], built.surfaces[tool], built, next_field);
+    append_tool(model, scene.tools[tool], built.surfaces[tool], built, next_field);
   }
-  for (BodyModels& models : world.bodies.column<BodyModels>()) {
-    models.region_threshold = std::max(models.region_threshold, default_threshold(world));
+  for (BodyModels& models : model.bodies.column<BodyModels>()) {
+    models.region_threshold = std::max(models.region_threshold, default_threshold(model));
   }
 }
 
-std::vector<ModelChoice> choose_all(const World& world, const PrepareOptions& options) {
+std::vector<ModelChoice> choose_all(const Model& model, const PrepareOptions& options) {
   std::vector<ModelChoice> choices;
-  for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
-    choices.push_back(choose_models(world.bodies.at<BodyModels>(row), options,
-                                    expect_contact(world, row, options.expected_poses),
-                                    world.bodies.at<Elasticity>(row).poisson_ratio));
+  for (std::uint32_t row = 0; row < model.bodies.size(); ++row) {
+    choices.push_back(choose_models(model.bodies.at<BodyModels>(row), options,
+                                    expect_contact(model, row, options.expected_poses),
+                                    model.bodies.at<Elasticity>(row).poisson_ratio));
   }
   return choices;
 }
 
 /// Body model compliance's anchors and matrices of all bodies that have it; empty for the others.
 /// Where it cannot be had and nobody insists on it, the choice becomes skeleton.
-Result<std::vector<PreparedCompliance>> build_compliances(const World& world,
+Result<std::vector<PreparedCompliance>> build_compliances(const Model& model,
                                                           const SceneDescription& scene,
                                                           std::span<ModelChoice> choices,
                                                           const PrepareOptions& options) {
@@ -221,7 +218,7 @@ Result<std::vector<PreparedCompliance>> build_compliances(const World& world,
   for (std::uint32_t row = 0; row < choices.size(); ++row) {
     if (choices[row].models.body == BodyModel::kCompliance) {
       Result<PreparedCompliance> built = prepare_compliance(
-          scene.bodies[row], world, row, choices[row].place, options.use_cache, progress);
+          scene.bodies[row], model, row, choices[row].place, options.use_cache, progress);
       done += 1.0;
       if (!built && choices[row].body_is_auto) {
         choices[row].models.body = BodyModel::kSkeleton;
@@ -238,88 +235,88 @@ Result<std::vector<PreparedCompliance>> build_compliances(const World& world,
 }
 
 /// Whether the contacts of the body see it as a layer.
-bool has_kernel(const World& world, std::uint32_t row, const BodyModels& models) {
-  return models.body == BodyModel::kCompliance && is_layer(world, row);
+bool has_kernel(const Model& model, std::uint32_t row, const BodyModels& models) {
+  return models.body == BodyModel::kCompliance && is_layer(model, row);
 }
 
 /// Whether regions of contact model `patch` may need tables of their own.
-bool has_own_tables(const World& world, std::uint32_t row, const BodyModels& models) {
-  return models.body == BodyModel::kCompliance && (is_layer(world, row) || may_bend(world, row));
+bool has_own_tables(const Model& model, std::uint32_t row, const BodyModels& models) {
+  return models.body == BodyModel::kCompliance && (is_layer(model, row) || may_bend(model, row));
 }
 
 /// Number of rows in `influences` that a body needs: patch's tables, then a layer's kernel.
-std::uint32_t influence_values(const World& world, std::uint32_t row, const BodyModels& models,
+std::uint32_t influence_values(const Model& model, std::uint32_t row, const BodyModels& models,
                                std::uint32_t side) {
   const std::size_t tables = models.contact == ContactModel::kPatch ? influence_count(side) : 0;
-  const std::size_t kernel = has_kernel(world, row, models) ? kLayerKernelSize : 0;
+  const std::size_t kernel = has_kernel(model, row, models) ? kLayerKernelSize : 0;
   return static_cast<std::uint32_t>(tables + kernel);
 }
 
-void append_influences(World& world, std::uint32_t row, const BodyModels& models) {
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
-  const double poisson_ratio = world.bodies.at<Elasticity>(row).poisson_ratio;
+void append_influences(Model& model, std::uint32_t row, const BodyModels& models) {
+  const std::uint32_t side = model.settings.grid_side;
+  const double poisson_ratio = model.bodies.at<Elasticity>(row).poisson_ratio;
   const std::size_t tables = models.contact == ContactModel::kPatch ? influence_count(side) : 0;
-  std::vector<double> values(influence_values(world, row, models, side));
+  std::vector<double> values(influence_values(model, row, models, side));
   if (tables > 0) {
     fill_influences(poisson_ratio, side, std::span(values).first(tables));
   }
   if (values.size() > tables) {
     fill_layer_kernel(poisson_ratio, std::span(values).subspan(tables));
   }
-  const Range rows = *world.influences.append(static_cast<std::uint32_t>(values.size()));
-  world.bodies.at<OwnedRows>(row).influences = rows;
-  std::ranges::transform(values, world.influences.rows<Influence>(rows).begin(),
+  const Range rows = *model.influences.append(static_cast<std::uint32_t>(values.size()));
+  model.bodies.at<OwnedRows>(row).influences = rows;
+  std::ranges::transform(values, model.influences.rows<Influence>(rows).begin(),
                          [](double value) { return Influence{value}; });
 }
 
 /// What the chosen models of a body need.
-void append_models(World& world, std::uint32_t row, const BodyDescription& body,
+void append_models(Model& model, std::uint32_t row, const BodyDescription& body,
                    const PreparedCompliance& compliant, ModelChoice& choice) {
-  OwnedRows& owned = world.bodies.at<OwnedRows>(row);
+  OwnedRows& owned = model.bodies.at<OwnedRows>(row);
   if (!compliant.anchors.empty()) {
-    owned.anchors = append_rows<AnchorRest>(world.anchors, compliant.anchors);
-    owned.ports = append_rows<CompliancePort>(world.ports, compliant.ports);
-    owned.compliance = append_rows<ComplianceValue>(world.compliance, compliant.values);
+    owned.anchors = append_rows<AnchorRest>(model.anchors, compliant.anchors);
+    owned.ports = append_rows<CompliancePort>(model.ports, compliant.ports);
+    owned.compliance = append_rows<ComplianceValue>(model.compliance, compliant.values);
     const auto sections = static_cast<std::uint32_t>(compliant.anchors.size()) * kBeamStations;
-    TORSION_ASSERT(world.sections.append(sections).has_value());
+    append_rows<BeamSection>(model.sections, std::vector<BeamSection>(sections));
   } else if (choice.models.body == BodyModel::kCompliance) {
     choice.models.body = BodyModel::kNone;
     choice.body_why = "hardly any of the body is free";
   }
   if (choice.models.body == BodyModel::kSkeleton) {
-    const Range volumes = world.bodies.at<FixedRegion>(row).volumes;
-    const PreparedAnchors prepared = prepare_anchors(body, world, owned.parts, volumes);
+    const Range volumes = model.bodies.at<FixedRegion>(row).volumes;
+    const PreparedAnchors prepared = prepare_anchors(body, model, owned.parts, volumes);
     if (prepared.anchors.empty()) {
       choice.models.body = BodyModel::kNone;
       choice.body_why = "all of the body is fixed";
     }
-    owned.anchors = append_rows<AnchorRest>(world.anchors, prepared.anchors);
-    append_rows<BeamSection>(world.sections, prepared.sections);
+    owned.anchors = append_rows<AnchorRest>(model.anchors, prepared.anchors);
+    append_rows<BeamSection>(model.sections, prepared.sections);
   }
-  append_influences(world, row, choice.models);
-  world.bodies.at<BodyModels>(row) = choice.models;
+  append_influences(model, row, choice.models);
+  model.bodies.at<BodyModels>(row) = choice.models;
 }
 
 /// Chooses models and fills all tables that depend on them.
 Result<Done> append_choices(PreparedWorld& prepared, const SceneDescription& scene,
                             const PrepareOptions& options, Capacities capacities) {
-  World& world = prepared.world;
-  prepared.choices = choose_all(world, options);
+  Model& model = prepared.world.model;
+  prepared.choices = choose_all(model, options);
   Settings settings = options.settings;
   settings.grid_side =
       settings.grid_side == 0 ? choose_grid_side(prepared.choices) : settings.grid_side;
-  for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
+  for (std::uint32_t row = 0; row < model.bodies.size(); ++row) {
     const BodyModels& models = prepared.choices[row].models;
-    capacities.influences += influence_values(world, row, models, settings.grid_side);
+    capacities.influences += influence_values(model, row, models, settings.grid_side);
     capacities.patch_bodies += models.contact == ContactModel::kPatch ? 1U : 0U;
     capacities.mdr_bodies += models.contact == ContactModel::kMdr ? 1U : 0U;
-    if (models.contact == ContactModel::kPatch && has_own_tables(world, row, models)) {
+    if (models.contact == ContactModel::kPatch && has_own_tables(model, row, models)) {
       capacities.layer_influences =
           static_cast<std::uint32_t>(layer_influence_count(settings.grid_side));
     }
   }
   const Result<std::vector<PreparedCompliance>> compliances =
-      build_compliances(world, scene, prepared.choices, options);
+      build_compliances(model, scene, prepared.choices, options);
   if (!compliances) {
     return compliances.error();
   }
@@ -327,16 +324,12 @@ Result<Done> append_choices(PreparedWorld& prepared, const SceneDescription& sce
     capacities.ports += static_cast<std::uint32_t>(compliant.ports.size());
     capacities.compliance_values += static_cast<std::uint32_t>(compliant.values.size());
   }
-  world.reserve_models(capacities, settings);
-  for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
-    append_models(world, row, scene.bodies[row], compliances.value()[row], prepared.choices[row]);
+  model.reserve_models(capacities, settings);
+  for (std::uint32_t row = 0; row < model.bodies.size(); ++row) {
+    append_models(model, row, scene.bodies[row], compliances.value()[row], prepared.choices[row]);
   }
-  TORSION_ASSERT(world.cells.append(world.cells.capacity()).has_value());
-  TORSION_ASSERT(world.layer_influences.append(world.layer_influences.capacity()).has_value());
-  TORSION_ASSERT(world.footings.append(world.footings.capacity()).has_value());
-  TORSION_ASSERT(world.couplings.append(world.couplings.capacity()).has_value());
-  TORSION_ASSERT(world.mdr_layers.append(world.mdr_layers.capacity()).has_value());
-  TORSION_ASSERT(world.patch_cells.append(world.patch_cells.capacity()).has_value());
+  prepared.world.state.reserve(capacities, settings);
+  prepared.world.state.clock.dt = 1.0 / options.rate;
   return Done{};
 }
 
@@ -388,11 +381,10 @@ Result<PreparedWorld> prepare_world(const SceneDescription& scene, const Prepare
   if (!built) {
     return built.error();
   }
-  World& world = prepared.world;
+  Model& model = prepared.world.model;
   const Capacities capacities = capacities_of(solid, built.value());
-  world.reserve(capacities, Settings{1, 0});
-  world.clock.at<Clock>(0).dt = 1.0 / options.rate;
-  append_scene(world, solid, built.value());
+  model.reserve(capacities, Settings{1, 0});
+  append_scene(model, solid, built.value());
   const Result<Done> done = append_choices(prepared, solid, options, capacities);
   if (!done) {
     return done.error();

@@ -25,7 +25,7 @@ constexpr std::size_t kRays = 48;
 
 /// What every function below reads of one body.
 struct Body {
-  const World& world;
+  const Model& model;
   Range parts;
   FixedRegion fixed;
   std::span<const FixedVolume> volumes;
@@ -55,14 +55,14 @@ bool is_held(const Body& body, const glm::dvec3& point) {
 /// near.
 std::optional<glm::dvec3> on_surface(const Body& body, glm::dvec3 point) {
   for (int i = 0; i < 3; ++i) {
-    const Distance distance = signed_distance(body.world, body.parts, point);
+    const Distance distance = signed_distance(body.model, body.parts, point);
     if (!std::isfinite(distance.value) || std::abs(distance.value) > 0.1 * body.size) {
       return std::nullopt;
     }
     point -= distance.gradient * distance.value;
   }
   // Inside another part: not on the surface of the union.
-  if (std::abs(signed_distance(body.world, body.parts, point).value) > 1e-3 * body.size) {
+  if (std::abs(signed_distance(body.model, body.parts, point).value) > 1e-3 * body.size) {
     return std::nullopt;
   }
   return point;
@@ -179,7 +179,7 @@ RayEnd follow_ray(const Body& body, const glm::dvec3& start, const glm::dvec3& d
   double inside = 0.0;
   double outside = std::numeric_limits<double>::infinity();
   double t = 0.0;
-  Distance distance = signed_distance(body.world, body.parts, start);
+  Distance distance = signed_distance(body.model, body.parts, start);
   for (int i = 0; i < 80; ++i) {
     const double slope = glm::dot(distance.gradient, direction);
     if (i > 0 && std::abs(distance.value) < tolerance) {
@@ -197,14 +197,14 @@ RayEnd follow_ray(const Body& body, const glm::dvec3& start, const glm::dvec3& d
     }
     t += step;
     if (t >= reach && inside < reach && !std::isfinite(outside)) {
-      distance = signed_distance(body.world, body.parts, start + direction * reach);
+      distance = signed_distance(body.model, body.parts, start + direction * reach);
       if (distance.value <= 0.0) {
         return {reach, glm::dvec2(0.0)};
       }
       t = reach;
       continue;
     }
-    distance = signed_distance(body.world, body.parts, start + direction * t);
+    distance = signed_distance(body.model, body.parts, start + direction * t);
   }
   const glm::dvec2 normal(glm::dot(distance.gradient, axes.first),
                           glm::dot(distance.gradient, axes.second));
@@ -291,7 +291,7 @@ void cut_beam(const Body& body, const glm::dvec3& anchor, const glm::dvec3& refe
     const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(kBeamStations);
     const glm::dvec3 point = body.fixed.point + along * share;
     held[k] = in_fixed_volume(body, point);
-    if (signed_distance(body.world, body.parts, point).value >= -1e-4 * length) {
+    if (signed_distance(body.model, body.parts, point).value >= -1e-4 * length) {
       continue;
     }
     cut_section(body, point, axes, length, outline);
@@ -326,13 +326,13 @@ void cut_beam(const Body& body, const glm::dvec3& anchor, const glm::dvec3& refe
 
 }  // namespace
 
-PreparedAnchors prepare_anchors(const BodyDescription& description, const World& world, Range parts,
+PreparedAnchors prepare_anchors(const BodyDescription& description, const Model& model, Range parts,
                                 Range volumes, std::uint32_t count) {
   const Bounds bounds = bounds_of(description.parts);
-  const Body body{world,
+  const Body body{model,
                   parts,
                   description.fixed,
-                  world.fixed_volumes.rows<FixedVolume>(volumes),
+                  model.fixed_volumes.rows<FixedVolume>(volumes),
                   bounds,
                   glm::length(bounds.highest - bounds.lowest)};
   const std::vector<glm::dvec3> anchors =

@@ -22,7 +22,7 @@ struct PreparedAnchors {
 /// @param parts  the body's rows in world.parts
 /// @param volumes  the body's rows in world.fixed_volumes
 /// @param count  how many anchors, 8 to 60
-PreparedAnchors prepare_anchors(const BodyDescription& description, const World& world, Range parts,
+PreparedAnchors prepare_anchors(const BodyDescription& description, const Model& model, Range parts,
                                 Range volumes, std::uint32_t count = kAnchorsPerBody);
 
 }  // namespace torsion

@@ -28,26 +28,26 @@ constexpr double kClampTolerance = 1e-6;  // of the longest side; of a mesh, wha
 
 /// How far beyond a face of the body what is on it may seem to lie, m. The distance to a mesh
 /// rounds edges by up to half a fine cell of its field: a face's rim would not be held.
-double face_tolerance(const World& world, std::uint32_t row) {
-  const Bounds& bounds = world.bodies.at<Bounds>(row);
+double face_tolerance(const Model& model, std::uint32_t row) {
+  const Bounds& bounds = model.bodies.at<Bounds>(row);
   const glm::dvec3 size = bounds.highest - bounds.lowest;
   double tolerance = kClampTolerance * std::max({size.x, size.y, size.z});
-  for (const ShapePart& part : world.parts.rows<ShapePart>(world.bodies.at<OwnedRows>(row).parts)) {
+  for (const ShapePart& part : model.parts.rows<ShapePart>(model.bodies.at<OwnedRows>(row).parts)) {
     if (part.kind == ShapeKind::kMesh) {
-      const DistanceField& field = world.fields.at<DistanceField>(part.field);
+      const DistanceField& field = model.fields.at<DistanceField>(part.field);
       tolerance = std::max(tolerance, 0.5 * field.spacing / field.subdivision);
     }
   }
   return tolerance;
 }
 
-bool is_clamped(const World& world, std::uint32_t row, const glm::dvec3& point) {
-  const FixedRegion& fixed = world.bodies.at<FixedRegion>(row);
-  const Bounds& bounds = world.bodies.at<Bounds>(row);
+bool is_clamped(const Model& model, std::uint32_t row, const glm::dvec3& point) {
+  const FixedRegion& fixed = model.bodies.at<FixedRegion>(row);
+  const Bounds& bounds = model.bodies.at<Bounds>(row);
   const glm::dvec3 size = bounds.highest - bounds.lowest;
   switch (fixed.kind) {
     case FixedKind::kFace:
-      return glm::dot(point - fixed.point, fixed.normal) <= face_tolerance(world, row);
+      return glm::dot(point - fixed.point, fixed.normal) <= face_tolerance(model, row);
     case FixedKind::kPoint:
       return glm::distance(point, fixed.point) <=
              kClampOfPoint * std::min({size.x, size.y, size.z});
@@ -55,7 +55,7 @@ bool is_clamped(const World& world, std::uint32_t row, const glm::dvec3& point) 
       break;
   }
   return std::ranges::any_of(
-      world.fixed_volumes.rows<FixedVolume>(fixed.volumes),
+      model.fixed_volumes.rows<FixedVolume>(fixed.volumes),
       [&point](const FixedVolume& volume) { return in_volume(volume, point); });
 }
 
@@ -195,19 +195,19 @@ Result<Done> holds_walls(const ElasticSolid& solid, double wall, std::uint32_t e
 }  // namespace
 
 Result<PreparedCompliance> prepare_compliance(const BodyDescription& description,
-                                              const World& world, std::uint32_t row,
+                                              const Model& model, std::uint32_t row,
                                               const ExpectedPlace& place, bool use_cache,
                                               const std::function<void(double)>& progress) {
-  const Range parts = world.bodies.at<OwnedRows>(row).parts;
+  const Range parts = model.bodies.at<OwnedRows>(row).parts;
   ElasticSolid solid;
-  solid.signed_distance = [&world, parts](const glm::dvec3& point) {
-    return signed_distance(world, parts, point);
+  solid.signed_distance = [&model, parts](const glm::dvec3& point) {
+    return signed_distance(model, parts, point);
   };
-  solid.bounds = world.bodies.at<Bounds>(row);
-  solid.clamped = [&world, row](const glm::dvec3& point) {
-    return is_clamped(world, row, point);
+  solid.bounds = model.bodies.at<Bounds>(row);
+  solid.clamped = [&model, row](const glm::dvec3& point) {
+    return is_clamped(model, row, point);
   };
-  solid.elasticity = world.bodies.at<Elasticity>(row);
+  solid.elasticity = model.bodies.at<Elasticity>(row);
   const double wall = wall_thickness(solid, sample_solid_surface(solid));
   const std::vector<Port> ports = choose_ports(solid, kPortsPerBody, place);
   PreparedCompliance prepared;

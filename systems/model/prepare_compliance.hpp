@@ -26,7 +26,7 @@ struct PreparedCompliance {
 /// @param place     where contacts are expected
 /// @param progress  called with 0 to 1 while there is something to solve, if set
 Result<PreparedCompliance> prepare_compliance(const BodyDescription& description,
-                                              const World& world, std::uint32_t row,
+                                              const Model& model, std::uint32_t row,
                                               const ExpectedPlace& place, bool use_cache,
                                               const std::function<void(double)>& progress);
 

@@ -115,9 +115,9 @@ glm::dvec2 turned(const RegionFrame& old, const RegionFrame& now, const glm::dve
 /// cell's contact has no traction: spread over all of it there is less.
 void follow_grid(StepContext& context, const CellMap& map, const RegionFrame& old,
                  const RegionFrame& now, Range rows) {
-  const std::uint32_t side = context.world.settings.at<Settings>(0).grid_side;
-  const auto cells = context.world.cells.rows<CellTraction>(rows);
-  const auto geometry = context.world.cells.rows<CellGeometry>(rows);
+  const std::uint32_t side = context.model.settings.grid_side;
+  const auto cells = context.state.cells.rows<CellTraction>(rows);
+  const auto geometry = context.state.cells.rows<CellGeometry>(rows);
   const std::span<CarriedCell> before(context.paper.carried_cells);
   copy_with_border(cells, side, before);
   const glm::dvec2 turn_x = turned(old, now, {1.0, 0.0});
@@ -151,12 +151,13 @@ void dilute(CellTraction& cell, double coverage) {
 }
 
 void carry(StepContext& context, std::uint32_t region) {
-  World& world = context.world;
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
-  const Range rows = world.regions.at<RegionIdentity>(region).cells;
-  const auto cells = world.cells.rows<CellTraction>(rows);
-  const RegionFrame& now = world.regions.at<RegionFrame>(region);
-  RegionFrame& old = world.regions.at<TractionFrame>(region).frame;
+  const Model& model = context.model;
+  State& state = context.state;
+  const std::uint32_t side = model.settings.grid_side;
+  const Range rows = state.regions.at<RegionIdentity>(region).cells;
+  const auto cells = state.cells.rows<CellTraction>(rows);
+  const RegionFrame& now = state.regions.at<RegionFrame>(region);
+  RegionFrame& old = state.regions.at<TractionFrame>(region).frame;
   if (old.half_size.x <= 0.0) {
     old = now;
   }
@@ -166,7 +167,7 @@ void carry(StepContext& context, std::uint32_t region) {
     old = now;
     return;
   }
-  const auto geometry = world.cells.rows<CellGeometry>(rows);
+  const auto geometry = state.cells.rows<CellGeometry>(rows);
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {
     dilute(cells[cell], geometry[cell].coverage);
   }
@@ -174,15 +175,15 @@ void carry(StepContext& context, std::uint32_t region) {
 
 }  // namespace
 
-void PaperScratch::reserve(const World& world) {
-  const std::size_t side = world.settings.at<Settings>(0).grid_side;
+void PaperScratch::reserve(const Model& model) {
+  const std::size_t side = model.settings.grid_side;
   carried_cells.assign((side + 2) * (side + 2), CarriedCell(0.0));
 }
 
 void carry_tractions(StepContext& context) {
-  for (std::uint32_t region = 0; region < context.world.regions.size(); ++region) {
-    const std::uint32_t body = context.world.regions.at<RegionIdentity>(region).body;
-    if (context.world.bodies.at<BodyModels>(body).contact == ContactModel::kPaper) {
+  for (std::uint32_t region = 0; region < context.state.regions.size(); ++region) {
+    const std::uint32_t body = context.state.regions.at<RegionIdentity>(region).body;
+    if (context.model.bodies.at<BodyModels>(body).contact == ContactModel::kPaper) {
       carry(context, region);
     }
   }

@@ -17,8 +17,8 @@ using CarriedCell = glm::dvec4;
 struct PaperScratch {
   std::vector<CarriedCell> carried_cells;  // (cells of one region and a border of one around them)
 
-  /// Takes all memory that a step of `world` can need.
-  void reserve(const World& world);
+  /// Takes all memory that a step can need.
+  void reserve(const Model& model);
 };
 
 /// System: a region's grid follows the contact, but the tractions belong to places on the body.

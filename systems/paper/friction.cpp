@@ -24,22 +24,22 @@ void set_levers(const FixedRegion& fixed, const RegionFrame& frame, const Region
 }
 
 /// True when another region of the same tool lies on the same body.
-bool has_siblings(const World& world, std::uint32_t region) {
-  const RegionIdentity& self = world.regions.at<RegionIdentity>(region);
-  return std::ranges::any_of(world.regions.column<RegionIdentity>(), [&](const auto& other) {
+bool has_siblings(const State& state, std::uint32_t region) {
+  const RegionIdentity& self = state.regions.at<RegionIdentity>(region);
+  return std::ranges::any_of(state.regions.column<RegionIdentity>(), [&](const auto& other) {
     return other.body == self.body && other.tool == self.tool && other.order != self.order;
   });
 }
 
-BrushState brush_of(const World& world, std::uint32_t region) {
-  const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
-  const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-  const RegionMotion& motion = world.regions.at<RegionMotion>(region);
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const Elasticity& elasticity = world.bodies.at<Elasticity>(body);
-  const double normal_force = world.regions.at<RegionNormal>(region).force;
+BrushState brush_of(const Model& model, const State& state, std::uint32_t region) {
+  const std::uint32_t body = state.regions.at<RegionIdentity>(region).body;
+  const RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+  const RegionMotion& motion = state.regions.at<RegionMotion>(region);
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const Elasticity& elasticity = model.bodies.at<Elasticity>(body);
+  const double normal_force = state.regions.at<RegionNormal>(region).force;
   BrushState brush;
-  brush.friction = world.bodies.at<Friction>(body);
+  brush.friction = model.bodies.at<Friction>(body);
   brush.falls = brush.friction.static_friction != brush.friction.dynamic_friction;
   brush.shear_modulus = elasticity.shear_modulus();
   brush.pressure = geometry.area > 0.0 ? normal_force / geometry.area : 0.0;
@@ -49,13 +49,13 @@ BrushState brush_of(const World& world, std::uint32_t region) {
   brush.inverse_slip_displacement = inverse_of(
       stiffness > 0.0 ? brush.friction.dynamic_friction * normal_force / stiffness : 0.0);
   brush.inverse_limit = inverse_of(brush.pressure * brush.friction.static_friction);
-  brush.several = has_siblings(world, region);
+  brush.several = has_siblings(state, region);
   brush.pivot = motion.pivot;
   brush.center = glm::dvec2(body_to_grid(frame, geometry.equivalent_point));
   brush.slide = motion.slide;
   brush.spin = motion.spin;
-  brush.kinetic_share = world.regions.at<RegionFriction>(region).kinetic_share;
-  set_levers(world.bodies.at<FixedRegion>(body), frame, motion, geometry.radius, brush);
+  brush.kinetic_share = state.regions.at<RegionFriction>(region).kinetic_share;
+  set_levers(model.bodies.at<FixedRegion>(body), frame, motion, geometry.radius, brush);
   return brush;
 }
 
@@ -69,12 +69,13 @@ void put(const BrushState& brush, const BrushBlock& block, std::size_t place, Ce
 
 /// The region's cells in contact, kBrushBlock at a time: out of the tables, through the return map,
 /// back. Cells without contact carry nothing.
-BrushSums update_cells(World& world, std::uint32_t region, const BrushState& brush) {
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const Range rows = world.regions.at<RegionIdentity>(region).cells;
-  const auto cells = world.cells.rows<CellGeometry>(rows);
-  const auto tractions = world.cells.rows<CellTraction>(rows);
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+BrushSums update_cells(const Model& model, State& state, std::uint32_t region,
+                       const BrushState& brush) {
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const Range rows = state.regions.at<RegionIdentity>(region).cells;
+  const auto cells = state.cells.rows<CellGeometry>(rows);
+  const auto tractions = state.cells.rows<CellTraction>(rows);
+  const std::uint32_t side = model.settings.grid_side;
   const double cell_size = cell_area(frame, side);
   BrushLanes lanes;
   BrushBlock block{};
@@ -165,22 +166,23 @@ void set_stick_radius(const BrushState& brush, const BrushSums& sums,
 }  // namespace
 
 void paper_friction_forces(StepContext& context) {
-  World& world = context.world;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    if (world.bodies.at<BodyModels>(world.regions.at<RegionIdentity>(region).body).contact !=
+  const Model& model = context.model;
+  State& state = context.state;
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    if (model.bodies.at<BodyModels>(state.regions.at<RegionIdentity>(region).body).contact !=
         ContactModel::kPaper) {
       continue;
     }
-    const BrushState brush = brush_of(world, region);
-    const BrushSums sums = update_cells(world, region, brush);
-    const RegionMotion& motion = world.regions.at<RegionMotion>(region);
-    RegionFriction& friction = world.regions.at<RegionFriction>(region);
+    const BrushState brush = brush_of(model, state, region);
+    const BrushSums sums = update_cells(model, state, region, brush);
+    const RegionMotion& motion = state.regions.at<RegionMotion>(region);
+    RegionFriction& friction = state.regions.at<RegionFriction>(region);
     friction.force = sums.force;
     // An axis that misses the region leaves T = r x F alone (1).
     friction.couple = motion.axis_share * sums.couple;
     friction.stick_share = sums.area > 0.0 ? sums.stuck_area / sums.area : 0.0;
     friction.kinetic_share = next_kinetic_share(brush, sums, motion.axis_share);
-    set_stick_radius(brush, sums, world.regions.at<RegionGeometry>(region), motion, friction);
+    set_stick_radius(brush, sums, state.regions.at<RegionGeometry>(region), motion, friction);
   }
 }
 

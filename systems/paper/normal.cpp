@@ -36,21 +36,22 @@ PaperNormalLaw paper_normal_law(double contact_modulus, double radius, double ax
 }
 
 void paper_normal_forces(StepContext& context) {
-  World& world = context.world;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const Model& model = context.model;
+  State& state = context.state;
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
     const std::uint32_t body = identity.body;
-    if (world.bodies.at<BodyModels>(body).contact != ContactModel::kPaper) {
+    if (model.bodies.at<BodyModels>(body).contact != ContactModel::kPaper) {
       continue;
     }
-    const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-    const Elasticity& elasticity = world.bodies.at<Elasticity>(body);
+    const RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+    const Elasticity& elasticity = model.bodies.at<Elasticity>(body);
     const BeamSpring& beam = context.scratch.beams[block_of(identity)];
-    const double deepest = deepest_allowed(world.bodies.at<Bounds>(body), beam);
+    const double deepest = deepest_allowed(model.bodies.at<Bounds>(body), beam);
     const double depth = std::min(geometry.mean_depth, deepest);
     const PaperNormalLaw law = paper_normal_law(elasticity.contact_modulus(), geometry.radius,
                                                 beam.stiffness, beam.length);
-    RegionNormal& normal = world.regions.at<RegionNormal>(region);
+    RegionNormal& normal = state.regions.at<RegionNormal>(region);
     normal.force = law.linear * depth + law.cubic * depth * depth * depth;
     normal.stiffness = law.linear + 3.0 * law.cubic * depth * depth;
   }

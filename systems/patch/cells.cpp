@@ -227,10 +227,10 @@ void add_up(std::size_t count, const double* __restrict pressures, Wide& __restr
 
 }  // namespace
 
-PatchRows patch_rows(World& world, Range cells) {
-  PatchCellTable& table = world.patch_cells;
-  return {world.cells.rows<CellGeometry>(cells),
-          world.cells.rows<CellTraction>(cells),
+PatchRows patch_rows(State& state, Range cells) {
+  PatchCellTable& table = state.patch_cells;
+  return {state.cells.rows<CellGeometry>(cells),
+          state.cells.rows<CellTraction>(cells),
           {values_of(table.rows<PatchMovedX>(cells)), values_of(table.rows<PatchMovedY>(cells)),
            values_of(table.rows<PatchDepression>(cells)), values_of(table.rows<PatchHeldX>(cells)),
            values_of(table.rows<PatchHeldY>(cells)), values_of(table.rows<PatchKnown>(cells))},

@@ -43,7 +43,7 @@ struct PatchRows {
   PatchChange change;
 };
 
-PatchRows patch_rows(World& world, Range cells);
+PatchRows patch_rows(State& state, Range cells);
 
 /// Where cells were held while their grid moves, m, (side x side).
 struct HeldBefore {

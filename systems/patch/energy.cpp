@@ -114,13 +114,13 @@ Drag drag_of(const StuckStiffness& stiffness, const RegionFrame& frame, double r
 }
 
 /// The drag against rolling moves the pressure's centre ahead.
-void charge(World& world, std::uint32_t region, const glm::dvec3& shift, const glm::dvec3& turn,
-            double lacking) {
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-  RegionNormal& normal = world.regions.at<RegionNormal>(region);
-  RegionFriction& friction = world.regions.at<RegionFriction>(region);
-  const StuckStiffness stiffness = stuck_stiffness(world, region, geometry.radius);
+void charge(const Model& model, State& state, std::uint32_t region, const glm::dvec3& shift,
+            const glm::dvec3& turn, double lacking) {
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+  RegionNormal& normal = state.regions.at<RegionNormal>(region);
+  RegionFriction& friction = state.regions.at<RegionFriction>(region);
+  const StuckStiffness stiffness = stuck_stiffness(model, state, region, geometry.radius);
   const Drag drag = drag_of(stiffness, frame, geometry.radius, shift, turn);
   if (drag.work <= 0.0) {
     return;
@@ -145,26 +145,26 @@ glm::dvec3 translation_by_others(const RegionSupport& support, const glm::dvec3&
 }
 
 /// Writes what the next step's work is reckoned by.
-void note_forces(const World& world, std::uint32_t region, PatchEnergy& energy) {
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const RegionNormal& normal = world.regions.at<RegionNormal>(region);
-  const RegionFriction& friction = world.regions.at<RegionFriction>(region);
-  const RegionSupport& support = world.regions.at<RegionSupport>(region);
-  energy.depth = world.regions.at<RegionGeometry>(region).largest_depth;
+void note_forces(const State& state, std::uint32_t region, PatchEnergy& energy) {
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const RegionNormal& normal = state.regions.at<RegionNormal>(region);
+  const RegionFriction& friction = state.regions.at<RegionFriction>(region);
+  const RegionSupport& support = state.regions.at<RegionSupport>(region);
+  energy.depth = state.regions.at<RegionGeometry>(region).largest_depth;
   energy.force = frame.normal * normal.force + tangent_to_body(frame, friction.force);
   energy.couple = frame.normal * friction.couple;
-  energy.point = world.regions.at<RegionGeometry>(region).equivalent_point;
+  energy.point = state.regions.at<RegionGeometry>(region).equivalent_point;
   energy.translation_by_others = translation_by_others(support, energy.point);
   energy.rotation_by_others = support.rotation_by_others;
 }
 
 /// How the tool moves over what the region holds. Where that is the whole body's motion under its
 /// own load, too, only the other regions' share of it carries the material.
-MotionOverBody motion_over_held(const World& world, std::uint32_t region, bool holds_body,
-                                const PatchEnergy& before) {
-  MotionOverBody motion = motion_over_body(world, region);
+MotionOverBody motion_over_held(const Model& model, const State& state, std::uint32_t region,
+                                bool holds_body, const PatchEnergy& before) {
+  MotionOverBody motion = motion_over_body(model, state, region);
   if (holds_body) {
-    const RegionSupport& support = world.regions.at<RegionSupport>(region);
+    const RegionSupport& support = state.regions.at<RegionSupport>(region);
     motion.carried_about = before.point;
     motion.carried_by = translation_by_others(support, before.point) - before.translation_by_others;
     motion.carried_turn = support.rotation_by_others - before.rotation_by_others;
@@ -192,12 +192,12 @@ double work_between(const PatchEnergy& before, const PatchEnergy& after,
 /// so that both come to an end together.
 /// @param lifted  m, in this step
 /// @param taken   N, in the step before
-void take_back(World& world, std::uint32_t region, double lifted, double taken,
+void take_back(const Model& model, State& state, std::uint32_t region, double lifted, double taken,
                PatchEnergy& energy) {
-  RegionNormal& normal = world.regions.at<RegionNormal>(region);
-  const double radius = world.regions.at<RegionGeometry>(region).radius;
+  RegionNormal& normal = state.regions.at<RegionNormal>(region);
+  const double radius = state.regions.at<RegionGeometry>(region).radius;
   const double change =
-      kMostCharge * stuck_stiffness(world, region, radius).along_normal * std::abs(lifted);
+      kMostCharge * stuck_stiffness(model, state, region, radius).along_normal * std::abs(lifted);
   const double share =
       lifted > 0.0 && energy.held > 0.0 ? std::min(energy.lent / energy.held, kMostLent) : 0.0;
   const double wanted = std::clamp(share * normal.force, taken - change, taken + change);
@@ -208,14 +208,14 @@ void take_back(World& world, std::uint32_t region, double lifted, double taken,
 
 }  // namespace
 
-void settle_energy(World& world, std::uint32_t region, const PatchSolution& solution,
-                   SolutionStart start) {
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const PatchEnergy before = world.regions.at<PatchEnergy>(region);
+void settle_energy(const Model& model, State& state, std::uint32_t region,
+                   const PatchSolution& solution, SolutionStart start) {
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const PatchEnergy before = state.regions.at<PatchEnergy>(region);
   const MotionOverBody motion =
-      motion_over_held(world, region, solution.problem.support.response != nullptr, before);
+      motion_over_held(model, state, region, solution.problem.support.response != nullptr, before);
   PatchEnergy now;
-  note_forces(world, region, now);
+  note_forces(state, region, now);
   now.held = held_energy(solution, cell_area(frame, solution.problem.influences.side));
   now.lent = before.lent;
   const double grown = before.owed + now.held - before.held;
@@ -226,8 +226,8 @@ void settle_energy(World& world, std::uint32_t region, const PatchSolution& solu
     now.lent += lacking;
     lacking = 0.0;
   } else if (lacking > 0.0) {
-    charge(world, region, shift_after(motion, now.point), turn_of(motion), lacking);
-    note_forces(world, region, now);
+    charge(model, state, region, shift_after(motion, now.point), turn_of(motion), lacking);
+    note_forces(state, region, now);
     lacking = grown - work_between(before, now, motion, frame.normal);
   }
   now.owed = std::max(lacking, 0.0);
@@ -236,41 +236,41 @@ void settle_energy(World& world, std::uint32_t region, const PatchSolution& solu
   }
   // What friction takes beyond that pays for what was lent, too.
   now.lent = std::max(now.lent + std::min(lacking, 0.0), 0.0);
-  take_back(world, region, glm::dot(frame.normal, shift_after(motion, now.point)), before.taken,
-            now);
-  world.regions.at<PatchEnergy>(region) = now;
+  take_back(model, state, region, glm::dot(frame.normal, shift_after(motion, now.point)),
+            before.taken, now);
+  state.regions.at<PatchEnergy>(region) = now;
 }
 
-void split_energy(World& world, std::uint32_t from, std::uint32_t region, double share) {
-  const PatchEnergy before = world.regions.at<PatchEnergy>(from);
+void split_energy(State& state, std::uint32_t from, std::uint32_t region, double share) {
+  const PatchEnergy before = state.regions.at<PatchEnergy>(from);
   for (const std::uint32_t each : {from, region}) {
     const double part = each == region ? share : 1.0 - share;
-    const RegionSupport& support = world.regions.at<RegionSupport>(each);
-    PatchEnergy& energy = world.regions.at<PatchEnergy>(each);
+    const RegionSupport& support = state.regions.at<RegionSupport>(each);
+    PatchEnergy& energy = state.regions.at<PatchEnergy>(each);
     energy.held = part * before.held;
     energy.owed = part * before.owed;
     energy.lent = part * before.lent;
     energy.taken = part * before.taken;
-    energy.depth = world.regions.at<RegionGeometry>(each).largest_depth;
+    energy.depth = state.regions.at<RegionGeometry>(each).largest_depth;
     energy.force = part * before.force;
     energy.couple = part * before.couple;
-    energy.point = world.regions.at<RegionGeometry>(each).equivalent_point;
+    energy.point = state.regions.at<RegionGeometry>(each).equivalent_point;
     energy.translation_by_others = translation_by_others(support, energy.point);
     energy.rotation_by_others = support.rotation_by_others;
   }
 }
 
-void retell_others(World& world, std::uint32_t region, const RegionSupport& before) {
-  const RegionSupport& now = world.regions.at<RegionSupport>(region);
-  PatchEnergy& energy = world.regions.at<PatchEnergy>(region);
+void retell_others(State& state, std::uint32_t region, const RegionSupport& before) {
+  const RegionSupport& now = state.regions.at<RegionSupport>(region);
+  PatchEnergy& energy = state.regions.at<PatchEnergy>(region);
   energy.translation_by_others +=
       translation_by_others(now, energy.point) - translation_by_others(before, energy.point);
   energy.rotation_by_others += now.rotation_by_others - before.rotation_by_others;
 }
 
-void join_energies(World& world, std::uint32_t ended_region, std::uint32_t heir_region) {
-  const PatchEnergy& ended = world.regions.at<PatchEnergy>(ended_region);
-  PatchEnergy& heir = world.regions.at<PatchEnergy>(heir_region);
+void join_energies(State& state, std::uint32_t ended_region, std::uint32_t heir_region) {
+  const PatchEnergy& ended = state.regions.at<PatchEnergy>(ended_region);
+  PatchEnergy& heir = state.regions.at<PatchEnergy>(heir_region);
   heir.held += ended.held;
   heir.owed += ended.owed;
   heir.lent += ended.lent;

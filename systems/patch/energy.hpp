@@ -54,18 +54,18 @@ enum class SolutionStart : std::uint32_t {
 /// to is never less than what it was. A body that gives way as a whole adds its compliance to A, so
 /// that A^-1 is less. Cells that slip hold what they have.
 /// @pre the displacements in the columns are those by the tractions alone, the targets likewise
-void settle_energy(World& world, std::uint32_t region, const PatchSolution& solution,
-                   SolutionStart start);
+void settle_energy(const Model& model, State& state, std::uint32_t region,
+                   const PatchSolution& solution, SolutionStart start);
 
 /// Gives a region that splits off another one its share of what that one holds, of which the force
 /// is `share`. Both are at the tractions that they have kept.
-void split_energy(World& world, std::uint32_t from, std::uint32_t region, double share);
+void split_energy(State& state, std::uint32_t from, std::uint32_t region, double share);
 
 /// What the other regions have to do with a region's motion was `before` and is something else now,
 /// though the material has not moved: nothing works by that.
-void retell_others(World& world, std::uint32_t region, const RegionSupport& before);
+void retell_others(State& state, std::uint32_t region, const RegionSupport& before);
 
 /// ContactLaw::end. What a region that ends hands to the one that takes over.
-void join_energies(World& world, std::uint32_t ended_region, std::uint32_t heir_region);
+void join_energies(State& state, std::uint32_t ended_region, std::uint32_t heir_region);
 
 }  // namespace torsion

@@ -46,7 +46,7 @@ bool is_loaded(const CellTraction& traction, const CellGeometry& geometry, doubl
 
 /// @param least  share of a cell that is in contact
 LoadedArea loaded_cells(const Grid& grid, double least) {
-  const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
+  const auto tractions = grid.state.cells.rows<CellTraction>(grid.identity.cells);
   const auto side = static_cast<int>(grid.side);
   LoadedArea loaded{{{side, side}, {0, 0}}, {}};
   for (int j = 0; j < side; ++j) {
@@ -83,12 +83,13 @@ bool reaches_edge(const Grid& grid, const CellBox& box) {
 /// the surface away there.
 void include_lobes(const Grid& grid, std::uint32_t region, const RegionPoints& contact,
                    CellBox& box) {
-  const World& world = grid.world;
-  const double force = world.regions.at<RegionNormal>(region).force;
-  const double modulus = world.bodies.at<Elasticity>(grid.identity.body).contact_modulus();
+  const Model& model = grid.model;
+  const State& state = grid.state;
+  const double force = state.regions.at<RegionNormal>(region).force;
+  const double modulus = model.bodies.at<Elasticity>(grid.identity.body).contact_modulus();
   const glm::dvec2 center(
-      body_to_grid(grid.frame, world.regions.at<RegionGeometry>(region).equivalent_point));
-  const RegionSupport& support = world.regions.at<RegionSupport>(region);
+      body_to_grid(grid.frame, state.regions.at<RegionGeometry>(region).equivalent_point));
+  const RegionSupport& support = state.regions.at<RegionSupport>(region);
   const CellFinder finder = finder_of(grid);
   for (const ContactPoint& point : points_of(grid.scratch, contact)) {
     if (point.cluster != contact.cluster) {
@@ -129,7 +130,7 @@ glm::dmat2 rotation_by(double angle) {
 /// cells, so that askew to the axes the outermost of many centres lies nearer to it than half a
 /// cell.
 PlaneBox extent_along(const Grid& grid, double least, double angle) {
-  const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
+  const auto tractions = grid.state.cells.rows<CellTraction>(grid.identity.cells);
   const glm::dmat2 turn = rotation_by(angle);
   const glm::dvec2 half = cell_half_size(grid);
   const glm::dvec2 beside = glm::max(glm::min(half.x * glm::abs(glm::dvec2(turn[0].x, turn[1].x)),
@@ -190,7 +191,7 @@ bool fills_side(const Grid& grid, double least, const CellBox& box) {
   const auto spare = static_cast<int>(patch_spare(grid.side));
   const glm::ivec2 first = glm::clamp(box.first, glm::ivec2(0), glm::ivec2(side));
   const glm::ivec2 end = glm::clamp(box.end, glm::ivec2(0), glm::ivec2(side));
-  const auto tractions = grid.world.cells.rows<CellTraction>(grid.identity.cells);
+  const auto tractions = grid.state.cells.rows<CellTraction>(grid.identity.cells);
   const auto loaded = [&](int i, int j) {
     const auto cell = static_cast<std::size_t>(j * side + i);
     return is_loaded(tractions[cell], grid.cells[cell], least) ? 1 : 0;
@@ -274,16 +275,16 @@ void lay_frame(const Grid& grid, const RegionPoints& contact, const GridFit& fit
 
 /// What sticks goes with the tool in this step, too. Cells that only followed a step later would
 /// lie at other depths in between, for which nobody has worked.
-void foresee_carrier(World& world, std::uint32_t region) {
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const double share = world.regions.at<RegionFriction>(region).stick_share;
-  const MotionOverBody motion = motion_over_body(world, region);
+void foresee_carrier(const Model& model, State& state, std::uint32_t region) {
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const double share = state.regions.at<RegionFriction>(region).stick_share;
+  const MotionOverBody motion = motion_over_body(model, state, region);
   // As a rigid body about the contact's middle, so that it does not matter where the grid has its
   // origin.
-  const glm::dvec3 middle = world.regions.at<RegionGeometry>(region).equivalent_point;
+  const glm::dvec3 middle = state.regions.at<RegionGeometry>(region).equivalent_point;
   const glm::dvec3 shift = shift_at(motion, middle);
   const double turn = share * glm::dot(turn_of(motion), frame.normal);
-  RegionCarrier& carrier = world.regions.at<RegionCarrier>(region);
+  RegionCarrier& carrier = state.regions.at<RegionCarrier>(region);
   const glm::dvec3 arm = frame.origin + carrier.translation - middle;
   carrier.translation += share * (shift - frame.normal * glm::dot(shift, frame.normal)) +
                          (glm::angleAxis(turn, frame.normal) * arm - arm);
@@ -308,7 +309,7 @@ void lay_around_loaded(StepContext& context, std::uint32_t region, const RegionP
   if (fit.box.end.x == 0 || !(fit.cut || fit.too_small || fit.other_shape || fit.axes.is_askew())) {
     return;
   }
-  const double depth = context.world.regions.at<RegionGeometry>(region).largest_depth;
+  const double depth = context.state.regions.at<RegionGeometry>(region).largest_depth;
   CellMove move;
   if (fit.axes.is_askew() || fit.other_shape || !shift_frame(grid, fit.box, move)) {
     const RegionFrame before = grid.frame;
@@ -317,11 +318,11 @@ void lay_around_loaded(StepContext& context, std::uint32_t region, const RegionP
   }
   const double reach = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
   move_cells(grid, context.patch, move, depth, fit.takes_axes() ? reach : 0.0);
-  std::uint32_t& event = context.world.regions.at<RegionWrench>(region).event_now;
+  std::uint32_t& event = context.state.regions.at<RegionWrench>(region).event_now;
   if (event == 0 && !move.keeps_cells()) {
     event = static_cast<std::uint32_t>(RegionEvent::kGridLaidAnew);
   }
-  PatchState& state = context.world.regions.at<PatchState>(region);
+  PatchState& state = context.state.regions.at<PatchState>(region);
   state.moved = 1;
   state.resized = move.keeps_cells() ? 0 : 1;
   if (!move.keeps_cells() && fit.takes_axes()) {
@@ -331,27 +332,27 @@ void lay_around_loaded(StepContext& context, std::uint32_t region, const RegionP
 }
 
 void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
-  World& world = context.world;
-  if (world.regions.at<RegionNormal>(region).force <= 0.0) {
+  State& state = context.state;
+  if (state.regions.at<RegionNormal>(region).force <= 0.0) {
     // It has nothing to keep, and its grid may lie beside the points, where it would stay.
-    world.patch_cells.zero(world.regions.at<RegionIdentity>(region).cells);
-    world.regions.at<PatchState>(region) = PatchState{};
+    state.patch_cells.zero(state.regions.at<RegionIdentity>(region).cells);
+    state.regions.at<PatchState>(region) = PatchState{};
     place_new_grid(context, region, contact);
     return;
   }
   lay_around_loaded(context, region, contact);
-  turn_normal_to(world.regions.at<RegionFrame>(region),
-                 world.regions.at<RegionGeometry>(region).mean_normal);
+  turn_normal_to(state.regions.at<RegionFrame>(region),
+                 state.regions.at<RegionGeometry>(region).mean_normal);
 }
 
 void find_patch_cells(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const Grid grid = grid_of(context, region);
-  const PatchState& state = context.world.regions.at<PatchState>(region);
+  const PatchState& state = context.state.regions.at<PatchState>(region);
   if (state.started == 0) {
     center_patch(grid, contact, deepest_of_cluster(grid, contact).depth);
     return;
   }
-  foresee_carrier(context.world, region);
+  foresee_carrier(context.model, context.state, region);
   find_cells(grid, contact);
   if (state.resized != 0) {
     look_along_normal(grid, contact);

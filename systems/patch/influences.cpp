@@ -46,26 +46,27 @@ bool are_bent_like(const InfluenceTables& tables, const InfluenceTables& half_sp
 
 /// One region's tables at work.
 struct RegionTables {
-  World& world;
+  const Model& model;
+  State& state;
   std::uint32_t region;
   RegionInfluences& result;        // the half-space's to begin with
   std::span<const double> kernel;  // of a layer, if the body is one
   LayerGrid& filled;
 
   [[nodiscard]] std::span<double> own() const {
-    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+    const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
     const auto count = static_cast<std::uint32_t>(layer_influence_count(result.tables.side));
-    const auto rows = world.layer_influences.rows<Influence>({block_of(identity) * count, count});
+    const auto rows = state.layer_influences.rows<Influence>({block_of(identity) * count, count});
     return {&rows.front().value, rows.size()};
   }
   [[nodiscard]] glm::dvec2 cell() const {
-    return 2.0 * world.regions.at<RegionFrame>(region).half_size /
+    return 2.0 * state.regions.at<RegionFrame>(region).half_size /
            static_cast<double>(result.tables.side);
   }
 };
 
 void take_layer(const RegionTables& at, double thickness, double poisson_ratio) {
-  const glm::dvec2& half_size = at.world.regions.at<RegionFrame>(at.region).half_size;
+  const glm::dvec2& half_size = at.state.regions.at<RegionFrame>(at.region).half_size;
   if (!is_layer_like(at.filled, thickness, half_size)) {
     fill_layer_influences(at.result.tables, at.kernel, poisson_ratio, at.cell() / thickness,
                           at.own());
@@ -79,17 +80,17 @@ void take_layer(const RegionTables& at, double thickness, double poisson_ratio) 
 /// On a body with body model compliance, whose ports say how far the curvature has to reach. They
 /// count from the step after the region's first, when it has a footing.
 void take_bend(const RegionTables& at, double poisson_ratio) {
-  const RegionFrame& frame = at.world.regions.at<RegionFrame>(at.region);
-  const RegionIdentity& identity = at.world.regions.at<RegionIdentity>(at.region);
-  const Footing& footing = at.world.footings.at<Footing>(block_of(identity));
+  const RegionFrame& frame = at.state.regions.at<RegionFrame>(at.region);
+  const RegionIdentity& identity = at.state.regions.at<RegionIdentity>(at.region);
+  const Footing& footing = at.state.footings.at<Footing>(block_of(identity));
   const bool was_bent = at.filled.thickness == 0.0 && at.filled.half_size.x > 0.0;
   const bool same_grid = at.filled.half_size == frame.half_size &&
                          glm::dot(at.filled.tangent_x, frame.tangent_x) > kSameAxes;
   const bool laid =
-      at.world.footings.at<FootingResponse>(block_of(identity)).serial != footing.serial;
+      at.state.footings.at<FootingResponse>(block_of(identity)).serial != footing.serial;
   const InfluenceTables own = layer_influence_tables(at.own(), at.result.tables.side);
   if (laid || (was_bent && !same_grid)) {
-    const SurfaceBend bend = find_surface_bend(at.world, identity.body, footing, frame,
+    const SurfaceBend bend = find_surface_bend(at.model, identity.body, footing, frame,
                                                std::max(frame.half_size.x, frame.half_size.y));
     if (bend.reach == 0.0) {
       at.result.changed = was_bent;
@@ -111,31 +112,31 @@ void take_bend(const RegionTables& at, double poisson_ratio) {
 
 }  // namespace
 
-RegionInfluences region_influences(World& world, std::uint32_t region) {
+RegionInfluences region_influences(const Model& model, State& state, std::uint32_t region) {
   static_assert(sizeof(Influence) == sizeof(double));
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const double poisson_ratio = world.bodies.at<Elasticity>(identity.body).poisson_ratio;
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const double poisson_ratio = model.bodies.at<Elasticity>(identity.body).poisson_ratio;
+  const std::uint32_t side = model.settings.grid_side;
   const auto rows =
-      world.influences.rows<Influence>(world.bodies.at<OwnedRows>(identity.body).influences);
+      model.influences.rows<Influence>(model.bodies.at<OwnedRows>(identity.body).influences);
   const std::span<const double> values(&rows.front().value, rows.size());
   const std::size_t count = influence_count(side);
   RegionInfluences result;
   result.tables = influence_tables(values.first(count), side, table_aspect(frame.half_size));
   result.coupled = poisson_ratio < 0.5;
   const double thickness = values.size() > count
-                               ? layer_thickness(world, identity.body, frame.normal, frame.origin)
+                               ? layer_thickness(model, identity.body, frame.normal, frame.origin)
                                : 0.0;
-  const RegionTables at{world, region, result, values.subspan(count),
-                        world.regions.at<LayerGrid>(region)};
+  const RegionTables at{
+      model, state, region, result, values.subspan(count), state.regions.at<LayerGrid>(region)};
   const std::uint32_t block = block_of(identity);
   const Footing* const footing =
-      world.footings.empty() ? nullptr : &world.footings.at<Footing>(block);
+      state.footings.empty() ? nullptr : &state.footings.at<Footing>(block);
   if (thickness > 0.0) {
     take_layer(at, thickness, poisson_ratio);
   } else if (footing != nullptr && footing->reach > 0.0 && footing->on_layer == 0 &&
-             !world.layer_influences.empty() && may_bend(world, identity.body)) {
+             !state.layer_influences.empty() && may_bend(model, identity.body)) {
     take_bend(at, poisson_ratio);
   } else {
     result.changed = at.filled.half_size.x > 0.0;

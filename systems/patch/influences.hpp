@@ -14,6 +14,6 @@ struct RegionInfluences {
 
 /// The half-space's, from its body; on a layer with body model compliance its own, which are filled
 /// when its grid or the thickness has changed. Writes LayerGrid.
-RegionInfluences region_influences(World& world, std::uint32_t region);
+RegionInfluences region_influences(const Model& model, State& state, std::uint32_t region);
 
 }  // namespace torsion

@@ -19,7 +19,7 @@ namespace {
 
 /// Takes in the loaded cells of a region, as seen in the grid of `frame`.
 void include_loaded(const Grid& of, const RegionFrame& frame, PlaneBox& box) {
-  const auto tractions = of.world.cells.rows<CellTraction>(of.identity.cells);
+  const auto tractions = of.state.cells.rows<CellTraction>(of.identity.cells);
   const glm::dvec2 half = cell_half_size(of);
   const glm::dvec2 along_x = glm::abs(glm::dvec2(
       body_to_grid_direction(frame, tangent_to_body(of.frame, glm::dvec2(half.x, 0.0)))));
@@ -46,17 +46,18 @@ bool holds(const Grid& grid, const PlaneBox& box) {
 }
 
 /// Whether a region has tractions that are worth keeping.
-bool has_settled(const World& world, std::uint32_t region) {
+bool has_settled(const State& state, std::uint32_t region) {
   constexpr double kSolved = 0.1;  // PatchState::residual
-  const PatchState& state = world.regions.at<PatchState>(region);
-  return state.started != 0 && state.residual < kSolved;
+  const PatchState& own = state.regions.at<PatchState>(region);
+  return own.started != 0 && own.residual < kSolved;
 }
 
 }  // namespace
 
 void join_patch(StepContext& context, std::uint32_t ended, std::uint32_t heir) {
-  World& world = context.world;
-  if (!has_settled(world, ended) || !has_settled(world, heir)) {
+  const Model& model = context.model;
+  State& state = context.state;
+  if (!has_settled(state, ended) || !has_settled(state, heir)) {
     return;
   }
   const Grid grid = grid_of(context, heir);
@@ -70,25 +71,25 @@ void join_patch(StepContext& context, std::uint32_t ended, std::uint32_t heir) {
     shift_origin(grid, layout.shift);
     grid.frame.half_size = layout.half_size;
     move_cells(grid, context.patch, move_between(before, grid.frame, grid.side),
-               world.regions.at<RegionGeometry>(heir).largest_depth, 0.0);
+               state.regions.at<RegionGeometry>(heir).largest_depth, 0.0);
   }
   add_cells(grid, move_between(other.frame, grid.frame, grid.side),
-            world.cells.rows<CellTraction>(other.identity.cells));
+            state.cells.rows<CellTraction>(other.identity.cells));
   // All are displaced by the others' tractions, too, from now on: they are held where that is.
-  std::ranges::fill(patch_rows(world, grid.identity.cells).surface.known, 0.0);
-  const RegionSupport support = world.regions.at<RegionSupport>(heir);
-  const BodyLaw& body = body_law_of(world, world.regions.at<RegionIdentity>(heir).body);
+  std::ranges::fill(patch_rows(state, grid.identity.cells).surface.known, 0.0);
+  const RegionSupport support = state.regions.at<RegionSupport>(heir);
+  const BodyLaw& body = body_law_of(model, state.regions.at<RegionIdentity>(heir).body);
   if (body.join != nullptr) {
-    body.join(world, ended, heir);
+    body.join(model, state, ended, heir);
   }
-  retell_others(world, heir, support);
-  RegionMotion& motion = world.regions.at<RegionMotion>(heir);
-  const RegionMotion& of_ended = world.regions.at<RegionMotion>(ended);
+  retell_others(state, heir, support);
+  RegionMotion& motion = state.regions.at<RegionMotion>(heir);
+  const RegionMotion& of_ended = state.regions.at<RegionMotion>(ended);
   motion.largest_turn = std::max(motion.largest_turn, of_ended.largest_turn);
   motion.largest_rotation = std::max(motion.largest_rotation, of_ended.largest_rotation);
-  PatchState& state = world.regions.at<PatchState>(heir);
-  state.moved = 1;
-  state.resized = 1;
+  PatchState& own = state.regions.at<PatchState>(heir);
+  own.moved = 1;
+  own.resized = 1;
 }
 
 }  // namespace torsion

@@ -44,8 +44,8 @@ constexpr double kRolls = 2e-3;
 /// The motion of this step along that of the last one, as a share of it: 1 in steady motion, -1
 /// where it turns back.
 double share_of_last(const Patch& patch, double deepened) {
-  const double radius = patch.world.regions.at<RegionGeometry>(patch.region).radius;
-  const PatchState& last = patch.state;
+  const double radius = patch.state.regions.at<RegionGeometry>(patch.region).radius;
+  const PatchState& last = patch.own;
   const double spin = last.spin * radius;
   const double square =
       glm::dot(last.slide, last.slide) + spin * spin + last.deepened * last.deepened;
@@ -57,7 +57,7 @@ double share_of_last(const Patch& patch, double deepened) {
 /// How much of the last step's change to expect again.
 ForeseenShares foreseen_shares(const Patch& patch) {
   if (has_support(patch)) {
-    const double share = std::clamp(patch.state.along_last, 0.0, kMostForesight);
+    const double share = std::clamp(patch.own.along_last, 0.0, kMostForesight);
     return {share, share};
   }
   return best_shares(patch.rows, patch.columns, patch.problem.coupled, kMostForesight);
@@ -65,8 +65,8 @@ ForeseenShares foreseen_shares(const Patch& patch) {
 
 /// Whether the contact rolls in this step (kRolls).
 bool rolls(const Patch& patch) {
-  const RegionGeometry& geometry = patch.world.regions.at<RegionGeometry>(patch.region);
-  const glm::dvec3 turn = turn_of(motion_over_body(patch.world, patch.region));
+  const RegionGeometry& geometry = patch.state.regions.at<RegionGeometry>(patch.region);
+  const glm::dvec3 turn = turn_of(motion_over_body(patch.model, patch.state, patch.region));
   const glm::dvec3 tilt = turn - patch.frame.normal * glm::dot(turn, patch.frame.normal);
   return glm::length(tilt) * geometry.radius > kRolls * geometry.mean_depth;
 }
@@ -74,7 +74,7 @@ bool rolls(const Patch& patch) {
 /// As a step solves whose pressures have far to go.
 /// @param sweeps  at most
 void solve_longer(Patch& patch, std::uint32_t sweeps) {
-  const std::uint32_t least = patch.world.settings.at<Settings>(0).sweeps;
+  const std::uint32_t least = patch.model.settings.sweeps;
   patch.problem.sweeps = std::max(least, std::min(kSweepsAnew, sweeps));
   patch.problem.sweeps_of_rounds = std::max(least, sweeps);
   patch.problem.rounds = kRoundsAnew;
@@ -130,12 +130,12 @@ double contact_radius(const Patch& patch, const PatchSums& sums) {
 /// path.
 /// @param radius  m, of the contact
 void update_kinetic_shares(const Patch& patch, double force, double radius) {
-  const RegionIdentity& identity = patch.world.regions.at<RegionIdentity>(patch.region);
-  const Friction& friction = patch.world.bodies.at<Friction>(identity.body);
+  const RegionIdentity& identity = patch.state.regions.at<RegionIdentity>(patch.region);
+  const Friction& friction = patch.model.bodies.at<Friction>(identity.body);
   if (friction.static_friction == friction.dynamic_friction) {
     return;
   }
-  const Elasticity& elasticity = patch.world.bodies.at<Elasticity>(identity.body);
+  const Elasticity& elasticity = patch.model.bodies.at<Elasticity>(identity.body);
   // Displacement of a disc at its friction limit: stiffness 8 G a / (2 - nu).
   const double stiffness =
       8.0 * elasticity.shear_modulus() * radius / (2.0 - elasticity.poisson_ratio);
@@ -159,18 +159,19 @@ void update_kinetic_shares(const Patch& patch, double force, double radius) {
 
 /// What the region's components become.
 void summarize(const Patch& patch, const PatchSums& sums) {
-  World& world = patch.world;
-  RegionFriction& friction = world.regions.at<RegionFriction>(patch.region);
-  RegionNormal& normal = world.regions.at<RegionNormal>(patch.region);
-  RegionCarrier& carrier = world.regions.at<RegionCarrier>(patch.region);
+  const Model& model = patch.model;
+  State& state = patch.state;
+  RegionFriction& friction = state.regions.at<RegionFriction>(patch.region);
+  RegionNormal& normal = state.regions.at<RegionNormal>(patch.region);
+  RegionCarrier& carrier = state.regions.at<RegionCarrier>(patch.region);
   friction = RegionFriction{};
   normal = RegionNormal{};
   if (sums.force <= 0.0) {
     carrier = RegionCarrier{};
     return;
   }
-  RegionGeometry& geometry = world.regions.at<RegionGeometry>(patch.region);
-  const std::uint32_t body = world.regions.at<RegionIdentity>(patch.region).body;
+  RegionGeometry& geometry = state.regions.at<RegionGeometry>(patch.region);
+  const std::uint32_t body = state.regions.at<RegionIdentity>(patch.region).body;
   const glm::dvec3 center(sums.center, sums.height);
   const double cell = cell_area(patch.frame, patch.side);
   geometry.equivalent_point = grid_to_body(patch.frame, center);
@@ -179,7 +180,7 @@ void summarize(const Patch& patch, const PatchSums& sums) {
   geometry.mean_depth = sums.depth;
   geometry.rest_point = geometry.equivalent_point + patch.frame.normal * geometry.mean_depth;
   normal.force = sums.force;
-  normal.stiffness = 2.0 * world.bodies.at<Elasticity>(body).contact_modulus() * geometry.radius;
+  normal.stiffness = 2.0 * model.bodies.at<Elasticity>(body).contact_modulus() * geometry.radius;
   friction.force = sums.friction;
   friction.couple = sums.couple - (center.x * sums.friction.y - center.y * sums.friction.x);
   friction.stick_share = sums.stuck_cells / sums.loaded_cells;
@@ -206,8 +207,8 @@ void summarize(const Patch& patch, const PatchSums& sums) {
 /// material under it stands as it stood.
 /// @param before  when the cells' depths were found
 void keep_place(const Patch& patch, const RegionCarrier& before) {
-  RegionFrame& frame = patch.world.regions.at<RegionFrame>(patch.region);
-  RegionCarrier& carrier = patch.world.regions.at<RegionCarrier>(patch.region);
+  RegionFrame& frame = patch.state.regions.at<RegionFrame>(patch.region);
+  RegionCarrier& carrier = patch.state.regions.at<RegionCarrier>(patch.region);
   turn_axes(frame, glm::dot(before.rotation - carrier.rotation, frame.normal));
   const glm::dvec3 shift = before.translation - carrier.translation;
   frame.origin += shift - frame.normal * glm::dot(shift, frame.normal);
@@ -219,13 +220,13 @@ bool is_anew(const PatchState& state) {
 }
 
 SolutionStart start_of(const Patch& patch) {
-  if (patch.state.started == 0) {
+  if (patch.own.started == 0) {
     return SolutionStart::kNone;
   }
-  if (patch.state.resized != 0 || patch.problem.support.laid_anew) {
+  if (patch.own.resized != 0 || patch.problem.support.laid_anew) {
     return SolutionStart::kOtherGrid;
   }
-  return patch.state.moved != 0 ? SolutionStart::kMovedGrid : SolutionStart::kLastStep;
+  return patch.own.moved != 0 ? SolutionStart::kMovedGrid : SolutionStart::kLastStep;
 }
 
 /// How many sweeps a region gets in this step at most.
@@ -235,19 +236,19 @@ struct SweepLimits {
 };
 
 void solve_region(StepContext& context, std::uint32_t region, const SweepLimits& sweeps) {
-  const RegionCarrier carrier = context.world.regions.at<RegionCarrier>(region);
+  const RegionCarrier carrier = context.state.regions.at<RegionCarrier>(region);
   Patch patch = patch_of(context, region);
-  const bool anew = is_anew(patch.state);
-  const std::uint32_t settling = patch.state.settling;
-  const std::uint32_t body = patch.world.regions.at<RegionIdentity>(region).body;
-  if (load_cells(patch.rows, patch.world.bodies.at<Friction>(body), patch.columns, patch.places)) {
+  const bool anew = is_anew(patch.own);
+  const std::uint32_t settling = patch.own.settling;
+  const std::uint32_t body = patch.state.regions.at<RegionIdentity>(region).body;
+  if (load_cells(patch.rows, patch.model.bodies.at<Friction>(body), patch.columns, patch.places)) {
     patch.problem.rims = {patch.places.softness, patch.places.root};
   }
   add_rims(patch.problem, patch.columns, patch.rows, 1.0);
   find_starts(patch.rows, patch.places);
   const double depth = largest(whole_lanes(patch.columns.depth.size()), patch.columns.depth.data());
-  const double deepened = depth - patch.state.depth;
-  patch.state.along_last = share_of_last(patch, deepened);
+  const double deepened = depth - patch.own.depth;
+  patch.own.along_last = share_of_last(patch, deepened);
   if (anew) {
     foresee_cells(patch.rows, {}, patch.columns, patch.problem);
     start_anew(patch, sweeps.anew);
@@ -287,20 +288,20 @@ void solve_region(StepContext& context, std::uint32_t region, const SweepLimits&
       std::ranges::fill(each, 0.0);
     }
   }
-  patch.state = {patch.motion.slide,
-                 patch.motion.spin,
-                 deepened,
-                 patch.state.along_last,
-                 depth,
-                 outcome.residual,
-                 outcome.sweeps,
-                 1,
-                 0,
-                 0,
-                 settling > 0 ? settling - 1 : 0,
-                 0};
+  patch.own = {patch.motion.slide,
+               patch.motion.spin,
+               deepened,
+               patch.own.along_last,
+               depth,
+               outcome.residual,
+               outcome.sweeps,
+               1,
+               0,
+               0,
+               settling > 0 ? settling - 1 : 0,
+               0};
   summarize(patch, sums);
-  settle_energy(patch.world, region,
+  settle_energy(patch.model, patch.state, region,
                 {patch.problem, patch.columns, patch.support.z, held_by_body, patch.work}, start);
   add_rims(patch.problem, patch.columns, patch.rows, -1.0);
   if (settling > 0 && sums.force > 0.0) {
@@ -308,29 +309,29 @@ void solve_region(StepContext& context, std::uint32_t region, const SweepLimits&
   }
 }
 
-bool is_patch(const World& world, std::uint32_t region) {
-  return law_of(world, world.regions.at<RegionIdentity>(region).body).model == ContactModel::kPatch;
+bool is_patch(const Model& model, const State& state, std::uint32_t region) {
+  return law_of(model, state.regions.at<RegionIdentity>(region).body).model == ContactModel::kPatch;
 }
 
-SweepLimits sweep_limits(const World& world) {
+SweepLimits sweep_limits(const Model& model, const State& state) {
   std::uint32_t all = 0;
   std::uint32_t anew = 0;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    if (is_patch(world, region)) {
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    if (is_patch(model, state, region)) {
       ++all;
-      const PatchState& state = world.regions.at<PatchState>(region);
-      anew += is_anew(state) || state.settling > 0 ? 1U : 0U;
+      const PatchState& own = state.regions.at<PatchState>(region);
+      anew += is_anew(own) || own.settling > 0 ? 1U : 0U;
     }
   }
-  const std::uint32_t of_others = (all - anew) * world.settings.at<Settings>(0).sweeps;
+  const std::uint32_t of_others = (all - anew) * model.settings.sweeps;
   const std::uint32_t left = kSweepsOfStep - std::min(kSweepsOfStep, of_others);
   return {std::min(kSweepsOfAll, left) / std::max(anew, 1U),
           std::min(kSweepsOfRolling, kSweepsOfStep / std::max(all, 1U))};
 }
 
-void forget_cells(World& world, std::uint32_t block) {
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
-  world.patch_cells.zero({block * side * side, side * side});
+void forget_cells(const Model& model, State& state, std::uint32_t block) {
+  const std::uint32_t side = model.settings.grid_side;
+  state.patch_cells.zero({block * side * side, side * side});
 }
 
 constexpr System<StepContext> kPatchSolve[] = {
@@ -357,10 +358,11 @@ const ContactLaw kPatchLaw{
 };
 
 void patch_forces(StepContext& context) {
-  World& world = context.world;
-  const SweepLimits sweeps = sweep_limits(world);
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    if (is_patch(world, region)) {
+  const Model& model = context.model;
+  State& state = context.state;
+  const SweepLimits sweeps = sweep_limits(model, state);
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    if (is_patch(model, state, region)) {
       solve_region(context, region, sweeps);
     }
   }

@@ -20,9 +20,10 @@ constexpr std::uint32_t kRoundsOnSoftBody = 3;  // at most: pressing moves it si
 constexpr double kSettledOnBody = 0.01;  // PatchProblem::settled
 
 /// As the tool goes over cells that stay where they are, while RegionMotion's pivot goes with it.
-RegionMotion motion_over_cells(const World& world, std::uint32_t region, const RegionFrame& frame) {
-  RegionMotion motion = world.regions.at<RegionMotion>(region);
-  const MotionOverBody over = motion_over_body(world, region);
+RegionMotion motion_over_cells(const Model& model, const State& state, std::uint32_t region,
+                               const RegionFrame& frame) {
+  RegionMotion motion = state.regions.at<RegionMotion>(region);
+  const MotionOverBody over = motion_over_body(model, state, region);
   motion.slide +=
       glm::dvec2(body_to_grid_direction(frame, 0.5 * glm::cross(over.turn, over.shift)));
   return motion;
@@ -31,14 +32,15 @@ RegionMotion motion_over_cells(const World& world, std::uint32_t region, const R
 }  // namespace
 
 Patch patch_of(StepContext& context, std::uint32_t region) {
-  World& world = context.world;
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const Settings& settings = world.settings.at<Settings>(0);
-  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const RegionInfluences influences = region_influences(world, region);
+  const Model& model = context.model;
+  State& state = context.state;
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  const Settings& settings = model.settings;
+  const Elasticity& elasticity = model.bodies.at<Elasticity>(identity.body);
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const RegionInfluences influences = region_influences(model, state, region);
   if (influences.changed) {
-    world.regions.at<PatchState>(region).moved = 1;
+    state.regions.at<PatchState>(region).moved = 1;
   }
   PatchProblem problem;
   problem.influences = influences.tables;
@@ -47,8 +49,8 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
   problem.coupled = influences.coupled;
   const PatchPlaces& places = context.patch.places;
   cell_centers(frame, settings.grid_side, places.x, places.y);
-  problem.support = patch_support(world, region, context.patch.disc_stiffness, {places.x, places.y},
-                                  context.patch.support_terms);
+  problem.support = patch_support(model, state, region, context.patch.disc_stiffness,
+                                  {places.x, places.y}, context.patch.support_terms);
   problem.sweeps = settings.sweeps;
   if (problem.support.soft) {
     problem.sweeps *= kSweepsOnSoftBody;
@@ -57,7 +59,8 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
   if (problem.support.response != nullptr) {
     problem.settled = kSettledOnBody;
   }
-  return {world,
+  return {model,
+          state,
           context.patch.columns,
           context.patch.places,
           context.patch.support,
@@ -65,9 +68,9 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
           region,
           settings.grid_side,
           frame,
-          motion_over_cells(world, region, frame),
-          patch_rows(world, identity.cells),
-          world.regions.at<PatchState>(region),
+          motion_over_cells(model, state, region, frame),
+          patch_rows(state, identity.cells),
+          state.regions.at<PatchState>(region),
           problem};
 }
 
@@ -86,7 +89,7 @@ double find_support(const Patch& patch) {
   }
   SupportMotion motion = support_by(
       patch.problem.support, {columns.traction_x, columns.traction_y, columns.pressure}, false);
-  const SupportPolynomials known = known_support(patch.world, patch.region);
+  const SupportPolynomials known = known_support(patch.state, patch.region);
   for (std::size_t k = 0; k < known.size(); ++k) {
     motion.polynomials[k] -= known[k];
   }

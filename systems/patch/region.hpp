@@ -11,7 +11,8 @@ namespace torsion {
 
 /// One region of contact model patch at work.
 struct Patch {
-  World& world;
+  const Model& model;
+  State& state;
   const PatchColumns& columns;
   const PatchPlaces& places;
   const SupportColumns& support;
@@ -21,7 +22,7 @@ struct Patch {
   RegionFrame frame;
   RegionMotion motion;
   PatchRows rows;
-  PatchState& state;
+  PatchState& own;
   PatchProblem problem;
 };
 

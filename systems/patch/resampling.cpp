@@ -150,14 +150,14 @@ CellMove move_between(const RegionFrame& before, const RegionFrame& now, std::ui
 
 void move_cells(const Grid& grid, PatchScratch& scratch, const CellMove& move, double depth,
                 double ahead) {
-  const PatchRows rows = patch_rows(grid.world, grid.identity.cells);
+  const PatchRows rows = patch_rows(grid.state, grid.identity.cells);
   std::ranges::copy(rows.surface.held_x, scratch.held_before.x.begin());
   std::ranges::copy(rows.surface.held_y, scratch.held_before.y.begin());
   std::ranges::copy(rows.tractions, scratch.tractions_before.begin());
   const Before before{scratch.held_before.x, scratch.held_before.y, scratch.tractions_before,
                       static_cast<int>(grid.side), static_cast<int>(patch_spare(grid.side))};
   const glm::dmat2 to_new = glm::transpose(move.turn);
-  grid.world.patch_cells.zero(grid.identity.cells);
+  grid.state.patch_cells.zero(grid.identity.cells);
   std::size_t cell = 0;
   for (std::uint32_t j = 0; j < grid.side; ++j) {
     for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
@@ -189,7 +189,7 @@ void move_cells(const Grid& grid, PatchScratch& scratch, const CellMove& move, d
 void add_cells(const Grid& grid, const CellMove& move, std::span<const CellTraction> others) {
   const Before before{
       {}, {}, others, static_cast<int>(grid.side), static_cast<int>(patch_spare(grid.side))};
-  const PatchRows rows = patch_rows(grid.world, grid.identity.cells);
+  const PatchRows rows = patch_rows(grid.state, grid.identity.cells);
   const glm::dmat2 to_new = glm::transpose(move.turn);
   std::size_t cell = 0;
   for (std::uint32_t j = 0; j < grid.side; ++j) {

@@ -2,11 +2,11 @@
 
 namespace torsion {
 
-void PatchScratch::reserve(const World& world) {
-  if (world.patch_cells.empty()) {
+void PatchScratch::reserve(const Model& model, const State& state) {
+  if (state.patch_cells.empty()) {
     return;
   }
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  const std::uint32_t side = model.settings.grid_side;
   const std::size_t cells = std::size_t{side} * side;
   column_memory.reserve(22, cells);
   for (std::span<double>* each :
@@ -18,7 +18,7 @@ void PatchScratch::reserve(const World& world) {
         &support.y,        &support.z}) {
     *each = column_memory.take();
   }
-  if (!world.footings.empty()) {
+  if (!state.footings.empty()) {
     support_terms.assign(kSupportTerms * column_memory.stride(), 0.0);
     disc_stiffness = make_disc_stiffness();
   }

@@ -30,8 +30,8 @@ struct PatchScratch {
 
   CellColumnMemory column_memory;  // what the columns above are in
 
-  /// Takes all memory that a step of `world` can need; none where no body has this model.
-  void reserve(const World& world);
+  /// Takes all memory that a step can need; none where no body has this model.
+  void reserve(const Model& model, const State& state);
 };
 
 }  // namespace torsion

@@ -12,23 +12,23 @@
 namespace torsion {
 namespace {
 
-void copy_cells(World& world, Range from, Range to) {
-  const PatchRows theirs = patch_rows(world, from);
-  const PatchRows mine = patch_rows(world, to);
-  std::ranges::copy(world.cells.rows<CellGeometry>(from),
-                    world.cells.rows<CellGeometry>(to).begin());
+void copy_cells(State& state, Range from, Range to) {
+  const PatchRows theirs = patch_rows(state, from);
+  const PatchRows mine = patch_rows(state, to);
+  std::ranges::copy(state.cells.rows<CellGeometry>(from),
+                    state.cells.rows<CellGeometry>(to).begin());
   std::ranges::copy(theirs.tractions, mine.tractions.begin());
 }
 
 template <class Component>
-void copy_component(World& world, std::uint32_t from, std::uint32_t region) {
-  world.regions.at<Component>(region) = world.regions.at<Component>(from);
+void copy_component(State& state, std::uint32_t from, std::uint32_t region) {
+  state.regions.at<Component>(region) = state.regions.at<Component>(from);
 }
 
 /// Lets go of the cells that are not in the region's contact.
 /// @return the pressure that is left, Pa, summed over the cells
-double keep_covered(World& world, std::uint32_t region) {
-  const PatchRows rows = patch_rows(world, world.regions.at<RegionIdentity>(region).cells);
+double keep_covered(State& state, std::uint32_t region) {
+  const PatchRows rows = patch_rows(state, state.regions.at<RegionIdentity>(region).cells);
   double sum = 0.0;
   for (std::size_t cell = 0; cell < rows.tractions.size(); ++cell) {
     if (rows.geometry[cell].coverage <= 0.0) {
@@ -40,9 +40,9 @@ double keep_covered(World& world, std::uint32_t region) {
 }
 
 /// Cells that are as near to the one region's contact as to the other's count in both.
-void halve_shared(World& world, std::uint32_t from, std::uint32_t region) {
-  const PatchRows theirs = patch_rows(world, world.regions.at<RegionIdentity>(from).cells);
-  const PatchRows mine = patch_rows(world, world.regions.at<RegionIdentity>(region).cells);
+void halve_shared(State& state, std::uint32_t from, std::uint32_t region) {
+  const PatchRows theirs = patch_rows(state, state.regions.at<RegionIdentity>(from).cells);
+  const PatchRows mine = patch_rows(state, state.regions.at<RegionIdentity>(region).cells);
   for (std::size_t cell = 0; cell < mine.tractions.size(); ++cell) {
     if (theirs.geometry[cell].coverage > 0.0 && mine.geometry[cell].coverage > 0.0) {
       for (CellTraction* const each : {&theirs.tractions[cell], &mine.tractions[cell]}) {
@@ -54,10 +54,10 @@ void halve_shared(World& world, std::uint32_t from, std::uint32_t region) {
 }
 
 /// The region that was copied; its row may have changed since.
-std::uint32_t copied_from(const World& world, const PatchState& state) {
-  const auto regions = world.regions.column<RegionIdentity>();
+std::uint32_t copied_from(const State& state, const PatchState& copy) {
+  const auto regions = state.regions.column<RegionIdentity>();
   const auto found = std::ranges::find(
-      regions, state.copy_of - 1, [](const RegionIdentity& region) { return block_of(region); });
+      regions, copy.copy_of - 1, [](const RegionIdentity& region) { return block_of(region); });
   TORSION_ASSERT(found != regions.end());
   return static_cast<std::uint32_t>(found - regions.begin());
 }
@@ -68,54 +68,55 @@ void lay_around_rest(StepContext& context, std::uint32_t region) {
   const RegionPoints& contact = context.scratch.region_points[block_of(grid.identity)];
   lay_around_loaded(context, region, contact);
   find_cells(grid, contact);
-  context.world.regions.at<RegionGeometry>(region) = summarize_cells(grid);
+  context.state.regions.at<RegionGeometry>(region) = summarize_cells(grid);
   // They are held where they will have moved to without the other region's tractions.
-  std::ranges::fill(patch_rows(context.world, grid.identity.cells).surface.known, 0.0);
+  std::ranges::fill(patch_rows(context.state, grid.identity.cells).surface.known, 0.0);
 }
 
 void share_out(StepContext& context, std::uint32_t from, std::uint32_t region) {
-  World& world = context.world;
-  halve_shared(world, from, region);
-  const double left = keep_covered(world, from);
-  const double taken = keep_covered(world, region);
+  const Model& model = context.model;
+  State& state = context.state;
+  halve_shared(state, from, region);
+  const double left = keep_covered(state, from);
+  const double taken = keep_covered(state, region);
   lay_around_rest(context, from);
   lay_around_rest(context, region);
-  const BodyLaw& body = body_law_of(world, world.regions.at<RegionIdentity>(from).body);
+  const BodyLaw& body = body_law_of(model, state.regions.at<RegionIdentity>(from).body);
   if (body.split != nullptr) {
-    body.split(world, from, region);
+    body.split(model, state, from, region);
   }
   if (left + taken > 0.0) {
-    split_energy(world, from, region, taken / (left + taken));
+    split_energy(state, from, region, taken / (left + taken));
   }
   for (const std::uint32_t each : {from, region}) {
-    PatchState& state = world.regions.at<PatchState>(each);
-    state.moved = 1;
-    state.resized = 1;
+    PatchState& own = state.regions.at<PatchState>(each);
+    own.moved = 1;
+    own.resized = 1;
   }
 }
 
 }  // namespace
 
-void copy_patch(World& world, std::uint32_t from, std::uint32_t region) {
-  if (world.regions.at<PatchState>(from).started == 0) {
+void copy_patch(State& state, std::uint32_t from, std::uint32_t region) {
+  if (state.regions.at<PatchState>(from).started == 0) {
     return;
   }
-  const Range cells = world.regions.at<RegionIdentity>(from).cells;
-  copy_cells(world, cells, world.regions.at<RegionIdentity>(region).cells);
-  copy_component<RegionFrame>(world, from, region);
-  copy_component<RegionCarrier>(world, from, region);
-  copy_component<RegionGeometry>(world, from, region);
-  copy_component<RegionMotion>(world, from, region);
-  copy_component<RegionFriction>(world, from, region);
-  copy_component<PatchState>(world, from, region);
-  world.regions.at<PatchState>(region).copy_of = cells.first / cells.count + 1;
+  const Range cells = state.regions.at<RegionIdentity>(from).cells;
+  copy_cells(state, cells, state.regions.at<RegionIdentity>(region).cells);
+  copy_component<RegionFrame>(state, from, region);
+  copy_component<RegionCarrier>(state, from, region);
+  copy_component<RegionGeometry>(state, from, region);
+  copy_component<RegionMotion>(state, from, region);
+  copy_component<RegionFriction>(state, from, region);
+  copy_component<PatchState>(state, from, region);
+  state.regions.at<PatchState>(region).copy_of = cells.first / cells.count + 1;
 }
 
 void share_out_patch(StepContext& context, std::uint32_t region) {
-  PatchState& state = context.world.regions.at<PatchState>(region);
-  if (state.copy_of != 0) {
-    share_out(context, copied_from(context.world, state), region);
-    state.copy_of = 0;
+  PatchState& copy = context.state.regions.at<PatchState>(region);
+  if (copy.copy_of != 0) {
+    share_out(context, copied_from(context.state, copy), region);
+    copy.copy_of = 0;
   }
 }
 

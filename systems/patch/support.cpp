@@ -198,9 +198,9 @@ void add_answer(const PatchSupport& support, const SupportPolynomials& moments, 
 
 /// By how much the body gives way beside its contact: the sum of its compliances over those of the
 /// contact.
-double yielding_ratio(const World& world, const RegionIdentity& region, const Footing& footing,
+double yielding_ratio(const Model& model, const RegionIdentity& region, const Footing& footing,
                       const std::array<double, 36>& yielding) {
-  const Elasticity& elasticity = world.bodies.at<Elasticity>(region.body);
+  const Elasticity& elasticity = model.bodies.at<Elasticity>(region.body);
   const double a = footing.radius;
   // Those of a contact: at most that of a disc pressed, 1 / (2 E* a), and tilted, 3 / (4 E* a^3).
   // Johnson, Contact Mechanics, 1985, (3.36) and 3.5.
@@ -230,35 +230,36 @@ void find_yielding(const Footing& footing, const std::array<double, 36>& yieldin
 
 }  // namespace
 
-PatchSupport patch_support(World& world, std::uint32_t region, const DiscStiffness& disc,
-                           const PatchCenters& centers, std::span<double> terms) {
+PatchSupport patch_support(const Model& model, State& state, std::uint32_t region,
+                           const DiscStiffness& disc, const PatchCenters& centers,
+                           std::span<double> terms) {
   PatchSupport support;
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  if (world.footings.empty()) {
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  if (state.footings.empty()) {
     return support;
   }
   const std::uint32_t block = identity.cells.first / identity.cells.count;
-  const Footing& footing = world.footings.at<Footing>(block);
+  const Footing& footing = state.footings.at<Footing>(block);
   if (footing.reach == 0.0 || footing.on_layer != 0) {
     return support;
   }
-  FootingResponse& response = world.footings.at<FootingResponse>(block);
+  FootingResponse& response = state.footings.at<FootingResponse>(block);
   if (response.serial != footing.serial) {
-    find_response(ports_of(world, identity.body), footing, response);
-    make_definite(disc, world.bodies.at<Elasticity>(identity.body), footing, response);
+    find_response(ports_of(model, identity.body), footing, response);
+    make_definite(disc, model.bodies.at<Elasticity>(identity.body), footing, response);
     support.laid_anew = true;
   }
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const std::uint32_t side = model.settings.grid_side;
   support.response = &response;
   support.to_body = {frame.tangent_x, frame.tangent_y, -frame.normal};
   support.area = cell_area(frame, side);
   support.cells = whole_lanes(centers.x.size());
   support.footing = &footing;
-  const RegionReaction& reaction = world.regions.at<RegionReaction>(region);
+  const RegionReaction& reaction = state.regions.at<RegionReaction>(region);
   support.reaction = reaction.active != 0 ? &reaction : nullptr;
   const std::array<double, 36> yielding = yielding_of(footing, reaction);
-  support.soft = yielding_ratio(world, identity, footing, yielding) > kSoft;
+  support.soft = yielding_ratio(model, identity, footing, yielding) > kSoft;
   support.terms = terms.first(kSupportTerms * support.cells);
   support.place_x = centers.x;
   support.place_y = centers.y;
@@ -304,10 +305,10 @@ void add_support(const PatchSupport& support, const PatchField& tractions,
   }
 }
 
-SupportPolynomials known_support(const World& world, std::uint32_t region) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const Footing& footing = world.footings.at<Footing>(identity.cells.first / identity.cells.count);
-  const RegionSupport& known = world.regions.at<RegionSupport>(region);
+SupportPolynomials known_support(const State& state, std::uint32_t region) {
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  const Footing& footing = state.footings.at<Footing>(identity.cells.first / identity.cells.count);
+  const RegionSupport& known = state.regions.at<RegionSupport>(region);
   const glm::dvec3 rotation = known.rotation - known.rotation_by_others;
   const std::array<glm::dvec3, 3> terms{known.translation - known.translation_by_others +
                                             glm::cross(rotation, footing.origin - known.about),

@@ -57,14 +57,15 @@ struct SupportMotion {
 
 /// The region's, or none. Finds the footing's response anew when it has been laid anew.
 /// @param terms  (kSupportTerms x whole lanes of cells) out
-PatchSupport patch_support(World& world, std::uint32_t region, const DiscStiffness& disc,
-                           const PatchCenters& centers, std::span<double> terms);
+PatchSupport patch_support(const Model& model, State& state, std::uint32_t region,
+                           const DiscStiffness& disc, const PatchCenters& centers,
+                           std::span<double> terms);
 
 /// @param change  tractions are a change: of the other regions' answer only that to them
 SupportMotion support_by(const PatchSupport& support, const PatchField& tractions, bool change);
 
 /// The motion that the region's RegionSupport has of it already.
-SupportPolynomials known_support(const World& world, std::uint32_t region);
+SupportPolynomials known_support(const State& state, std::uint32_t region);
 
 /// displacements += what tractions move; nothing without a response.
 void add_support(const PatchSupport& support, const PatchField& tractions,

@@ -62,59 +62,61 @@ void move_anchors(const PortCompliance& body, const Footing& footing, const Port
 }
 
 /// Mean over a ring about the region's place by how far its SupportField has gone round it, rad.
-double mean_turn(const World& world, std::uint32_t region, double radius) {
+double mean_turn(const State& state, std::uint32_t region, double radius) {
   constexpr int kPlaces = 8;  // a polynomial of the fourth degree has no more than five waves
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const glm::dvec3& center = world.regions.at<RegionGeometry>(region).rest_point;
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const glm::dvec3& center = state.regions.at<RegionGeometry>(region).rest_point;
   double sum = 0.0;
   for (int place = 0; place < kPlaces; ++place) {
     const double angle = 2.0 * std::numbers::pi * place / kPlaces;
     const glm::dvec3 way = tangent_to_body(frame, {std::cos(angle), std::sin(angle)});
     sum += glm::dot(glm::cross(frame.normal, way),
-                    displacement_at(world.regions.at<SupportField>(region), center + radius * way));
+                    displacement_at(state.regions.at<SupportField>(region), center + radius * way));
   }
   return sum / (kPlaces * radius);
 }
 
 /// As the region's contact sees it: mdr knows the rigid part only. Of a polynomial of the fourth
 /// degree the mean turn of a ring is c + g r^2: two rings tell both.
-void find_support_turn(const World& world, std::uint32_t region, AnchorTurns& turns) {
-  const RegionSupport& support = world.regions.at<RegionSupport>(region);
+void find_support_turn(const Model& model, const State& state, std::uint32_t region,
+                       AnchorTurns& turns) {
+  const RegionSupport& support = state.regions.at<RegionSupport>(region);
   turns.support = glm::dot(support.rotation - support.rotation_step,
-                           world.regions.at<RegionFrame>(region).normal);
-  const double radius = world.regions.at<RegionGeometry>(region).radius;
-  if (radius > 0.0 && law_of(world, world.regions.at<RegionIdentity>(region).body).by_cells) {
-    const double outer = mean_turn(world, region, radius);
-    const double inner = mean_turn(world, region, 0.5 * radius);
+                           state.regions.at<RegionFrame>(region).normal);
+  const double radius = state.regions.at<RegionGeometry>(region).radius;
+  if (radius > 0.0 && law_of(model, state.regions.at<RegionIdentity>(region).body).by_cells) {
+    const double outer = mean_turn(state, region, radius);
+    const double inner = mean_turn(state, region, 0.5 * radius);
     turns.support_growth = (outer - inner) / (0.75 * radius * radius);
     turns.support += inner - 0.25 * radius * radius * turns.support_growth;
   }
 }
 
 /// All regions of one body.
-void move_anchors_of(const World& world, std::uint32_t body, Snapshot& snapshot) {
+void move_anchors_of(const Model& model, const State& state, std::uint32_t body,
+                     Snapshot& snapshot) {
   const auto anchors =
-      snapshot.anchors.rows<AnchorMotion>(world.bodies.at<OwnedRows>(body).anchors);
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+      snapshot.anchors.rows<AnchorMotion>(model.bodies.at<OwnedRows>(body).anchors);
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
     if (identity.body != body) {
       continue;
     }
-    const Footing& footing = world.footings.at<Footing>(block_of(identity));
+    const Footing& footing = state.footings.at<Footing>(block_of(identity));
     PortVectors forces;
-    forces_at_ports(footing, contact_load(world, region, footing).moments, forces);
+    forces_at_ports(footing, contact_load(model, state, region, footing).moments, forces);
     AnchorTurns& turns = snapshot.region_fields.at<AnchorTurns>(region);
-    find_support_turn(world, region, turns);
-    move_anchors(ports_of(world, body), footing, forces, anchors, turns);
+    find_support_turn(model, state, region, turns);
+    move_anchors(ports_of(model, body), footing, forces, anchors, turns);
   }
 }
 
 }  // namespace
 
-void anchor_motions(const World& world, Snapshot& snapshot) {
-  for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
-    if (world.bodies.at<BodyModels>(body).body == BodyModel::kCompliance) {
-      move_anchors_of(world, body, snapshot);
+void anchor_motions(const Model& model, const State& state, Snapshot& snapshot) {
+  for (std::uint32_t body = 0; body < model.bodies.size(); ++body) {
+    if (model.bodies.at<BodyModels>(body).body == BodyModel::kCompliance) {
+      move_anchors_of(model, state, body, snapshot);
     }
   }
 }

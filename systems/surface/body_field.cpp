@@ -56,8 +56,8 @@ void fill_slots(const Snapshot& snapshot, BodyField& field) {
     for (const Slot& before : field.slots) {
       moved += before.dent.displacement(geometry.rest_point);
     }
-    const RegionDent dent = region_dent(field.world, snapshot, region, moved);
-    field.slots.push_back({region_twist(field.world, snapshot, region), dent, BodyTurn{}, region,
+    const RegionDent dent = region_dent(field.model, snapshot, region, moved);
+    field.slots.push_back({region_twist(field.model, snapshot, region), dent, BodyTurn{}, region,
                            identity.tool, dent.radius > 0.0 ? geometry.largest_depth : 0.0});
   }
 }
@@ -82,14 +82,14 @@ void limit_past_turns(const Snapshot& snapshot, BodyField& field) {
 }
 
 void fill_touchers(const Snapshot& snapshot, BodyField& field) {
-  const Pose& pose = field.world.bodies.at<Pose>(field.body);
+  const Pose& pose = field.model.bodies.at<Pose>(field.body);
   for (const Slot& slot : field.slots) {
     const bool known =
         std::any_of(field.touchers.begin(), field.touchers.end(),
                     [&](const Toucher& toucher) { return toucher.tool == slot.tool; });
     if (!known && slot.depth > 0.0) {
-      field.touchers.push_back({slot.tool, field.world.tools.at<OwnedRows>(slot.tool).parts,
-                                field.world.tools.at<Bounds>(slot.tool),
+      field.touchers.push_back({slot.tool, field.model.tools.at<OwnedRows>(slot.tool).parts,
+                                field.model.tools.at<Bounds>(slot.tool),
                                 relative(pose, snapshot.tools.at<ToolPose>(slot.tool).now)});
     }
   }
@@ -204,7 +204,7 @@ void meet_supports(const Snapshot& snapshot, std::span<const glm::dvec3> centers
 
 /// Displacement along the axes, from end to end of the body.
 void fill_middles(BodyField& field) {
-  const Bounds& bounds = field.world.bodies.at<Bounds>(field.body);
+  const Bounds& bounds = field.model.bodies.at<Bounds>(field.body);
   const glm::dvec3 center = 0.5 * (bounds.lowest + bounds.highest);
   const glm::dvec3 half = 0.5 * (bounds.highest - bounds.lowest);
   for (Slot& slot : field.slots) {
@@ -223,13 +223,13 @@ void fill_middles(BodyField& field) {
 }
 }  // namespace
 
-BodyField body_field(const World& world, const Snapshot& snapshot, const FrameWorld& frame,
+BodyField body_field(const Model& model, const Snapshot& snapshot, const FrameWorld& frame,
                      std::uint32_t body) {
   const FrameBody& data = frame.bodies.at<FrameBody>(body);
-  const Bounds& bounds = world.bodies.at<Bounds>(body);
-  BodyField field{world, body, world.bodies.at<FixedRegion>(body), {}, 0.0, {}, false, false,
+  const Bounds& bounds = model.bodies.at<Bounds>(body);
+  BodyField field{model, body, model.bodies.at<FixedRegion>(body), {}, 0.0, {}, false, false,
                   {},    {}};
-  field.volumes = world.fixed_volumes.rows<FixedVolume>(field.fixed.volumes);
+  field.volumes = model.fixed_volumes.rows<FixedVolume>(field.fixed.volumes);
   field.held_band = kHeldBand * glm::length(bounds.highest - bounds.lowest);
   std::vector<glm::dvec3> centers;
   for (const AnchorRest& anchor : frame.anchor_rest.rows<AnchorRest>(data.anchors)) {
@@ -251,7 +251,7 @@ BodyField body_field(const World& world, const Snapshot& snapshot, const FrameWo
     return field;
   }
   // A body with compliance has what its contacts do to the half-space in the dents alone.
-  const bool anchors_have_dents = world.bodies.at<BodyModels>(body).body == BodyModel::kSkeleton;
+  const bool anchors_have_dents = model.bodies.at<BodyModels>(body).body == BodyModel::kSkeleton;
   std::vector<glm::dvec3> values = anchors_have_dents
                                        ? center_values(snapshot, data, field.slots, centers)
                                        : center_values(snapshot, data, {}, centers);

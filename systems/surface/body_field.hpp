@@ -56,7 +56,7 @@ struct Toucher {
 };
 
 struct BodyField {
-  const World& world;
+  const Model& model;
   std::uint32_t body = 0;
   FixedRegion fixed;
   std::span<const FixedVolume> volumes;
@@ -68,7 +68,7 @@ struct BodyField {
   std::vector<Toucher> touchers;
 };
 
-BodyField body_field(const World& world, const Snapshot& snapshot, const FrameWorld& frame,
+BodyField body_field(const Model& model, const Snapshot& snapshot, const FrameWorld& frame,
                      std::uint32_t body);
 
 /// How freely a point moves: 0 on the fixed region, 1 a little away from it.

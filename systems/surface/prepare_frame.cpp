@@ -52,14 +52,14 @@ struct BodyCenters {
   std::vector<InterpolationRow> inverse;
 };
 
-BodyCenters centers_of(const BodyDescription& body, const World& world, std::uint32_t row) {
+BodyCenters centers_of(const BodyDescription& body, const Model& model, std::uint32_t row) {
   BodyCenters centers;
-  const auto anchors = world.anchors.rows<AnchorRest>(world.bodies.at<OwnedRows>(row).anchors);
+  const auto anchors = model.anchors.rows<AnchorRest>(model.bodies.at<OwnedRows>(row).anchors);
   if (anchors.empty()) {
     return centers;
   }
   centers.held =
-      held_points(body, world.bodies.at<FixedRegion>(row), world.bodies.at<Bounds>(row), anchors);
+      held_points(body, model.bodies.at<FixedRegion>(row), model.bodies.at<Bounds>(row), anchors);
   std::vector<glm::dvec3> all;
   for (const AnchorRest& anchor : anchors) {
     all.push_back(anchor.position);
@@ -98,7 +98,7 @@ DrawRange append_mesh(const DrawMesh& mesh, VertexTable& vertices, Table<Triangl
   return range;
 }
 
-void reserve(const SceneDescription& scene, const World& world,
+void reserve(const SceneDescription& scene, const Model& model,
              const std::vector<BodyCenters>& centers, FrameWorld& frame) {
   std::size_t body_vertices = 0;
   std::size_t body_triangles = 0;
@@ -129,16 +129,16 @@ void reserve(const SceneDescription& scene, const World& world,
   frame.body_triangles.reserve(rows(body_triangles));
   frame.tool_vertices.reserve(rows(tool_vertices));
   frame.tool_triangles.reserve(rows(tool_triangles));
-  frame.anchor_rest.reserve(world.anchors.size() + rows(held));
+  frame.anchor_rest.reserve(model.anchors.size() + rows(held));
   frame.interpolation.reserve(rows(interpolation));
 }
 
-void append_body(const BodyDescription& body, const World& world, const BodyCenters& centers,
+void append_body(const BodyDescription& body, const Model& model, const BodyCenters& centers,
                  FrameWorld& frame) {
   const std::uint32_t row = append_rows(frame.bodies, 1).first;
   const DrawRange drawn = append_mesh(body.draw, frame.body_vertices, frame.body_triangles);
   FrameBody data;
-  data.anchors = centers.inverse.empty() ? Range{} : world.bodies.at<OwnedRows>(row).anchors;
+  data.anchors = centers.inverse.empty() ? Range{} : model.bodies.at<OwnedRows>(row).anchors;
   data.held_points = append_rows(frame.anchor_rest, centers.held.size());
   for (std::size_t i = 0; i < centers.held.size(); ++i) {
     frame.anchor_rest.rows<AnchorRest>(data.held_points)[i].position = centers.held[i];
@@ -148,29 +148,29 @@ void append_body(const BodyDescription& body, const World& world, const BodyCent
                     frame.interpolation.rows<InterpolationRow>(data.interpolation).begin());
   data.twist = append_rows(frame.twist, std::size_t{drawn.vertices.count} * kMaxRegionsPerBody);
   data.axes = append_rows(frame.axes, kMaxRegionsPerBody);
-  frame.bodies.at<Pose>(row) = world.bodies.at<Pose>(row);
+  frame.bodies.at<Pose>(row) = model.bodies.at<Pose>(row);
   frame.bodies.at<DrawRange>(row) = drawn;
   frame.bodies.at<FrameBody>(row) = data;
 }
 
 }  // namespace
 
-FrameWorld prepare_frame(const SceneDescription& scene, const World& world) {
+FrameWorld prepare_frame(const SceneDescription& scene, const Model& model, const State& state) {
   std::vector<BodyCenters> centers;
-  for (std::uint32_t row = 0; row < world.bodies.size(); ++row) {
-    centers.push_back(centers_of(scene.bodies[row], world, row));
+  for (std::uint32_t row = 0; row < model.bodies.size(); ++row) {
+    centers.push_back(centers_of(scene.bodies[row], model, row));
   }
   FrameWorld frame;
-  reserve(scene, world, centers, frame);
-  const Range anchors = append_rows(frame.anchor_rest, world.anchors.size());
-  std::ranges::copy(world.anchors.column<AnchorRest>(),
+  reserve(scene, model, centers, frame);
+  const Range anchors = append_rows(frame.anchor_rest, model.anchors.size());
+  std::ranges::copy(model.anchors.column<AnchorRest>(),
                     frame.anchor_rest.rows<AnchorRest>(anchors).begin());
   for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
-    append_body(scene.bodies[body], world, centers[body], frame);
+    append_body(scene.bodies[body], model, centers[body], frame);
   }
   for (const ToolDescription& tool : scene.tools) {
     const std::uint32_t row = append_rows(frame.tools, 1).first;
-    frame.tools.at<Pose>(row) = world.tools.at<ToolPose>(row).now;
+    frame.tools.at<Pose>(row) = state.tools.at<ToolPose>(row).now;
     frame.tools.at<DrawRange>(row) =
         append_mesh(tool.draw, frame.tool_vertices, frame.tool_triangles);
   }

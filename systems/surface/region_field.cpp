@@ -33,13 +33,13 @@ HeightShare height_share(const FixedRegion& fixed, const glm::dvec3& contact,
 /// Turn at the contact by the torque of a region that the tool's axis misses: T l / (G J), (10). J
 /// is the polar second moment about that axis of the body's section, Saint-Venant's constant about
 /// the section's own middle; it is the harmonic mean along the main beam.
-double turn_past_region(const World& world, std::uint32_t body, const glm::dvec3& contact,
+double turn_past_region(const Model& model, std::uint32_t body, const glm::dvec3& contact,
                         const glm::dvec3& axis, const glm::dvec3& on_axis, double torque) {
-  const MainBeam beam = main_beam(world, body, contact);
+  const MainBeam beam = main_beam(model, body, contact);
   if (!beam.has_sections) {
     return 0.0;
   }
-  const Bounds& bounds = world.bodies.at<Bounds>(body);
+  const Bounds& bounds = model.bodies.at<Bounds>(body);
   const glm::dvec3 offset = 0.5 * (bounds.lowest + bounds.highest) - on_axis;
   const glm::dvec3 arm = offset - axis * glm::dot(offset, axis);
   double compliance = 0.0;  // 1/m^4, mean of 1/J
@@ -47,8 +47,8 @@ double turn_past_region(const World& world, std::uint32_t body, const glm::dvec3
     compliance += 1.0 / (section.torsion_constant + section.area * glm::dot(arm, arm));
   }
   compliance /= static_cast<double>(kBeamStations);
-  const double lever = std::abs(glm::dot(contact - world.bodies.at<FixedRegion>(body).point, axis));
-  return torque * lever * compliance / world.bodies.at<Elasticity>(body).shear_modulus();
+  const double lever = std::abs(glm::dot(contact - model.bodies.at<FixedRegion>(body).point, axis));
+  return torque * lever * compliance / model.bodies.at<Elasticity>(body).shear_modulus();
 }
 
 /// Displacement of an elastic half-space under a contact of radius 1, 1 at the centre.
@@ -96,12 +96,12 @@ TurnedDiscs turned_discs(const Snapshot& snapshot, std::uint32_t region) {
 
 /// The forces of a half-space model in a region; count 0 where it has none.
 /// @param share  of their displacement that is drawn
-PressedSurface pressed_surface(const World& world, const Snapshot& snapshot, std::uint32_t region,
+PressedSurface pressed_surface(const Model& model, const Snapshot& snapshot, std::uint32_t region,
                                double share) {
   const RegionField& field = snapshot.region_fields.at<RegionField>(region);
   const RegionFrame& frame = snapshot.regions.at<RegionFrame>(region);
   const Elasticity& elasticity =
-      world.bodies.at<Elasticity>(snapshot.regions.at<RegionIdentity>(region).body);
+      model.bodies.at<Elasticity>(snapshot.regions.at<RegionIdentity>(region).body);
   PressedSurface pressed;
   const double normal_force = snapshot.regions.at<RegionNormal>(region).force;
   if (field.radius <= 0.0 || normal_force <= 0.0) {
@@ -215,13 +215,13 @@ double RegionTwist::angle(const glm::dvec3& rest) const {
   return turn;
 }
 
-RegionTwist region_twist(const World& world, const Snapshot& snapshot, std::uint32_t region) {
+RegionTwist region_twist(const Model& model, const Snapshot& snapshot, std::uint32_t region) {
   const RegionIdentity& identity = snapshot.regions.at<RegionIdentity>(region);
   const RegionFrame& frame = snapshot.regions.at<RegionFrame>(region);
   const RegionGeometry& geometry = snapshot.regions.at<RegionGeometry>(region);
   const RegionMotion& motion = snapshot.regions.at<RegionMotion>(region);
   const RegionFriction& friction = snapshot.regions.at<RegionFriction>(region);
-  const FixedRegion& fixed = world.bodies.at<FixedRegion>(identity.body);
+  const FixedRegion& fixed = model.bodies.at<FixedRegion>(identity.body);
   const glm::dvec3 contact = geometry.rest_point;
 
   RegionTwist twist;
@@ -231,7 +231,7 @@ RegionTwist region_twist(const World& world, const Snapshot& snapshot, std::uint
     twist.axis.direction = glm::vec4(glm::vec3(twist.discs.normal), 0.0F);
     return twist;
   }
-  if (is_half_space(world.bodies.at<BodyModels>(identity.body).contact)) {
+  if (is_half_space(model.bodies.at<BodyModels>(identity.body).contact)) {
     // So new that there is no field yet: it has hardly turned anything.
     twist.axis.point = glm::vec4(glm::vec3(contact), 0.0F);
     twist.axis.direction = glm::vec4(glm::vec3(frame.normal), 0.0F);
@@ -248,7 +248,7 @@ RegionTwist region_twist(const World& world, const Snapshot& snapshot, std::uint
   twist.direction = frame.normal;
   const double past = 1.0 - motion.axis_share;
   if (past > 0.0 && glm::dot(motion.axis, motion.axis) > 0.0) {
-    const Pose& pose = world.bodies.at<Pose>(identity.body);
+    const Pose& pose = model.bodies.at<Pose>(identity.body);
     const ToolMotion& tool = snapshot.tools.at<ToolMotion>(identity.tool);
     const glm::dvec3 torque =
         glm::conjugate(pose.rotation) * snapshot.regions.at<RegionWrench>(region).on_tool.torque;
@@ -262,7 +262,7 @@ RegionTwist region_twist(const World& world, const Snapshot& snapshot, std::uint
     const double known = smooth_step(tool.axis_turn / kFirstTurn);
     // A beam that is softer than the contact would turn farther than the tool that turns it.
     twist.past_turn = past * known *
-                      std::clamp(turn_past_region(world, identity.body, contact, axis, center,
+                      std::clamp(turn_past_region(model, identity.body, contact, axis, center,
                                                   -glm::dot(torque, axis)),
                                  -motion.largest_rotation, motion.largest_rotation);
     twist.past_height = height_share(fixed, contact, axis, geometry.radius);
@@ -301,13 +301,13 @@ double RegionDent::far_share(const glm::dvec3& point) const {
   return radius <= 0.0 ? 0.0 : smooth_step((reach(point) - 2.0) / 3.0);
 }
 
-RegionDent region_dent(const World& world, const Snapshot& snapshot, std::uint32_t region,
+RegionDent region_dent(const Model& model, const Snapshot& snapshot, std::uint32_t region,
                        const glm::dvec3& moved) {
   const RegionIdentity& identity = snapshot.regions.at<RegionIdentity>(region);
   const RegionFrame& frame = snapshot.regions.at<RegionFrame>(region);
   const RegionGeometry& geometry = snapshot.regions.at<RegionGeometry>(region);
   const RegionFriction& friction = snapshot.regions.at<RegionFriction>(region);
-  const Elasticity& elasticity = world.bodies.at<Elasticity>(identity.body);
+  const Elasticity& elasticity = model.bodies.at<Elasticity>(identity.body);
   RegionDent dent;
   if (geometry.radius <= 0.0 || geometry.largest_depth <= 0.0) {
     return dent;
@@ -328,8 +328,8 @@ RegionDent region_dent(const World& world, const Snapshot& snapshot, std::uint32
   dent.drag = tangent_to_body(frame, friction.force) * -compliance;
   dent.pressure =
       geometry.area > 0.0 ? snapshot.regions.at<RegionNormal>(region).force / geometry.area : 0.0;
-  const bool in_series = body_law_of(world, identity.body).moves_as_a_whole;
-  dent.pressed = pressed_surface(world, snapshot, region,
+  const bool in_series = body_law_of(model, identity.body).moves_as_a_whole;
+  dent.pressed = pressed_surface(model, snapshot, region,
                                  in_series ? 1.0 : dent.depth / geometry.largest_depth);
   dent.full_overlap = 0.1 * geometry.largest_depth;
   return dent;

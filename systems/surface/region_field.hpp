@@ -69,7 +69,7 @@ struct RegionTwist {
 };
 
 /// @param region  row in snapshot.regions
-RegionTwist region_twist(const World& world, const Snapshot& snapshot, std::uint32_t region);
+RegionTwist region_twist(const Model& model, const Snapshot& snapshot, std::uint32_t region);
 
 /// Forces on the surface of an elastic half-space, each spread over a little area.
 struct PressedSurface {
@@ -121,7 +121,7 @@ struct RegionDent {
 /// @param moved  m, body: what the rest of the body's deformation does to the contact point; what
 /// it already yields
 ///               is not dented once more
-RegionDent region_dent(const World& world, const Snapshot& snapshot, std::uint32_t region,
+RegionDent region_dent(const Model& model, const Snapshot& snapshot, std::uint32_t region,
                        const glm::dvec3& moved);
 
 }  // namespace torsion

@@ -96,11 +96,11 @@ double couple_of(const Source& source, const RegionField& field) {
 }
 
 /// How far the cells have gone around the field's centre, all of the grid's, in contact or not.
-RingTurns turns_of_cells(const World& world, std::uint32_t region, const Source& source,
+RingTurns turns_of_cells(const State& state, std::uint32_t region, const Source& source,
                          const RegionField& field) {
-  const Range cells = world.regions.at<RegionIdentity>(region).cells;
-  const std::span<const PatchMovedX> moved_x = world.patch_cells.rows<PatchMovedX>(cells);
-  const std::span<const PatchMovedY> moved_y = world.patch_cells.rows<PatchMovedY>(cells);
+  const Range cells = state.regions.at<RegionIdentity>(region).cells;
+  const std::span<const PatchMovedX> moved_x = state.patch_cells.rows<PatchMovedX>(cells);
+  const std::span<const PatchMovedY> moved_y = state.patch_cells.rows<PatchMovedY>(cells);
   glm::dvec2 drift(0.0);  // of all that is pressed
   double pressure = 0.0;
   for (std::uint32_t cell = 0; cell < cells.count; ++cell) {
@@ -148,45 +148,47 @@ void discs_of_layers(const MdrFoundation& foundation, std::span<const MdrLayer> 
   }
 }
 
-void fill_field(const World& world, const SnapshotTables& tables, std::uint32_t region,
-                ContactModel model, RegionField& field) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+void fill_field(const Model& model, const State& state, const SnapshotTables& tables,
+                std::uint32_t region, ContactModel contact, RegionField& field) {
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const std::uint32_t side = model.settings.grid_side;
   const glm::dvec2 cell = 2.0 * frame.half_size / static_cast<double>(side);
-  const Source source{frame, side, cell.x * cell.y, world.cells.rows<CellTraction>(identity.cells)};
-  field.radius = world.regions.at<RegionGeometry>(region).radius;
+  const Source source{frame, side, cell.x * cell.y, state.cells.rows<CellTraction>(identity.cells)};
+  field.radius = state.regions.at<RegionGeometry>(region).radius;
   if (field.radius <= 0.0) {
     return;
   }
   field.spread = kSpreadOverBlock * 2.0 * std::min(frame.half_size.x, frame.half_size.y) /
                  static_cast<double>(kFieldBlocks);
-  field.center = press_blocks(source, world.regions.at<RegionNormal>(region).force, field);
-  if (model == ContactModel::kPatch) {
+  field.center = press_blocks(source, state.regions.at<RegionNormal>(region).force, field);
+  if (contact == ContactModel::kPatch) {
     field.radius = std::max(field.radius, radius_of_moment(source, field.center));
   }
-  if (model == ContactModel::kMdr) {
+  if (contact == ContactModel::kMdr) {
     const std::uint32_t block = block_of(identity);
-    const MdrState& state = world.regions.at<MdrState>(region);
-    const MdrPlaces places = places_of(tables.mdr, {state.flat_share, state.elongation});
-    discs_of_layers(places.turn, world.mdr_layers.rows<MdrLayer>({block * kMdrLayers, kMdrLayers}),
+    const MdrState& own = state.regions.at<MdrState>(region);
+    const MdrPlaces places = places_of(tables.mdr, {own.flat_share, own.elongation});
+    discs_of_layers(places.turn, state.mdr_layers.rows<MdrLayer>({block * kMdrLayers, kMdrLayers}),
                     field);
     return;
   }
-  const double shear_modulus = world.bodies.at<Elasticity>(identity.body).shear_modulus();
+  const double shear_modulus = model.bodies.at<Elasticity>(identity.body).shear_modulus();
   const double stiffness = 16.0 / 3.0 * shear_modulus * field.radius * field.radius * field.radius;
-  discs_of_ring_turns(tables.rings, turns_of_cells(world, region, source, field),
+  discs_of_ring_turns(tables.rings, turns_of_cells(state, region, source, field),
                       couple_of(source, field) / stiffness, calm_of(side), field.turn);
 }
 
 }  // namespace
 
-void region_fields(const World& world, const SnapshotTables& tables, Snapshot& snapshot) {
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
-    const ContactModel model = world.bodies.at<BodyModels>(body).contact;
-    if (model == ContactModel::kMdr || model == ContactModel::kPatch) {
-      fill_field(world, tables, region, model, snapshot.region_fields.at<RegionField>(region));
+void region_fields(const Model& model, const State& state, const SnapshotTables& tables,
+                   Snapshot& snapshot) {
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    const std::uint32_t body = state.regions.at<RegionIdentity>(region).body;
+    const ContactModel contact = model.bodies.at<BodyModels>(body).contact;
+    if (contact == ContactModel::kMdr || contact == ContactModel::kPatch) {
+      fill_field(model, state, tables, region, contact,
+                 snapshot.region_fields.at<RegionField>(region));
     }
   }
 }

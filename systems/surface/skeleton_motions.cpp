@@ -70,28 +70,28 @@ void move_anchors(const MainBeam& beam, const BeamDeflection& deflection, const 
 
 }  // namespace
 
-void skeleton_motions(const World& world, Snapshot& snapshot) {
-  const auto identities = world.regions.column<RegionIdentity>();
-  for (std::uint32_t body = 0; body < world.bodies.size(); ++body) {
-    const Range anchors = world.bodies.at<OwnedRows>(body).anchors;
+void skeleton_motions(const Model& model, const State& state, Snapshot& snapshot) {
+  const auto identities = state.regions.column<RegionIdentity>();
+  for (std::uint32_t body = 0; body < model.bodies.size(); ++body) {
+    const Range anchors = model.bodies.at<OwnedRows>(body).anchors;
     const auto motion = snapshot.anchors.rows<AnchorMotion>(anchors);
-    if (world.bodies.at<BodyModels>(body).body != BodyModel::kSkeleton || anchors.count == 0) {
+    if (model.bodies.at<BodyModels>(body).body != BodyModel::kSkeleton || anchors.count == 0) {
       continue;
     }
-    const Elasticity& elasticity = world.bodies.at<Elasticity>(body);
-    const FixedRegion& fixed = world.bodies.at<FixedRegion>(body);
-    for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+    const Elasticity& elasticity = model.bodies.at<Elasticity>(body);
+    const FixedRegion& fixed = model.bodies.at<FixedRegion>(body);
+    for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
       if (identities[region].body != body) {
         continue;
       }
       const MainBeam beam =
-          main_beam(world, body, world.regions.at<RegionGeometry>(region).rest_point);
-      const TipLoad load = tip_load(beam, world.regions.at<RegionFrame>(region),
-                                    world.regions.at<RegionNormal>(region),
-                                    world.regions.at<RegionFriction>(region));
+          main_beam(model, body, state.regions.at<RegionGeometry>(region).rest_point);
+      const TipLoad load = tip_load(beam, state.regions.at<RegionFrame>(region),
+                                    state.regions.at<RegionNormal>(region),
+                                    state.regions.at<RegionFriction>(region));
       const BeamDeflection deflection = deflect(beam, elasticity, load.force, load.moment);
       move_anchors(beam, deflection, fixed, elasticity.poisson_ratio,
-                   world.anchors.rows<AnchorRest>(anchors), motion);
+                   model.anchors.rows<AnchorRest>(anchors), motion);
     }
   }
 }

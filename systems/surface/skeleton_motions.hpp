@@ -10,6 +10,6 @@ namespace torsion {
 /// beam from q_f to where p_eq was at rest. Torsion about the beam is left out: the twist angles of
 /// the drawn vertices carry it (systems/surface/surface_field.hpp). Source: docs/models.md, "Body
 /// model skeleton".
-void skeleton_motions(const World& world, Snapshot& snapshot);
+void skeleton_motions(const Model& model, const State& state, Snapshot& snapshot);
 
 }  // namespace torsion

@@ -41,7 +41,7 @@ const Slot& nearest_slot(std::span<const Slot> slots, std::uint32_t tool, const 
 /// How far a point inside the tool must go along `direction` (tool frame) to come out: Newton's
 /// method on the distance, bracketed, because interior distances of tools that are not convex are
 /// not monotone; where the distance hardly changes on the way, steps that double.
-double way_out(const World& world, const Toucher& toucher, const glm::dvec3& start,
+double way_out(const Model& model, const Toucher& toucher, const glm::dvec3& start,
                const glm::dvec3& direction, Distance distance) {
   const double tolerance = 1e-7 * glm::length(toucher.bounds.highest - toucher.bounds.lowest);
   constexpr double kSlopeOfNewton = 0.1;
@@ -62,7 +62,7 @@ double way_out(const World& world, const Toucher& toucher, const glm::dvec3& sta
     if (t <= inside || t >= outside) {
       t = 0.5 * (inside + std::min(outside, 2.0 * inside + stride));
     }
-    distance = signed_distance(world, toucher.parts, start + direction * t);
+    distance = signed_distance(model, toucher.parts, start + direction * t);
   }
   return distance.value < 0.0 && std::isfinite(outside) ? outside : t;
 }
@@ -92,7 +92,7 @@ glm::dvec3 push_out(const BodyField& field, const glm::dvec3& rest_place, const 
     if (!inside_box(toucher.bounds, in_tool)) {
       continue;
     }
-    const Distance distance = signed_distance(field.world, toucher.parts, in_tool);
+    const Distance distance = signed_distance(field.model, toucher.parts, in_tool);
     if (!(distance.value < 0.0)) {
       continue;
     }
@@ -101,7 +101,7 @@ glm::dvec3 push_out(const BodyField& field, const glm::dvec3& rest_place, const 
     const double length = glm::length(both);
     const glm::dvec3 way = length > 0.1 ? both / length : inward;
     const glm::dvec3 in_tool_way = glm::conjugate(toucher.in_body.rotation) * way;
-    pushed += way * way_out(field.world, toucher, in_tool, in_tool_way, distance);
+    pushed += way * way_out(field.model, toucher, in_tool, in_tool_way, distance);
   }
   return pushed;
 }
@@ -116,7 +116,7 @@ double pressure_at(const BodyField& field, const glm::dvec3& turned, const glm::
       continue;
     }
     const Slot& slot = nearest_slot(field.slots, toucher.tool, turned);
-    const double overlap = -signed_distance(field.world, toucher.parts, in_tool).value;
+    const double overlap = -signed_distance(field.model, toucher.parts, in_tool).value;
     if (overlap > 0.0) {
       pressure += slot.dent.pressure * std::min(overlap / slot.dent.full_overlap, 1.0);
     }
@@ -271,14 +271,14 @@ void move_vertices(const BodyField& field, const VertexRows& rows) {
 
 }  // namespace
 
-void surface_field(const World& world, const Snapshot& snapshot, FrameWorld& frame) {
+void surface_field(const Model& model, const Snapshot& snapshot, FrameWorld& frame) {
   for (std::uint32_t tool = 0; tool < frame.tools.size(); ++tool) {
     frame.tools.at<Pose>(tool) = snapshot.tools.at<ToolPose>(tool).now;
   }
   for (std::uint32_t body = 0; body < frame.bodies.size(); ++body) {
     FrameBody& data = frame.bodies.at<FrameBody>(body);
     const Range vertices = frame.bodies.at<DrawRange>(body).vertices;
-    const BodyField field = body_field(world, snapshot, frame, body);
+    const BodyField field = body_field(model, snapshot, frame, body);
     data.regions_drawn = static_cast<std::uint32_t>(field.slots.size());
     const auto axes = frame.axes.rows<TwistAxis>(data.axes);
     for (std::size_t slot = 0; slot < field.slots.size(); ++slot) {

@@ -6,22 +6,23 @@
 
 namespace torsion {
 
-SnapshotTables make_snapshot_tables(const World& world) {
+SnapshotTables make_snapshot_tables(const State& state) {
   SnapshotTables tables;
-  if (!world.mdr_layers.empty()) {
+  if (!state.mdr_layers.empty()) {
     tables.mdr = make_mdr_tables();
   }
-  if (!world.patch_cells.empty()) {
+  if (!state.patch_cells.empty()) {
     tables.rings = make_ring_profiles();
   }
   return tables;
 }
 
-void take_snapshot(const World& world, const SnapshotTables& tables, Snapshot& snapshot) {
-  capture(world, snapshot);
-  region_fields(world, tables, snapshot);
-  skeleton_motions(world, snapshot);
-  anchor_motions(world, snapshot);
+void take_snapshot(const Model& model, const State& state, const SnapshotTables& tables,
+                   Snapshot& snapshot) {
+  capture(state, snapshot);
+  region_fields(model, state, tables, snapshot);
+  skeleton_motions(model, state, snapshot);
+  anchor_motions(model, state, snapshot);
 }
 
 }  // namespace torsion

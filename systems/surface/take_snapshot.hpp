@@ -14,11 +14,13 @@ struct SnapshotTables {
 };
 
 /// Load time.
-SnapshotTables make_snapshot_tables(const World& world);
+SnapshotTables make_snapshot_tables(const State& state);
 
 /// What a step has left, with all that only a picture needs of it: what each region does to the
 /// surface around it, and how far the anchors have gone. Costs a part of a step, and nothing in
-/// steps of which nobody takes one. Allocates nothing. @pre snapshot.reserve(world) was called
-void take_snapshot(const World& world, const SnapshotTables& tables, Snapshot& snapshot);
+/// steps of which nobody takes one. Allocates nothing. @pre snapshot.reserve(model, state) was
+/// called
+void take_snapshot(const Model& model, const State& state, const SnapshotTables& tables,
+                   Snapshot& snapshot);
 
 }  // namespace torsion

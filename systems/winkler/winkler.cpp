@@ -22,10 +22,10 @@ namespace {
 constexpr double kStiction = 1e-3;  // m/s: the least velocity with all of the static friction
 
 /// Pressure over depth, Pa/m: it grows from the surface to E at half the body's smallest side.
-double bed_stiffness(const World& world, std::uint32_t body) {
-  const Bounds& bounds = world.bodies.at<Bounds>(body);
+double bed_stiffness(const Model& model, std::uint32_t body) {
+  const Bounds& bounds = model.bodies.at<Bounds>(body);
   const glm::dvec3 side = bounds.highest - bounds.lowest;
-  return world.bodies.at<Elasticity>(body).youngs_modulus /
+  return model.bodies.at<Elasticity>(body).youngs_modulus /
          (0.5 * std::min({side.x, side.y, side.z}));
 }
 
@@ -45,16 +45,16 @@ struct BedSums {
   double couple = 0.0;       // N m, about the grid's origin
 };
 
-BedSums press_bed(World& world, std::uint32_t region) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const RegionMotion& motion = world.regions.at<RegionMotion>(region);
-  const Friction& friction = world.bodies.at<Friction>(identity.body);
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
-  const double stiffness = bed_stiffness(world, identity.body);
-  const double to_velocity = 1.0 / (world.clock.at<Clock>(0).dt * kStiction);
-  const auto cells = world.cells.rows<CellGeometry>(identity.cells);
-  const auto tractions = world.cells.rows<CellTraction>(identity.cells);
+BedSums press_bed(const Model& model, State& state, std::uint32_t region) {
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const RegionMotion& motion = state.regions.at<RegionMotion>(region);
+  const Friction& friction = model.bodies.at<Friction>(identity.body);
+  const std::uint32_t side = model.settings.grid_side;
+  const double stiffness = bed_stiffness(model, identity.body);
+  const double to_velocity = 1.0 / (state.clock.dt * kStiction);
+  const auto cells = state.cells.rows<CellGeometry>(identity.cells);
+  const auto tractions = state.cells.rows<CellTraction>(identity.cells);
   BedSums sums;
   std::size_t cell = 0;
   for (std::uint32_t j = 0; j < side; ++j) {
@@ -85,32 +85,33 @@ BedSums press_bed(World& world, std::uint32_t region) {
   return sums;
 }
 
-void solve_region(World& world, std::uint32_t region) {
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const BedSums sums = press_bed(world, region);
-  RegionNormal& normal = world.regions.at<RegionNormal>(region);
-  RegionFriction& friction = world.regions.at<RegionFriction>(region);
+void solve_region(const Model& model, State& state, std::uint32_t region) {
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const BedSums sums = press_bed(model, state, region);
+  RegionNormal& normal = state.regions.at<RegionNormal>(region);
+  RegionFriction& friction = state.regions.at<RegionFriction>(region);
   normal = RegionNormal{};
   friction = RegionFriction{};
   if (sums.force <= 0.0) {
     return;
   }
   const glm::dvec3 center = sums.center / sums.force;
-  RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
+  RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
   geometry.equivalent_point = grid_to_body(frame, center);
   geometry.rest_point = geometry.equivalent_point + frame.normal * geometry.mean_depth;
-  const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
-  normal = {sums.force, bed_stiffness(world, body) * sums.area};
+  const std::uint32_t body = state.regions.at<RegionIdentity>(region).body;
+  normal = {sums.force, bed_stiffness(model, body) * sums.area};
   friction.force = sums.friction;
   friction.couple = sums.couple - (center.x * sums.friction.y - center.y * sums.friction.x);
 }
 
 void winkler_forces(StepContext& context) {
-  World& world = context.world;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const std::uint32_t body = world.regions.at<RegionIdentity>(region).body;
-    if (world.bodies.at<BodyModels>(body).contact == ContactModel::kWinkler) {
-      solve_region(world, region);
+  const Model& model = context.model;
+  State& state = context.state;
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    const std::uint32_t body = state.regions.at<RegionIdentity>(region).body;
+    if (model.bodies.at<BodyModels>(body).contact == ContactModel::kWinkler) {
+      solve_region(model, state, region);
     }
   }
 }

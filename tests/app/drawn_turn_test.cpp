@@ -38,11 +38,12 @@ class TurnSinceTouch {
         touches_(bodies * tools, false) {}
   void see(const World& world) {
     std::vector<bool> now(touches_.size(), false);
-    for (const RegionIdentity& region : world.regions.column<RegionIdentity>()) {
+    for (const RegionIdentity& region : world.state.regions.column<RegionIdentity>()) {
       now[region.body * tools_ + region.tool] = true;
     }
     for (std::size_t pair = 0; pair < now.size(); ++pair) {
-      const ToolPose& pose = world.tools.at<ToolPose>(static_cast<std::uint32_t>(pair % tools_));
+      const ToolPose& pose =
+          world.state.tools.at<ToolPose>(static_cast<std::uint32_t>(pair % tools_));
       if (now[pair] && !touches_[pair]) {
         since_[pair] = pose.before.rotation;
         most_[pair / tools_] = 0.0;
@@ -81,10 +82,10 @@ TEST_P(DrawnTurnTest, NoVertexTurnsFartherThanTheTools) {
   ASSERT_TRUE(opened) << opened.error().text;
   Session& session = opened.value();
   const World& world = session.simulation.world;
-  FrameWorld frame = prepare_frame(session.scene, world);
+  FrameWorld frame = prepare_frame(session.scene, world.model, world.state);
   Snapshot snapshot;
-  snapshot.reserve(world);
-  TurnSinceTouch turn(frame.bodies.size(), world.tools.size());
+  snapshot.reserve(world.model, world.state);
+  TurnSinceTouch turn(frame.bodies.size(), world.model.tools.size());
   // What pressing alone turns of a body with an end, beside its planes of symmetry.
   const double by_pressing = run.body == BodyModel::kCompliance ? glm::radians(1.0) : 0.0;
   const std::uint64_t steps = steps_in(session, session.scene.duration);
@@ -95,7 +96,7 @@ TEST_P(DrawnTurnTest, NoVertexTurnsFartherThanTheTools) {
       continue;
     }
     take_snapshot(session.simulation, snapshot);
-    surface_field(world, snapshot, frame);
+    surface_field(world.model, snapshot, frame);
     for (std::uint32_t body = 0; body < frame.bodies.size(); ++body) {
       std::vector<glm::vec4> positions(frame.bodies.at<DrawRange>(body).vertices.count);
       deform_vertices(frame, body, positions);

@@ -65,7 +65,8 @@ double hardest(const HeldScene& scene) {
   for (std::uint64_t i = 0; i < steps; ++i) {
     set_scripted_poses(session);
     step(session.simulation, session.tool_poses);
-    const double force = glm::length(session.simulation.world.tools.at<ToolWrench>(0).total.force);
+    const double force =
+        glm::length(session.simulation.world.state.tools.at<ToolWrench>(0).total.force);
     if (force > most) {
       most = force;
       time = static_cast<double>(i) / kRate;
@@ -107,15 +108,16 @@ LoopOutcome hold(const HeldScene& scene, const HandTraits& traits, double until,
       session.tool_poses[row] = scripted_pose(tools[row].script, share * until);
     }
     if (i > 0) {
-      session.tool_poses[0] = held.holds ? next_tool_pose(world, 0, side.coupling, held.handle)
-                                         : world.tools.at<ToolPose>(0).now;
+      session.tool_poses[0] =
+          held.holds ? next_tool_pose(world.model, world.state, 0, side.coupling, held.handle)
+                     : world.state.tools.at<ToolPose>(0).now;
     }
     step(session.simulation, session.tool_poses);
     if (after_step) {
       after_step(world);
     }
-    const std::uint32_t faults = world.clock.at<Clock>(0).faults;
-    result = {world.tools.at<ToolPose>(0).now, now, faults != 0, true};
+    const std::uint32_t faults = world.state.clock.faults;
+    result = {world.state.tools.at<ToolPose>(0).now, now, faults != 0, true};
     outcome.faults |= faults;
     hand.move(held.wrench, wanted, kPeriod);
     outcome.most_gained = std::max(outcome.most_gained, hand.motor_work());

@@ -121,7 +121,7 @@ TEST(LiveLoopTest, ATickTakesNothingFromTheHeap) {
     EXPECT_EQ(guard.allocations(), 0U);
     EXPECT_EQ(guard.releases(), 0U);
   }
-  EXPECT_GT(session.simulation.world.tools.at<ToolWrench>(0).total.force.y, 0.0);
+  EXPECT_GT(session.simulation.world.state.tools.at<ToolWrench>(0).total.force.y, 0.0);
 }
 
 TEST(LiveLoopTest, TheHandleFeelsWhatTheToolDoes) {
@@ -138,7 +138,7 @@ TEST(LiveLoopTest, TheHandleFeelsWhatTheToolDoes) {
   }
   ASSERT_TRUE(slot.answer.refresh());
   const HandleAnswer& answer = slot.answer.front();
-  const Wrench& contact = session.simulation.world.tools.at<ToolWrench>(0).total;
+  const Wrench& contact = session.simulation.world.state.tools.at<ToolWrench>(0).total;
   EXPECT_EQ(answer.sample, 500U);
   EXPECT_EQ(answer.faults, 0U);
   // A tool without mass passes on what it is pushed with: to 1e-6 once it is at rest.
@@ -150,7 +150,7 @@ TEST(LiveLoopTest, PauseHoldsTheTimeAndASingleStepMovesItByOne) {
   Session session = ball_session();
   LiveLoop loop;
   reserve(loop, session, session.simulation);
-  const Clock& clock = session.simulation.world.clock.at<Clock>(0);
+  const Clock& clock = session.simulation.world.state.clock;
   live_tick(loop, 0.0);
   EXPECT_EQ(clock.step, 1U);
   loop.commands.push({LiveCommandKind::kPause, 0, 1, nullptr});
@@ -182,7 +182,7 @@ TEST(LiveLoopTest, ASwitchOfModelsGoesOnWhereTheToolIs) {
     hold_at(slot, i, kTouching - 2e-3);
     live_tick(loop, 0.0);
   }
-  const Pose before = session.simulation.world.tools.at<ToolPose>(0).now;
+  const Pose before = session.simulation.world.state.tools.at<ToolPose>(0).now;
   Generation next;
   next.number = 1;
   next.picks = picks_of(session.scene, test::ball_options());
@@ -193,19 +193,19 @@ TEST(LiveLoopTest, ASwitchOfModelsGoesOnWhereTheToolIs) {
   loop.commands.push({LiveCommandKind::kSwap, 0, 0, &next});
   live_tick(loop, 0.0);
   const World& world = next.simulation.world;
-  EXPECT_EQ(world.clock.at<Clock>(0).step, 301U);
-  EXPECT_EQ(world.clock.at<Clock>(0).faults, 0U);
+  EXPECT_EQ(world.state.clock.step, 301U);
+  EXPECT_EQ(world.state.clock.faults, 0U);
   // While the contact is not yet known the tool waits; then patch lets it sink as mdr did, to their
   // 2 % of each other in stiffness, and the coupling moves by less.
   double farthest = 0.0;
   for (int i = 0; i < 300; ++i) {
     live_tick(loop, 0.0);
-    farthest =
-        std::max(farthest, glm::length(world.tools.at<ToolPose>(0).now.position - before.position));
+    farthest = std::max(
+        farthest, glm::length(world.state.tools.at<ToolPose>(0).now.position - before.position));
   }
   EXPECT_LT(farthest, 0.05 * (kTouching - before.position.y));
-  EXPECT_EQ(world.clock.at<Clock>(0).faults_ever, 0U);
-  EXPECT_GT(world.tools.at<ToolWrench>(0).total.force.y, 0.1);
+  EXPECT_EQ(world.state.clock.faults_ever, 0U);
+  EXPECT_GT(world.state.tools.at<ToolWrench>(0).total.force.y, 0.1);
 }
 
 TEST(LiveLoopTest, ThreeThreadsShareNothingButBoxesAndTheRecordingGivesTheSameBits) {
@@ -236,7 +236,7 @@ TEST(LiveLoopTest, ThreeThreadsShareNothingButBoxesAndTheRecordingGivesTheSameBi
     while (!loop.over) {
       if (loop.frames.refresh()) {
         const LiveFrame& frame = loop.frames.front();
-        const Clock& clock = frame.snapshot.clock.at<Clock>(0);
+        const Clock& clock = frame.snapshot.clock;
         EXPECT_GE(clock.step, last);
         EXPECT_EQ(frame.statistics.steps, clock.step);  // a frame is whole
         last = clock.step;
@@ -268,7 +268,7 @@ TEST(LiveLoopTest, ThreeThreadsShareNothingButBoxesAndTheRecordingGivesTheSameBi
     step(again.simulation, again.tool_poses);
   }
   EXPECT_EQ(hash(again.simulation.world), hash(session.simulation.world));
-  EXPECT_GT(again.simulation.world.tools.at<ToolWrench>(0).total.force.y, 0.0);
+  EXPECT_GT(again.simulation.world.state.tools.at<ToolWrench>(0).total.force.y, 0.0);
 }
 
 }  // namespace

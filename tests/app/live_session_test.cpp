@@ -27,7 +27,7 @@ bool comes_true(LiveSession& session, F&& holds) {
 }
 
 const Clock& clock_of(const LiveSession& session) {
-  return session.frame().snapshot.clock.at<Clock>(0);
+  return session.frame().snapshot.clock;
 }
 
 /// What it has recorded since its start.

@@ -52,7 +52,7 @@ std::vector<double> screwdriver(std::uint32_t side) {
   const std::uint64_t steps = steps_in(session, session.scene.duration);
   for (std::uint64_t i = 0; i < steps; ++i) {
     step_scripted(session);
-    torques.push_back(session.simulation.world.tools.at<ToolWrench>(0).total.torque.y);
+    torques.push_back(session.simulation.world.state.tools.at<ToolWrench>(0).total.torque.y);
   }
   return torques;
 }

@@ -190,13 +190,13 @@ TEST(RecordingTest, ReplayTakesTheMaterialFromItsStepOn) {
   Session session = test::ball_session();
   Replay replay{&recording, 0};
   for (int i = 0; i < 6; ++i) {
-    const double before = session.simulation.world.bodies.at<Elasticity>(0).youngs_modulus;
+    const double before = session.simulation.world.model.bodies.at<Elasticity>(0).youngs_modulus;
     EXPECT_EQ(before == 1.25e5, i > 3);
     ASSERT_TRUE(replay_inputs(replay, session, true));
     EXPECT_EQ(session.tool_poses[0].position.y, 0.15 - 1e-4 * i);
     step(session.simulation, session.tool_poses);
   }
-  EXPECT_EQ(session.simulation.world.clock.at<Clock>(0).step, 6U);
+  EXPECT_EQ(session.simulation.world.state.clock.step, 6U);
 }
 
 }  // namespace

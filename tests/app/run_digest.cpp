@@ -53,26 +53,26 @@ void RunDigest::add(const World& world) {
   const auto add_vector = [this](const glm::dvec3& vector) {
     row_.insert(row_.end(), {vector.x, vector.y, vector.z});
   };
-  for (std::uint32_t tool = 0; tool < world.tools.size(); ++tool) {
-    const Pose& pose = world.tools.at<ToolPose>(tool).now;
-    const ToolWrench& wrench = world.tools.at<ToolWrench>(tool);
+  for (std::uint32_t tool = 0; tool < world.model.tools.size(); ++tool) {
+    const Pose& pose = world.state.tools.at<ToolPose>(tool).now;
+    const ToolWrench& wrench = world.state.tools.at<ToolWrench>(tool);
     add_vector(pose.position);
     row_.insert(row_.end(), {pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w});
     add_vector(wrench.total.force);
     add_vector(wrench.total.torque);
     row_.push_back(wrench.work);
   }
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-    const RegionWrench& wrench = world.regions.at<RegionWrench>(region);
+  for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
+    const RegionIdentity& identity = world.state.regions.at<RegionIdentity>(region);
+    const RegionWrench& wrench = world.state.regions.at<RegionWrench>(region);
     row_.insert(row_.end(),
                 {static_cast<double>(identity.order), static_cast<double>(identity.body),
                  static_cast<double>(identity.tool)});
-    add_vector(world.regions.at<RegionGeometry>(region).equivalent_point);
+    add_vector(world.state.regions.at<RegionGeometry>(region).equivalent_point);
     add_vector(wrench.on_tool.force);
     add_vector(wrench.on_tool.torque);
   }
-  row_.push_back(static_cast<double>(world.clock.at<Clock>(0).faults));
+  row_.push_back(static_cast<double>(world.state.clock.faults));
   const auto bytes = std::as_bytes(std::span(row_));
   value_ = XXH3_64bits_withSeed(bytes.data(), bytes.size(), value_);
 }

@@ -46,23 +46,24 @@ World world_with_patches() {
   capacities.bodies = 2;
   capacities.regions = 3;
   capacities.patch_bodies = 1;
-  world.reserve(capacities, Settings{});
-  world.bodies.append(2);
-  world.bodies.at<BodyModels>(0).contact = ContactModel::kPatch;
-  world.bodies.at<BodyModels>(1).contact = ContactModel::kMdr;
-  world.regions.append(3);
-  world.regions.at<RegionIdentity>(1).body = 1;
+  world.model.reserve(capacities, Settings{});
+  world.state.reserve(capacities, Settings{});
+  world.model.bodies.append(2);
+  world.model.bodies.at<BodyModels>(0).contact = ContactModel::kPatch;
+  world.model.bodies.at<BodyModels>(1).contact = ContactModel::kMdr;
+  world.state.regions.append(3);
+  world.state.regions.at<RegionIdentity>(1).body = 1;
   return world;
 }
 
 TEST(RunStatisticsTest, ResidualsAndSweepsAreThoseOfRegionsWithPatch) {
   World world = world_with_patches();
-  world.regions.at<PatchState>(1) = {.residual = 9.0, .sweeps = 90};  // means nothing there
+  world.state.regions.at<PatchState>(1) = {.residual = 9.0, .sweeps = 90};  // means nothing there
   RunStatistics statistics;
   // Residuals 0.001 to 0.1 evenly, sweeps 1 in the one region, 2 in the other and once 12.
   for (int i = 1; i <= 100; ++i) {
-    world.regions.at<PatchState>(0) = {.residual = 1e-3 * i, .sweeps = 1};
-    world.regions.at<PatchState>(2) = {.residual = 1e-3 * i, .sweeps = i == 50 ? 12U : 2U};
+    world.state.regions.at<PatchState>(0) = {.residual = 1e-3 * i, .sweeps = 1};
+    world.state.regions.at<PatchState>(2) = {.residual = 1e-3 * i, .sweeps = i == 50 ? 12U : 2U};
     statistics.add_step(world, 1.0);
   }
   EXPECT_EQ(statistics.patch.region_steps(), 200U);
@@ -75,7 +76,7 @@ TEST(RunStatisticsTest, ResidualsAndSweepsAreThoseOfRegionsWithPatch) {
 
 TEST(RunStatisticsTest, OtherModelsHaveNoResiduals) {
   World world = world_with_patches();
-  world.bodies.at<BodyModels>(0).contact = ContactModel::kPaper;
+  world.model.bodies.at<BodyModels>(0).contact = ContactModel::kPaper;
   RunStatistics statistics;
   statistics.add_step(world, 1.0);
   EXPECT_EQ(statistics.patch.region_steps(), 0U);

@@ -51,8 +51,8 @@ double last_force(const SceneDescription& scene, ContactModel contact, BodyModel
   for (int k = 0; k <= steps; ++k) {
     step(simulation, turned_poses(scene, k * 1e-3, angle));
   }
-  EXPECT_EQ(simulation.world.clock.at<Clock>(0).faults_ever, 0U);
-  return simulation.world.tools.at<ToolWrench>(0).total.force.y;
+  EXPECT_EQ(simulation.world.state.clock.faults_ever, 0U);
+  return simulation.world.state.tools.at<ToolWrench>(0).total.force.y;
 }
 
 constexpr double kModulus = 1e6;  // Pa: of the rods
@@ -164,13 +164,13 @@ TEST(SlenderBodyTest, ABallSlidesOverTheEndOfARodThatIsSoftSideways) {
   for (int k = 0; k < 1000; ++k) {
     hand.move({2e-6, 0.0, 0.0}, {0.0, 1.0, 0.0}, 0.0, 1);
     const World& world = hand.world();
-    ASSERT_EQ(world.regions.size(), 1U);
-    const double held = world.regions.at<RegionNormal>(0).force;
-    const double friction = glm::length(world.regions.at<RegionFriction>(0).force);
+    ASSERT_EQ(world.state.regions.size(), 1U);
+    const double held = world.state.regions.at<RegionNormal>(0).force;
+    const double friction = glm::length(world.state.regions.at<RegionFriction>(0).force);
     ASSERT_LE(friction, (kFriction + kDrag) * held) << k;
     if (k > 900) {
       EXPECT_NEAR(friction, kFriction * held, 0.01 * kFriction * held) << k;
-      EXPECT_LT(world.regions.at<PatchState>(0).residual, 0.01);
+      EXPECT_LT(world.state.regions.at<PatchState>(0).residual, 0.01);
     }
   }
 }

@@ -49,27 +49,26 @@ TEST_P(SmoothForceTest, NoStepStandsOut) {
   ASSERT_TRUE(opened) << opened.error().text;
   Session& session = opened.value();
   const World& world = session.simulation.world;
-  const std::size_t tools = world.tools.size();
+  const std::size_t tools = world.model.tools.size();
   std::vector<std::vector<glm::dvec3>> forces(tools);
   std::vector<std::vector<glm::dvec3>> torques(tools);
   const std::uint64_t steps = steps_in(session, session.scene.duration);
   for (std::uint64_t i = 0; i < steps; ++i) {
     step_scripted(session);
     for (std::uint32_t tool = 0; tool < tools; ++tool) {
-      const Wrench& wrench = world.tools.at<ToolWrench>(tool).total;
+      const Wrench& wrench = world.state.tools.at<ToolWrench>(tool).total;
       forces[tool].push_back(wrench.force);
       torques[tool].push_back(wrench.torque);
     }
   }
-  EXPECT_EQ(world.clock.at<Clock>(0).faults_ever, 0U)
-      << faults_text(world.clock.at<Clock>(0).faults_ever);
+  EXPECT_EQ(world.state.clock.faults_ever, 0U) << faults_text(world.state.clock.faults_ever);
   for (std::uint32_t tool = 0; tool < tools; ++tool) {
     const double force = median_length(forces[tool]);
     EXPECT_GT(force, 0.0);
     EXPECT_LE(largest_standout(forces[tool]).size, 0.5 * force) << "force of tool " << tool;
     // Where a tool is pressed straight in there is no torque but rounding: the median counts from
     // where the force has an arm of a thirtieth of the tool on.
-    const Bounds& bounds = world.tools.at<Bounds>(tool);
+    const Bounds& bounds = world.model.tools.at<Bounds>(tool);
     const double arm = 1.0 / 30.0 * glm::distance(bounds.lowest, bounds.highest);
     const double torque = std::max(median_length(torques[tool]), arm * force);
     EXPECT_LE(largest_standout(torques[tool]).size, 0.5 * torque) << "torque of tool " << tool;
@@ -107,7 +106,7 @@ std::vector<glm::dvec3> forces_of(const SmoothRun& run, double rate, std::uint64
   for (std::uint64_t i = 0; i < steps; ++i) {
     step_scripted(session);
     if (i % every == 0) {
-      forces.push_back(session.simulation.world.tools.at<ToolWrench>(0).total.force);
+      forces.push_back(session.simulation.world.state.tools.at<ToolWrench>(0).total.force);
     }
   }
   return forces;

@@ -63,8 +63,8 @@ TEST(StickySceneTest, ItsFirstTwistIsNearBoundaryElements) {
   ASSERT_TRUE(opened) << opened.error().text;
   Session& session = opened.value();
   const World& world = session.simulation.world;
-  const Elasticity elasticity = world.bodies.at<Elasticity>(0);
-  const Friction friction = world.bodies.at<Friction>(0);
+  const Elasticity elasticity = world.model.bodies.at<Elasticity>(0);
+  const Friction friction = world.model.bodies.at<Friction>(0);
   ASSERT_NEAR(friction.static_friction / friction.dynamic_friction, 1.25, 1e-12);
   const std::vector<CurvePoint> curve = falling_curve(1.25);
   ASSERT_EQ(curve.size(), 101U);
@@ -74,10 +74,10 @@ TEST(StickySceneTest, ItsFirstTwistIsNearBoundaryElements) {
   int compared = 0;
   for (std::uint64_t step = 0; step < steps_in(session, session.scene.duration); ++step) {
     step_scripted(session);
-    if (world.regions.size() != 1) {
+    if (world.state.regions.size() != 1) {
       continue;
     }
-    const double turn = std::abs(world.regions.at<RegionMotion>(0).turn);
+    const double turn = std::abs(world.state.regions.at<RegionMotion>(0).turn);
     if (turn < turned) {
       break;
     }
@@ -85,14 +85,14 @@ TEST(StickySceneTest, ItsFirstTwistIsNearBoundaryElements) {
     if (turn < 1e-3) {
       continue;
     }
-    const double depth = world.regions.at<RegionGeometry>(0).largest_depth;
+    const double depth = world.state.regions.at<RegionGeometry>(0).largest_depth;
     const reference::SneddonSphere sphere =
         reference::sneddon_sphere_at_depth(0.03, elasticity.contact_modulus(), depth);
     const double pressure = 1.5 * sphere.force / (std::numbers::pi * sphere.radius * sphere.radius);
     const double limit = friction.dynamic_friction * pressure;
     const double unit = limit * std::pow(sphere.radius, 3);
     const double expected = couple_at(curve, turn * elasticity.shear_modulus() / limit);
-    const double couple = std::abs(world.regions.at<RegionFriction>(0).couple) / unit;
+    const double couple = std::abs(world.state.regions.at<RegionFriction>(0).couple) / unit;
     largest = std::max(largest, expected);
     worst = std::max(worst, std::abs(couple - expected));
     ++compared;

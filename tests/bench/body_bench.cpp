@@ -23,21 +23,21 @@ void press(World& world) {
                      .force_on_body = {1.0, -10.0, 0.0},
                      .radius = 0.014,
                      .depth = 0.002});
-  world.regions.at<RegionMotion>(0).axis_share = 1.0;
-  world.regions.at<RegionMotion>(0).axis = glm::dvec3(0.0, 1.0, 0.0);
-  world.regions.at<RegionFriction>(0).stick_turn = 0.2;
-  world.regions.at<RegionFriction>(0).stick_radius = 0.01;
-  world.tools.at<ToolPose>(0).now.position = glm::dvec3(0.0, 0.098, 0.0);
+  world.state.regions.at<RegionMotion>(0).axis_share = 1.0;
+  world.state.regions.at<RegionMotion>(0).axis = glm::dvec3(0.0, 1.0, 0.0);
+  world.state.regions.at<RegionFriction>(0).stick_turn = 0.2;
+  world.state.regions.at<RegionFriction>(0).stick_radius = 0.01;
+  world.state.tools.at<ToolPose>(0).now.position = glm::dvec3(0.0, 0.098, 0.0);
 }
 
 void skeleton_with_one_region(benchmark::State& state) {
   World world = body_world(exact_body(ShapeKind::kBox, glm::dvec3(0.05), FixedKind::kPoint));
   press(world);
   Snapshot snapshot;
-  snapshot.reserve(world);
-  capture(world, snapshot);
+  snapshot.reserve(world.model, world.state);
+  capture(world.state, snapshot);
   for (auto _ : state) {
-    skeleton_motions(world, snapshot);
+    skeleton_motions(world.model, world.state, snapshot);
     benchmark::ClobberMemory();
   }
 }
@@ -45,9 +45,9 @@ BENCHMARK(skeleton_with_one_region);
 
 void summary_of_the_main_beam(benchmark::State& state) {
   const World world = body_world(exact_body(ShapeKind::kBox, glm::dvec3(0.05), FixedKind::kPoint));
-  const Elasticity& elasticity = world.bodies.at<Elasticity>(0);
+  const Elasticity& elasticity = world.model.bodies.at<Elasticity>(0);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(beam_spring(main_beam(world, 0, {0.01, 0.05, 0.0}), elasticity));
+    benchmark::DoNotOptimize(beam_spring(main_beam(world.model, 0, {0.01, 0.05, 0.0}), elasticity));
   }
 }
 BENCHMARK(summary_of_the_main_beam);
@@ -57,7 +57,7 @@ void anchors_and_sections_at_load(benchmark::State& state) {
       exact_body(ShapeKind::kEllipsoid, {0.06, 0.04, 0.05}, FixedKind::kPoint);
   const World world = body_world(body);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(prepare_anchors(body, world, Range{0, 1}, Range{}));
+    benchmark::DoNotOptimize(prepare_anchors(body, world.model, Range{0, 1}, Range{}));
   }
 }
 BENCHMARK(anchors_and_sections_at_load)->Unit(benchmark::kMillisecond);
@@ -73,10 +73,10 @@ struct Frame {
     scene.tools.emplace_back();
     world = body_world(scene.bodies.front());
     press(world);
-    frame = prepare_frame(scene, world);
-    snapshot.reserve(world);
-    capture(world, snapshot);
-    skeleton_motions(world, snapshot);
+    frame = prepare_frame(scene, world.model, world.state);
+    snapshot.reserve(world.model, world.state);
+    capture(world.state, snapshot);
+    skeleton_motions(world.model, world.state, snapshot);
   }
   SceneDescription scene;
   World world;
@@ -87,7 +87,7 @@ struct Frame {
 void surface_field_of_one_region(benchmark::State& state) {
   Frame drawn(state.range(0));
   for (auto _ : state) {
-    surface_field(drawn.world, drawn.snapshot, drawn.frame);
+    surface_field(drawn.world.model, drawn.snapshot, drawn.frame);
     benchmark::ClobberMemory();
   }
 }
@@ -107,12 +107,14 @@ void surface_field_of_ten_regions(benchmark::State& state) {
                                  .force_on_body = {0.0, -1.0, 0.0},
                                  .radius = 0.005,
                                  .depth = 0.0005});
-    drawn.world.regions.at<RegionMotion>(region) = drawn.world.regions.at<RegionMotion>(0);
-    drawn.world.regions.at<RegionFriction>(region) = drawn.world.regions.at<RegionFriction>(0);
+    drawn.world.state.regions.at<RegionMotion>(region) =
+        drawn.world.state.regions.at<RegionMotion>(0);
+    drawn.world.state.regions.at<RegionFriction>(region) =
+        drawn.world.state.regions.at<RegionFriction>(0);
   }
-  capture(drawn.world, drawn.snapshot);
+  capture(drawn.world.state, drawn.snapshot);
   for (auto _ : state) {
-    surface_field(drawn.world, drawn.snapshot, drawn.frame);
+    surface_field(drawn.world.model, drawn.snapshot, drawn.frame);
     benchmark::ClobberMemory();
   }
 }
@@ -123,7 +125,7 @@ BENCHMARK(surface_field_of_ten_regions)->Arg(10000)->Arg(100000)->Unit(benchmark
 void surface_field_of_half_space(benchmark::State& state) {
   Frame drawn(state.range(1));
   World& world = drawn.world;
-  world.bodies.at<BodyModels>(0) = {ContactModel::kPatch, BodyModel::kCompliance};
+  world.model.bodies.at<BodyModels>(0) = {ContactModel::kPatch, BodyModel::kCompliance};
   for (std::int64_t i = 1; i < state.range(0); ++i) {
     const double angle = 0.7 * static_cast<double>(i);
     add_region(world, {.point = {0.03 * std::cos(angle), 0.05, 0.03 * std::sin(angle)},
@@ -131,10 +133,10 @@ void surface_field_of_half_space(benchmark::State& state) {
                        .radius = 0.005,
                        .depth = 0.0005});
   }
-  capture(world, drawn.snapshot);
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
+  capture(world.state, drawn.snapshot);
+  for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
     RegionField& field = drawn.snapshot.region_fields.at<RegionField>(region);
-    field.radius = world.regions.at<RegionGeometry>(region).radius;
+    field.radius = world.state.regions.at<RegionGeometry>(region).radius;
     field.spread = 0.1 * field.radius;
     std::ranges::fill(field.turn, 0.01);
     for (std::uint32_t block = 0; block < kFieldBlocks * kFieldBlocks; ++block) {
@@ -144,7 +146,7 @@ void surface_field_of_half_space(benchmark::State& state) {
     std::ranges::fill(drawn.snapshot.region_fields.at<AnchorTurns>(region).turn, 0.01);
   }
   for (auto _ : state) {
-    surface_field(world, drawn.snapshot, drawn.frame);
+    surface_field(world.model, drawn.snapshot, drawn.frame);
     benchmark::ClobberMemory();
   }
 }
@@ -154,7 +156,7 @@ BENCHMARK(surface_field_of_half_space)
 
 void deform_on_the_cpu(benchmark::State& state) {
   Frame drawn(state.range(0));
-  surface_field(drawn.world, drawn.snapshot, drawn.frame);
+  surface_field(drawn.world.model, drawn.snapshot, drawn.frame);
   std::vector<glm::vec4> positions(drawn.frame.body_vertices.size());
   for (auto _ : state) {
     deform_vertices(drawn.frame, 0, positions);

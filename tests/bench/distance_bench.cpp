@@ -24,10 +24,11 @@ World world_with(const std::vector<ShapePart>& shapes) {
   World world;
   Capacities capacities;
   capacities.parts = static_cast<std::uint32_t>(shapes.size());
-  world.reserve(capacities, Settings{});
+  world.model.reserve(capacities, Settings{});
+  world.state.reserve(capacities, Settings{});
   for (const ShapePart& shape : shapes) {
-    const auto row = world.parts.append(1);
-    world.parts.at<ShapePart>(row->first) = shape;
+    const auto row = world.model.parts.append(1);
+    world.model.parts.at<ShapePart>(row->first) = shape;
   }
   return world;
 }
@@ -53,7 +54,7 @@ void time_patch(benchmark::State& state, const World& world) {
   const DistanceColumns columns = batch.columns();
   const std::array<std::uint32_t, 1> rows{0};
   for (auto _ : state) {
-    signed_distances(world, rows, Pose{}, columns);
+    signed_distances(world.model, rows, Pose{}, columns);
     benchmark::DoNotOptimize(columns.value.data());
     benchmark::ClobberMemory();
   }
@@ -78,7 +79,7 @@ void single_point(benchmark::State& state, ShapeKind kind, glm::dvec3 half_exten
   const std::vector<glm::dvec3> points = patch_points();
   for (auto _ : state) {
     for (const glm::dvec3& point : points) {
-      benchmark::DoNotOptimize(signed_distance(world, {0, 1}, point));
+      benchmark::DoNotOptimize(signed_distance(world.model, {0, 1}, point));
     }
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
@@ -132,10 +133,10 @@ void union_of_ten(benchmark::State& state, bool near_only) {
   std::iota(rows.begin(), rows.end(), 0U);
   for (auto _ : state) {
     if (near_only) {
-      signed_distances(world, parts_near(world, {0, 10}, {0.0, 0.05, 0.0}, 0.012, rows), Pose{},
-                       columns);
+      signed_distances(world.model, parts_near(world.model, {0, 10}, {0.0, 0.05, 0.0}, 0.012, rows),
+                       Pose{}, columns);
     } else {
-      signed_distances(world, rows, Pose{}, columns);
+      signed_distances(world.model, rows, Pose{}, columns);
     }
     benchmark::ClobberMemory();
   }

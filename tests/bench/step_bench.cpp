@@ -21,6 +21,7 @@
 #include "device/scripted_motion.hpp"
 #include "scenes/load_gltf.hpp"
 #include "scenes/write_gltf.hpp"
+#include "systems/scratch.hpp"
 #include "systems/surface/surface_field.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/paths.hpp"
@@ -56,8 +57,8 @@ class StepTimes {
 void time_contact(benchmark::State& state, Session& session) {
   constexpr double kFirst = 1.0;  // s
   constexpr double kLast = 3.3;   // s
-  const double dt = session.simulation.world.clock.at<Clock>(0).dt;
-  while (session.simulation.world.clock.at<Clock>(0).time < kFirst) {
+  const double dt = session.simulation.world.state.clock.dt;
+  while (session.simulation.world.state.clock.time < kFirst) {
     step_scripted(session);
   }
   StepTimes times;
@@ -76,8 +77,8 @@ void time_contact(benchmark::State& state, Session& session) {
     times.add(seconds);
   }
   times.report(state);
-  state.counters["regions"] = session.simulation.world.regions.size();
-  if (session.simulation.world.clock.at<Clock>(0).faults_ever != 0) {
+  state.counters["regions"] = session.simulation.world.state.regions.size();
+  if (session.simulation.world.state.clock.faults_ever != 0) {
     state.SkipWithError("a fault during the run");
   }
 }
@@ -103,13 +104,13 @@ void step_of_scene(benchmark::State& state, const std::string& name) {
 /// @return how many cells of a region bear pressure now, on average
 double cells_in_contact(const World& world) {
   double cells = 0.0;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const Range range = world.regions.at<RegionIdentity>(region).cells;
+  for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
+    const Range range = world.state.regions.at<RegionIdentity>(region).cells;
     cells += static_cast<double>(std::ranges::count_if(
-        world.cells.rows<CellTraction>(range),
+        world.state.cells.rows<CellTraction>(range),
         [](const CellTraction& traction) { return traction.pressure > 0.0; }));
   }
-  return cells / std::max(1.0, static_cast<double>(world.regions.size()));
+  return cells / std::max(1.0, static_cast<double>(world.state.regions.size()));
 }
 
 /// A half-space model: the whole step, and the model's own share of it as a counter.
@@ -128,7 +129,7 @@ void step_of_model(benchmark::State& state, const std::string& name, ContactMode
   Session session = std::move(opened).value();
   time_contact(state, session);
   double model = 0.0;  // s a step
-  for (const auto& row : session.simulation.schedule.rows()) {
+  for (const auto& row : session.simulation.scratch->schedule.rows()) {
     if (std::string_view(row.system.name).starts_with(systems)) {
       model += row.timing.total_s / static_cast<double>(row.timing.runs);
     }
@@ -236,7 +237,8 @@ void load_large_scene(benchmark::State& state, bool cached) {
     const auto start = SteadyClock::now();
     const LoadedScene loaded = load_gltf(path);
     const Result<Simulation> simulation = prepare(*loaded.scene, papers_models());
-    const FrameWorld frame = prepare_frame(*loaded.scene, simulation.value().world);
+    const FrameWorld frame = prepare_frame(*loaded.scene, simulation.value().world.model,
+                                           simulation.value().world.state);
     state.SetIterationTime(seconds_since(start));
     triangles = frame.body_triangles.size();
   }

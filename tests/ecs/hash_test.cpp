@@ -28,23 +28,25 @@ void expect_hash_to_change(const World& world, std::span<std::byte> column) {
 
 TEST(HashTest, EveryColumnOfEveryTableCounts) {
   World world = test::small_world(3);
-  std::apply(
-      [&world](auto&... tables) {
-        (tables.each_column([&world](std::span<std::byte> bytes, std::size_t /*row_size*/) {
-          expect_hash_to_change(world, bytes);
-        }),
-         ...);
-      },
-      world.tables());
+  const auto change_each = [&world](auto&... tables) {
+    (tables.each_column([&world](std::span<std::byte> bytes, std::size_t /*row_size*/) {
+      expect_hash_to_change(world, bytes);
+    }),
+     ...);
+  };
+  std::apply(change_each, world.model.tables());
+  std::apply(change_each, world.state.tables());
+  expect_hash_to_change(world, std::as_writable_bytes(std::span(&world.model.settings, 1)));
+  expect_hash_to_change(world, std::as_writable_bytes(std::span(&world.state.clock, 1)));
 }
 
 TEST(HashTest, RowsBeyondTheSizeDoNotCount) {
   World world = test::small_world(4);
   const std::uint64_t before = hash(world);
-  world.cells.append(1);
-  world.cells.at<CellGeometry>(world.cells.size() - 1).depth = 1.0;
+  ASSERT_TRUE(world.state.regions.append(1).has_value());
+  world.state.regions.at<RegionNormal>(world.state.regions.size() - 1).force = 1.0;
   EXPECT_NE(hash(world), before);
-  world.cells.erase(world.cells.size() - 1);
+  world.state.regions.erase(world.state.regions.size() - 1);
   EXPECT_EQ(hash(world), before);
 }
 

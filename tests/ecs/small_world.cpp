@@ -20,46 +20,47 @@ void fill(AnyTable& table, unsigned& state) {
 // One mesh with a field of 2 x 2 x 2 coarse cells, of which one is divided once, and two exact
 // shapes.
 void mend_shapes(World& world) {
-  for (std::uint32_t row = 0; row < world.parts.size(); ++row) {
-    world.parts.at<ShapePart>(row).kind = ShapeKind::kSphere;
+  for (std::uint32_t row = 0; row < world.model.parts.size(); ++row) {
+    world.model.parts.at<ShapePart>(row).kind = ShapeKind::kSphere;
   }
-  world.parts.at<ShapePart>(1).kind = ShapeKind::kMesh;
-  world.parts.at<ShapePart>(1).field = 0;
-  auto& field = world.fields.at<DistanceField>(0);
+  world.model.parts.at<ShapePart>(1).kind = ShapeKind::kMesh;
+  world.model.parts.at<ShapePart>(1).field = 0;
+  auto& field = world.model.fields.at<DistanceField>(0);
   field.cells = glm::uvec3(2);
   field.subdivision = 2;
   field.coarse_nodes = {0, 27};
   field.bricks = {0, 8};
-  for (DistanceBrick& brick : world.field_bricks.column<DistanceBrick>()) {
+  for (DistanceBrick& brick : world.model.field_bricks.column<DistanceBrick>()) {
     brick.first_node = kNoRow;
   }
-  world.field_bricks.at<DistanceBrick>(3).first_node = 27;
+  world.model.field_bricks.at<DistanceBrick>(3).first_node = 27;
 }
 
 // Two tools with 10 samples in a chain and 20 balls each, two bodies with 3 anchors each.
 void mend_owners(World& world) {
-  for (std::uint32_t row = 0; row < world.samples.size(); ++row) {
-    for (std::uint32_t& neighbour : world.samples.at<SurfaceSample>(row).neighbours) {
+  for (std::uint32_t row = 0; row < world.model.samples.size(); ++row) {
+    for (std::uint32_t& neighbour : world.model.samples.at<SurfaceSample>(row).neighbours) {
       neighbour = kNoRow;
     }
-    world.samples.at<SurfaceSample>(row).neighbours[0] = (row + 1) % 10;
+    world.model.samples.at<SurfaceSample>(row).neighbours[0] = (row + 1) % 10;
   }
-  for (std::uint32_t row = 0; row < world.balls.size(); ++row) {
-    world.balls.at<SurfaceBall>(row).skip = row % 20 + 1;
-    world.balls.at<SurfaceBall>(row).sample = row % 2 == 0 ? kNoRow : row % 20 / 2;
+  for (std::uint32_t row = 0; row < world.model.balls.size(); ++row) {
+    world.model.balls.at<SurfaceBall>(row).skip = row % 20 + 1;
+    world.model.balls.at<SurfaceBall>(row).sample = row % 2 == 0 ? kNoRow : row % 20 / 2;
   }
   for (std::uint32_t row = 0; row < 2; ++row) {
-    world.tools.at<OwnedRows>(row) = {{row, 1}, {row * 10, 10}, {row * 20, 20}, {}, {}, {}, {}};
-    world.bodies.at<OwnedRows>(row) = {{row + 1, 1}, {}, {}, {row * 3, 3}, {}, {}, {}};
+    world.model.tools.at<OwnedRows>(row) = {{row, 1}, {row * 10, 10}, {row * 20, 20}, {}, {}, {},
+                                            {}};
+    world.model.bodies.at<OwnedRows>(row) = {{row + 1, 1}, {}, {}, {row * 3, 3}, {}, {}, {}};
     if (row == 0) {
-      world.bodies.at<OwnedRows>(row).ports = {0, 3};
-      world.bodies.at<OwnedRows>(row).compliance = {0, 162};
+      world.model.bodies.at<OwnedRows>(row).ports = {0, 3};
+      world.model.bodies.at<OwnedRows>(row).compliance = {0, 162};
     }
-    for (Footing& footing : world.footings.column<Footing>()) {
+    for (Footing& footing : world.state.footings.column<Footing>()) {
       footing.count = 0;
     }
-    world.bodies.at<FixedRegion>(row).volumes = {row, 1};
-    auto& region = world.regions.at<RegionIdentity>(row);
+    world.model.bodies.at<FixedRegion>(row).volumes = {row, 1};
+    auto& region = world.state.regions.at<RegionIdentity>(row);
     region.body = row;
     region.tool = 1 - row;
     region.cells = {row * 16, 16};
@@ -90,33 +91,31 @@ World small_world(unsigned seed) {
   capacities.compliance_values = 162;
   Settings settings;
   settings.grid_side = 4;
-  world.reserve(capacities, settings);
+  world.model.reserve(capacities, settings);
+  world.state.reserve(capacities, settings);
 
-  world.parts.append(3);
-  world.fields.append(1);
-  world.field_nodes.append(54);
-  world.field_bricks.append(8);
-  world.fixed_volumes.append(2);
-  world.samples.append(20);
-  world.balls.append(40);
-  world.sections.append(6 * kBeamStations);
-  world.bodies.append(2);
-  world.tools.append(2);
-  world.regions.append(2);
-  world.cells.append(2 * settings.grid_side * settings.grid_side);
-  world.influences.append(3);
-  world.ports.append(3);
-  world.compliance.append(162);
-  world.layer_influences.append(world.layer_influences.capacity());
-  world.footings.append(4);
-  world.couplings.append(6);
-  world.patch_cells.append(world.cells.size());
-  world.mdr_layers.append(world.mdr_layers.capacity());
-  world.anchors.append(6);
+  world.model.parts.append(3);
+  world.model.fields.append(1);
+  world.model.field_nodes.append(54);
+  world.model.field_bricks.append(8);
+  world.model.fixed_volumes.append(2);
+  world.model.samples.append(20);
+  world.model.balls.append(40);
+  world.model.sections.append(6 * kBeamStations);
+  world.model.bodies.append(2);
+  world.model.tools.append(2);
+  world.state.regions.append(2);
+  world.model.influences.append(3);
+  world.model.ports.append(3);
+  world.model.compliance.append(162);
+  world.model.anchors.append(6);
 
-  unsigned state = seed;
-  std::apply([&state](auto&... tables) { (fill(tables, state), ...); }, world.tables());
-  world.settings.at<Settings>(0) = settings;
+  unsigned random = seed;
+  const auto fill_all = [&random](auto&... tables) {
+    (fill(tables, random), ...);
+  };
+  std::apply(fill_all, world.model.tables());
+  std::apply(fill_all, world.state.tables());
   mend_shapes(world);
   mend_owners(world);
   return world;

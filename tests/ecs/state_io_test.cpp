@@ -18,11 +18,12 @@
 namespace torsion {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 40;
+constexpr std::size_t kHeaderBytes = 48;
 constexpr std::size_t kVersionAt = 8;
 constexpr std::size_t kLayoutAt = 16;
-constexpr std::size_t kSizeAt = 24;
-constexpr std::size_t kChecksumAt = 32;
+constexpr std::size_t kModelAt = 24;
+constexpr std::size_t kSizeAt = 32;
+constexpr std::size_t kChecksumAt = 40;
 
 template <class T>
 void overwrite(std::vector<std::byte>& bytes, std::size_t at, T value) {
@@ -35,42 +36,51 @@ void seal(std::vector<std::byte>& bytes) {
   overwrite<std::uint64_t>(bytes, kChecksumAt, XXH3_64bits(bytes.data() + kHeaderBytes, size));
 }
 
+std::vector<std::byte> bytes_of(const World& world) {
+  return to_bytes(world.model, world.state);
+}
+
+Result<State> state_from(const std::vector<std::byte>& bytes, const std::string& origin) {
+  return from_bytes(bytes, test::small_world(1).model, origin);
+}
+
 void expect_refused(const std::vector<std::byte>& bytes, const std::string& because) {
-  const Result<World> loaded = from_bytes(bytes, "saved.state");
+  const Result<State> loaded = state_from(bytes, "saved.state");
   ASSERT_FALSE(loaded.ok());
   EXPECT_NE(loaded.error().text.find("saved.state"), std::string::npos) << loaded.error().text;
   EXPECT_NE(loaded.error().text.find(because), std::string::npos) << loaded.error().text;
 }
 
-TEST(StateIoTest, AWorldComesBackBitForBit) {
+TEST(StateIoTest, AStateComesBackBitForBit) {
   const World world = test::small_world(1);
-  const Result<World> loaded = from_bytes(to_bytes(world), "memory");
+  const Result<State> loaded = state_from(bytes_of(world), "memory");
   ASSERT_TRUE(loaded.ok()) << loaded.error().text;
-  EXPECT_EQ(hash(loaded.value()), hash(world));
-  EXPECT_EQ(to_bytes(loaded.value()), to_bytes(world));
+  EXPECT_EQ(hash(loaded.value()), hash(world.state));
+  EXPECT_EQ(to_bytes(world.model, loaded.value()), bytes_of(world));
 }
 
 TEST(StateIoTest, CapacitiesComeBack) {
   World world = test::small_world(1);
-  World loaded = std::move(from_bytes(to_bytes(world), "memory")).value();
-  EXPECT_EQ(loaded.regions.capacity(), world.regions.capacity());
-  EXPECT_EQ(loaded.cells.capacity(), world.cells.capacity());
+  const State loaded = std::move(state_from(bytes_of(world), "memory")).value();
+  EXPECT_EQ(loaded.regions.capacity(), world.state.regions.capacity());
+  EXPECT_EQ(loaded.cells.capacity(), world.state.cells.capacity());
 }
 
-TEST(StateIoTest, AnEmptyWorldComesBack) {
+TEST(StateIoTest, AnEmptyStateComesBack) {
   World world;
-  world.reserve(Capacities{}, Settings{});
-  const Result<World> loaded = from_bytes(to_bytes(world), "memory");
+  world.model.reserve(Capacities{}, Settings{});
+  world.state.reserve(Capacities{}, Settings{});
+  const Result<State> loaded = from_bytes(bytes_of(world), world.model, "memory");
   ASSERT_TRUE(loaded.ok()) << loaded.error().text;
-  EXPECT_EQ(hash(loaded.value()), hash(world));
+  EXPECT_EQ(hash(loaded.value()), hash(world.state));
 }
 
 TEST(StateIoTest, EveryTruncationIsRefused) {
-  const std::vector<std::byte> whole = to_bytes(test::small_world(1));
+  const std::vector<std::byte> whole = bytes_of(test::small_world(1));
   for (std::size_t size = 0; size < whole.size(); size += size < 200 ? 1 : 97) {
     const std::vector<std::byte> part(whole.begin(),
                                       whole.begin() + static_cast<std::ptrdiff_t>(size));
-    ASSERT_FALSE(from_bytes(part, "part").ok()) << size;
+    ASSERT_FALSE(state_from(part, "part").ok()) << size;
   }
   std::vector<std::byte> longer = whole;
   longer.push_back(std::byte{0});
@@ -78,19 +88,19 @@ TEST(StateIoTest, EveryTruncationIsRefused) {
 }
 
 TEST(StateIoTest, EveryFlippedByteIsRefused) {
-  std::vector<std::byte> bytes = to_bytes(test::small_world(1));
+  std::vector<std::byte> bytes = bytes_of(test::small_world(1));
   for (std::size_t at = 0; at < bytes.size(); at += 13) {
     if (at >= 12 && at < 16) {
       continue;  // the header's padding means nothing
     }
     bytes[at] ^= std::byte{0x40};
-    ASSERT_FALSE(from_bytes(bytes, "flipped").ok()) << at;
+    ASSERT_FALSE(state_from(bytes, "flipped").ok()) << at;
     bytes[at] ^= std::byte{0x40};
   }
 }
 
 TEST(StateIoTest, RefusalsSayWhy) {
-  const std::vector<std::byte> whole = to_bytes(test::small_world(1));
+  const std::vector<std::byte> whole = bytes_of(test::small_world(1));
   std::vector<std::byte> bytes = whole;
   bytes[0] = std::byte{'X'};
   expect_refused(bytes, "does not begin with TORSTATE");
@@ -101,17 +111,20 @@ TEST(StateIoTest, RefusalsSayWhy) {
   overwrite<std::uint64_t>(bytes, kLayoutAt, 1);
   expect_refused(bytes, "another build");
   bytes = whole;
+  overwrite<std::uint64_t>(bytes, kModelAt, 1);
+  expect_refused(bytes, "another scene");
+  bytes = whole;
   bytes.back() ^= std::byte{1};
   expect_refused(bytes, "checksum");
   expect_refused({}, "shorter than its header");
 }
 
-// The first table is `settings`: its size and capacity are the first two numbers after the header.
+// The first table is `bodies`: its size and capacity are the first two numbers after the clock.
 TEST(StateIoTest, HostileCountsWithARightChecksumAreRefusedWithoutTakingTheMemory) {
   for (const std::uint32_t count : {2U, 0x7FFFFFFFU, 0x80000000U, 0xFFFFFFFFU}) {
-    std::vector<std::byte> bytes = to_bytes(test::small_world(1));
-    overwrite(bytes, kHeaderBytes, count);
-    overwrite(bytes, kHeaderBytes + 4, 0xFFFFFFFFU);
+    std::vector<std::byte> bytes = bytes_of(test::small_world(1));
+    overwrite(bytes, kHeaderBytes + sizeof(Clock), count);
+    overwrite(bytes, kHeaderBytes + sizeof(Clock) + 4, 0xFFFFFFFFU);
     seal(bytes);
     expect_refused(bytes, "damaged");
   }
@@ -119,14 +132,15 @@ TEST(StateIoTest, HostileCountsWithARightChecksumAreRefusedWithoutTakingTheMemor
 
 TEST(StateIoTest, ARowThatDoesNotExistIsRefused) {
   World world = test::small_world(1);
-  world.regions.at<RegionIdentity>(0).body = 17;
-  expect_refused(to_bytes(world), "regions row 0: its body is not there");
+  world.state.regions.at<RegionIdentity>(0).body = 17;
+  expect_refused(bytes_of(world), "regions row 0: its body is not there");
 }
 
 // Whatever is between a right header and a right checksum: a world that passes the checks, or an
 // Error. Run under the sanitizers this proves that the reader stays inside its bytes.
 TEST(StateIoTest, NoiseWithARightChecksumNeverCrashes) {
-  const std::vector<std::byte> whole = to_bytes(test::small_world(1));
+  const std::vector<std::byte> whole = bytes_of(test::small_world(1));
+  const Model model = test::small_world(1).model;
   std::mt19937 random(7);  // the same run every time
   for (int round = 0; round < 2000; ++round) {
     std::vector<std::byte> bytes = whole;
@@ -141,9 +155,9 @@ TEST(StateIoTest, NoiseWithARightChecksumNeverCrashes) {
       }
     }
     seal(bytes);
-    const Result<World> loaded = from_bytes(bytes, "noise");
+    const Result<State> loaded = from_bytes(bytes, model, "noise");
     if (loaded.ok()) {
-      ASSERT_EQ(to_bytes(loaded.value()), bytes);
+      ASSERT_EQ(to_bytes(model, loaded.value()), bytes);
     } else {
       ASSERT_FALSE(loaded.error().text.empty());
     }
@@ -171,20 +185,21 @@ class StateFileTest : public testing::Test {
 TEST_F(StateFileTest, AFileComesBackAndNothingElseIsLeft) {
   const World world = test::small_world(1);
   const auto path = folder_ / "world.state";
-  ASSERT_TRUE(save_world(test::small_world(2), path).ok());
-  ASSERT_TRUE(save_world(world, path).ok());
+  ASSERT_TRUE(save_state(world.model, test::small_world(2).state, path).ok());
+  ASSERT_TRUE(save_state(world.model, world.state, path).ok());
   EXPECT_EQ(files(), 1U);
-  const Result<World> loaded = load_world(path);
+  const Result<State> loaded = load_state(world.model, path);
   ASSERT_TRUE(loaded.ok()) << loaded.error().text;
-  EXPECT_EQ(hash(loaded.value()), hash(world));
+  EXPECT_EQ(hash(loaded.value()), hash(world.state));
 }
 
 TEST_F(StateFileTest, AMissingFolderIsAnErrorThatNamesThePath) {
   const auto path = folder_ / "no_such_folder" / "world.state";
-  const Result<Done> saved = save_world(test::small_world(1), path);
+  const World world = test::small_world(1);
+  const Result<Done> saved = save_state(world.model, world.state, path);
   ASSERT_FALSE(saved.ok());
   EXPECT_NE(saved.error().text.find("no_such_folder"), std::string::npos);
-  const Result<World> loaded = load_world(path);
+  const Result<State> loaded = load_state(world.model, path);
   ASSERT_FALSE(loaded.ok());
   EXPECT_NE(loaded.error().text.find("no_such_folder"), std::string::npos);
 }
@@ -193,9 +208,10 @@ TEST_F(StateFileTest, AFailedSaveLeavesNothingBehind) {
   // A folder in the place of the file: the rename is refused.
   const auto path = folder_ / "world.state";
   std::filesystem::create_directories(path / "full");
-  EXPECT_FALSE(save_world(test::small_world(1), path).ok());
+  const World world = test::small_world(1);
+  EXPECT_FALSE(save_state(world.model, world.state, path).ok());
   EXPECT_EQ(files(), 1U);
-  EXPECT_FALSE(load_world(path).ok());
+  EXPECT_FALSE(load_state(world.model, path).ok());
 }
 
 }  // namespace

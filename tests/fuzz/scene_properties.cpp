@@ -62,12 +62,13 @@ int hold_steps(double rate) {
 /// Height of a tool's frame at which its surface samples just touch the body, m: what lies between
 /// them touches a little earlier. By bisection.
 double touching_height(const World& world, std::uint32_t tool, const RandomWay& way, double size) {
-  const Range parts = world.bodies.at<OwnedRows>(0).parts;
-  const auto samples = world.samples.rows<SurfaceSample>(world.tools.at<OwnedRows>(tool).samples);
+  const Range parts = world.model.bodies.at<OwnedRows>(0).parts;
+  const auto samples =
+      world.model.samples.rows<SurfaceSample>(world.model.tools.at<OwnedRows>(tool).samples);
   const auto inside = [&](double height) {
     const Pose pose{{way.beside.x, height, way.beside.y}, way.rotation};
     return std::ranges::any_of(samples, [&](const SurfaceSample& sample) {
-      return signed_distance(world, parts, to_outer(pose, sample.position)).value < 0.0;
+      return signed_distance(world.model, parts, to_outer(pose, sample.position)).value < 0.0;
     });
   };
   double low = -0.5 * size;
@@ -143,15 +144,15 @@ bool only_drags(const Simulation& simulation, std::uint32_t tool) {
     return pair.tool == tool && pair.points.count > 0;
   };
   return std::ranges::none_of(simulation.scratch->contact.pairs, touches) &&
-         simulation.world.tools.at<ToolWrench>(tool).total.force != glm::dvec3(0.0);
+         simulation.world.state.tools.at<ToolWrench>(tool).total.force != glm::dvec3(0.0);
 }
 
 /// Whether a region is on a side of the body, which tools come down on from above.
 bool meets_a_side(const World& world) {
   constexpr double kUpwards = 0.4;
-  const auto frames = world.regions.column<RegionFrame>();
+  const auto frames = world.state.regions.column<RegionFrame>();
   return std::ranges::any_of(frames, [&](const RegionFrame& frame) {
-    return (world.bodies.at<Pose>(0).rotation * frame.normal).y < kUpwards;
+    return (world.model.bodies.at<Pose>(0).rotation * frame.normal).y < kUpwards;
   });
 }
 
@@ -163,22 +164,22 @@ void look_at_regions(const World& world, int step, Run& run) {
   constexpr double kDrag = 0.05;
   double residual = 0.0;
   bool pressed = false;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const double force = world.regions.at<RegionNormal>(region).force;
+  for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
+    const double force = world.state.regions.at<RegionNormal>(region).force;
     if (force <= 0.0) {
       continue;
     }
     const Friction& friction =
-        world.bodies.at<Friction>(world.regions.at<RegionIdentity>(region).body);
+        world.model.bodies.at<Friction>(world.state.regions.at<RegionIdentity>(region).body);
     const double most = std::max(friction.static_friction, friction.dynamic_friction) + kDrag;
-    const double share = glm::length(world.regions.at<RegionFriction>(region).force) /
+    const double share = glm::length(world.state.regions.at<RegionFriction>(region).force) /
                          std::max(most * force, std::numeric_limits<double>::min());
     if (share > run.friction) {
       run.friction = share;
       run.friction_step = step;
     }
     pressed = true;
-    residual = std::max(residual, world.regions.at<PatchState>(region).residual);
+    residual = std::max(residual, world.state.regions.at<PatchState>(region).residual);
   }
   run.pressed += pressed ? 1 : 0;
   run.unsolved += residual > kUnsolved ? 1 : 0;
@@ -191,15 +192,15 @@ constexpr int kLate = 5;
 Run run(Simulation& simulation, const std::vector<std::vector<Pose>>& poses) {
   Run run;
   const World& world = simulation.world;
-  run.forces.resize(world.tools.size());
-  run.torques.resize(world.tools.size());
-  run.let_go.resize(world.tools.size());
-  std::vector<int> dragged(world.tools.size(), 0);
+  run.forces.resize(world.model.tools.size());
+  run.torques.resize(world.model.tools.size());
+  run.let_go.resize(world.model.tools.size());
+  std::vector<int> dragged(world.model.tools.size(), 0);
   for (std::size_t index = 0; index < poses.size(); ++index) {
     step(simulation, poses[index]);
     double work = 0.0;
-    for (std::uint32_t tool = 0; tool < world.tools.size(); ++tool) {
-      const ToolWrench& wrench = world.tools.at<ToolWrench>(tool);
+    for (std::uint32_t tool = 0; tool < world.model.tools.size(); ++tool) {
+      const ToolWrench& wrench = world.state.tools.at<ToolWrench>(tool);
       run.forces[tool].push_back(wrench.total.force);
       run.torques[tool].push_back(wrench.total.torque);
       work += wrench.work;
@@ -215,7 +216,7 @@ Run run(Simulation& simulation, const std::vector<std::vector<Pose>>& poses) {
     run.work.push_back(work);
     run.into_a_side = run.into_a_side || meets_a_side(world);
     look_at_regions(world, static_cast<int>(index), run);
-    const std::uint32_t faults = world.clock.at<Clock>(0).faults;
+    const std::uint32_t faults = world.state.clock.faults;
     run.fault_step = faults != 0 && run.faults == 0 ? static_cast<int>(index) : run.fault_step;
     run.faults |= faults;
   }

@@ -146,8 +146,6 @@ void add_twist(FrameWorld& frame, std::uint32_t body, const glm::vec3& point,
 
 Snapshot make_snapshot(std::uint32_t tools, std::uint32_t regions) {
   Snapshot snapshot;
-  snapshot.clock.reserve(1);
-  snapshot.clock.append();
   snapshot.tools.reserve(tools);
   snapshot.tools.append(tools);
   snapshot.regions.reserve(regions);

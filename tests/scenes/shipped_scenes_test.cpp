@@ -76,7 +76,7 @@ TEST_P(ShippedSceneTest, LoadsPreparesAndSteps) {
     }
     step(simulation, poses);
   }
-  const Clock& clock = simulation.world.clock.at<Clock>(0);
+  const Clock& clock = simulation.world.state.clock;
   EXPECT_EQ(clock.step, 10U);
   EXPECT_EQ(clock.faults_ever, 0U);
 }
@@ -121,8 +121,8 @@ TEST(ShippedScenesTest, AMalletThatJustTouchesHasOneContact) {
     const double depth = 5e-7 * (i + 0.5) - 1e-5;  // m: of its lowest point
     const std::array<Pose, 1> poses = {{{{0.0, 0.1 - depth, 0.0}, {1.0, 0.0, 0.0, 0.0}}}};
     step(simulation, poses);
-    ASSERT_EQ(world.regions.size(), depth > 0.0 ? 1U : 0U) << depth << " m deep";
-    const double force = world.tools.at<ToolWrench>(0).total.force.y;
+    ASSERT_EQ(world.state.regions.size(), depth > 0.0 ? 1U : 0U) << depth << " m deep";
+    const double force = world.state.tools.at<ToolWrench>(0).total.force.y;
     EXPECT_GE(force, before);
     before = force;
   }
@@ -136,25 +136,26 @@ TEST(ShippedScenesTest, ANewGridHoldsALopsidedContactAroundItsMiddle) {
   ASSERT_TRUE(made.simulation.has_value());
   Simulation& simulation = *made.simulation;
   const World& world = simulation.world;
-  const Clock& clock = world.clock.at<Clock>(0);
+  const Clock& clock = world.state.clock;
   std::uint32_t region = 0;
   const auto is_loaded = [&world](std::uint32_t row) {
-    return world.regions.at<RegionNormal>(row).force > 0.0;
+    return world.state.regions.at<RegionNormal>(row).force > 0.0;
   };
   for (region = 0; clock.time < 1.0; region = 0) {
     const std::array<Pose, 1> poses = {scripted_pose(made.scene->tools[0].script, clock.time)};
     step(simulation, poses);
-    while (region < world.regions.size() && !is_loaded(region)) {
+    while (region < world.state.regions.size() && !is_loaded(region)) {
       ++region;
     }
-    if (region < world.regions.size()) {
+    if (region < world.state.regions.size()) {
       break;
     }
   }
-  ASSERT_LT(region, world.regions.size());
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
-  const auto cells = world.cells.rows<CellGeometry>(world.regions.at<RegionIdentity>(region).cells);
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  ASSERT_LT(region, world.state.regions.size());
+  const std::uint32_t side = world.model.settings.grid_side;
+  const auto cells =
+      world.state.cells.rows<CellGeometry>(world.state.regions.at<RegionIdentity>(region).cells);
+  const RegionFrame& frame = world.state.regions.at<RegionFrame>(region);
   glm::dvec2 middle(0.0);
   double sum = 0.0;
   for (std::uint32_t j = 0; j < side; ++j) {

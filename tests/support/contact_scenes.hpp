@@ -45,9 +45,9 @@ class Hand {
   [[nodiscard]] const World& world() const { return simulation_.world; }
   [[nodiscard]] Simulation& simulation() { return simulation_; }
   [[nodiscard]] const Wrench& wrench(std::uint32_t tool = 0) const {
-    return simulation_.world.tools.at<ToolWrench>(tool).total;
+    return simulation_.world.state.tools.at<ToolWrench>(tool).total;
   }
-  [[nodiscard]] const Clock& clock() const { return simulation_.world.clock.at<Clock>(0); }
+  [[nodiscard]] const Clock& clock() const { return simulation_.world.state.clock; }
   std::vector<Pose> poses;
 
  private:

@@ -126,53 +126,54 @@ World body_world(const BodyDescription& body) {
   capacities.fixed_volumes = static_cast<std::uint32_t>(body.fixed_volumes.size());
   capacities.anchors = kAnchorsPerBody;
   capacities.regions = kMaxRegionsPerBody;
-  world.reserve(capacities, Settings{});
+  world.model.reserve(capacities, Settings{});
+  world.state.reserve(capacities, Settings{});
 
   OwnedRows owned;
-  owned.parts = *world.parts.append();
-  world.parts.at<ShapePart>(0) = body.parts.front().shape;
+  owned.parts = *world.model.parts.append();
+  world.model.parts.at<ShapePart>(0) = body.parts.front().shape;
   FixedRegion fixed = body.fixed;
   fixed.volumes =
-      *world.fixed_volumes.append(static_cast<std::uint32_t>(body.fixed_volumes.size()));
+      *world.model.fixed_volumes.append(static_cast<std::uint32_t>(body.fixed_volumes.size()));
   std::ranges::copy(body.fixed_volumes,
-                    world.fixed_volumes.rows<FixedVolume>(fixed.volumes).begin());
-  const PreparedAnchors prepared = prepare_anchors(body, world, owned.parts, fixed.volumes);
-  owned.anchors = *world.anchors.append(static_cast<std::uint32_t>(prepared.anchors.size()));
-  std::ranges::copy(prepared.anchors, world.anchors.column<AnchorRest>().begin());
-  world.sections.append(static_cast<std::uint32_t>(prepared.sections.size()));
-  std::ranges::copy(prepared.sections, world.sections.column<BeamSection>().begin());
+                    world.model.fixed_volumes.rows<FixedVolume>(fixed.volumes).begin());
+  const PreparedAnchors prepared = prepare_anchors(body, world.model, owned.parts, fixed.volumes);
+  owned.anchors = *world.model.anchors.append(static_cast<std::uint32_t>(prepared.anchors.size()));
+  std::ranges::copy(prepared.anchors, world.model.anchors.column<AnchorRest>().begin());
+  world.model.sections.append(static_cast<std::uint32_t>(prepared.sections.size()));
+  std::ranges::copy(prepared.sections, world.model.sections.column<BeamSection>().begin());
 
-  world.bodies.append();
-  world.bodies.at<Pose>(0) = body.pose;
-  world.bodies.at<Elasticity>(0) = body.elasticity;
-  world.bodies.at<Friction>(0) = body.friction;
-  world.bodies.at<FixedRegion>(0) = fixed;
-  world.bodies.at<BodyModels>(0) = body.models;
-  world.bodies.at<OwnedRows>(0) = owned;
+  world.model.bodies.append();
+  world.model.bodies.at<Pose>(0) = body.pose;
+  world.model.bodies.at<Elasticity>(0) = body.elasticity;
+  world.model.bodies.at<Friction>(0) = body.friction;
+  world.model.bodies.at<FixedRegion>(0) = fixed;
+  world.model.bodies.at<BodyModels>(0) = body.models;
+  world.model.bodies.at<OwnedRows>(0) = owned;
   const glm::dvec3 half = body.parts.front().shape.half_extent;
-  world.bodies.at<Bounds>(0) = {-half, half};
+  world.model.bodies.at<Bounds>(0) = {-half, half};
 
-  const Range tool_part = *world.parts.append();
-  world.parts.at<ShapePart>(tool_part.first).kind = ShapeKind::kSphere;
-  world.parts.at<ShapePart>(tool_part.first).half_extent = glm::dvec3(0.05);
-  world.parts.at<ShapePart>(tool_part.first).pose = Pose{};
-  world.tools.append();
-  world.tools.at<ToolPose>(0) = ToolPose{};
-  world.tools.at<ToolPose>(0).now.position = glm::dvec3(0.0, 10.0, 0.0);
-  world.tools.at<ToolWrench>(0) = ToolWrench{};
-  world.tools.at<OwnedRows>(0).parts = tool_part;
-  world.tools.at<Bounds>(0) = {glm::dvec3(-0.05), glm::dvec3(0.05)};
+  const Range tool_part = *world.model.parts.append();
+  world.model.parts.at<ShapePart>(tool_part.first).kind = ShapeKind::kSphere;
+  world.model.parts.at<ShapePart>(tool_part.first).half_extent = glm::dvec3(0.05);
+  world.model.parts.at<ShapePart>(tool_part.first).pose = Pose{};
+  world.model.tools.append();
+  world.state.tools.at<ToolPose>(0) = ToolPose{};
+  world.state.tools.at<ToolPose>(0).now.position = glm::dvec3(0.0, 10.0, 0.0);
+  world.state.tools.at<ToolWrench>(0) = ToolWrench{};
+  world.model.tools.at<OwnedRows>(0).parts = tool_part;
+  world.model.tools.at<Bounds>(0) = {glm::dvec3(-0.05), glm::dvec3(0.05)};
   return world;
 }
 
 std::uint32_t add_region(World& world, const RegionOnBody& region) {
-  const std::uint32_t row = world.regions.append()->first;
-  world.regions.at<RegionIdentity>(row) = RegionIdentity{0, 0, row, Range{row, 1}};
+  const std::uint32_t row = world.state.regions.append()->first;
+  world.state.regions.at<RegionIdentity>(row) = RegionIdentity{0, 0, row, Range{row, 1}};
   const TransverseAxes axes = transverse_axes(region.normal, glm::dvec3(0.0, 1.0, 0.0));
-  RegionFrame& frame = world.regions.at<RegionFrame>(row);
+  RegionFrame& frame = world.state.regions.at<RegionFrame>(row);
   frame =
       RegionFrame{region.point, axes.first, axes.second, region.normal, glm::dvec2(region.radius)};
-  RegionGeometry& geometry = world.regions.at<RegionGeometry>(row);
+  RegionGeometry& geometry = world.state.regions.at<RegionGeometry>(row);
   geometry = RegionGeometry{};
   geometry.equivalent_point = region.point - 0.5 * region.depth * region.normal;
   geometry.rest_point = region.point;
@@ -180,13 +181,13 @@ std::uint32_t add_region(World& world, const RegionOnBody& region) {
   geometry.area = pi * region.radius * region.radius;
   geometry.mean_depth = 0.5 * region.depth;
   geometry.largest_depth = region.depth;
-  world.regions.at<RegionNormal>(row).force = -glm::dot(region.force_on_body, region.normal);
-  world.regions.at<RegionFriction>(row).force = -glm::dvec2(
+  world.state.regions.at<RegionNormal>(row).force = -glm::dot(region.force_on_body, region.normal);
+  world.state.regions.at<RegionFriction>(row).force = -glm::dvec2(
       glm::dot(region.force_on_body, axes.first), glm::dot(region.force_on_body, axes.second));
-  world.regions.at<RegionFriction>(row).couple = -region.couple_on_body;
+  world.state.regions.at<RegionFriction>(row).couple = -region.couple_on_body;
   // The tool has turned far enough for anything that is drawn.
-  world.regions.at<RegionMotion>(row).largest_turn = 1.0;
-  world.regions.at<RegionMotion>(row).largest_rotation = 1.0;
+  world.state.regions.at<RegionMotion>(row).largest_turn = 1.0;
+  world.state.regions.at<RegionMotion>(row).largest_rotation = 1.0;
   return row;
 }
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "systems/scratch.hpp"
 #include "tests/support/contact_scenes.hpp"
 
 namespace torsion {
@@ -9,7 +10,7 @@ using test::Hand;
 
 std::vector<std::string_view> names_on(Hand& hand) {
   std::vector<std::string_view> names;
-  for (const auto& row : hand.simulation().schedule.rows()) {
+  for (const auto& row : hand.simulation().scratch->schedule.rows()) {
     if (row.on) {
       names.push_back(row.system.name);
     }
@@ -19,7 +20,7 @@ std::vector<std::string_view> names_on(Hand& hand) {
 
 bool runs(Hand& hand, std::string_view name) {
   hand.step_to({{glm::dvec3(0.0, 0.2, 0.0), glm::dquat(1.0, 0.0, 0.0, 0.0)}});
-  for (const auto& row : hand.simulation().schedule.rows()) {
+  for (const auto& row : hand.simulation().scratch->schedule.rows()) {
     if (row.system.name == name) {
       EXPECT_EQ(row.on, row.timing.runs > 0) << name;
       return row.timing.runs > 0;
@@ -50,7 +51,7 @@ TEST(ScheduleOfScenesTest, OnlyTheSystemOfTheChosenContactModelRuns) {
   Hand springs(scene);
   EXPECT_TRUE(runs(springs, "mdr_forces"));
   EXPECT_FALSE(runs(springs, "patch_forces"));
-  EXPECT_EQ(springs.world().patch_cells.size(), 0U);
+  EXPECT_EQ(springs.world().state.patch_cells.size(), 0U);
 }
 
 TEST(ScheduleOfScenesTest, WithoutFrictionNothingOfFrictionRuns) {
@@ -68,7 +69,7 @@ TEST(ScheduleOfScenesTest, ABodyModelNoneLeavesTheSkeletonOut) {
   Hand hand(scene);
   EXPECT_FALSE(runs(hand, "main_beams"));
   EXPECT_TRUE(runs(hand, "paper_friction_forces"));
-  EXPECT_EQ(hand.world().anchors.size(), 0U);
+  EXPECT_EQ(hand.world().model.anchors.size(), 0U);
 }
 
 }  // namespace

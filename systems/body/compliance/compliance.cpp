@@ -51,7 +51,7 @@ Vector6 support_by_others(const RegionSupport& support, const glm::dvec3& point)
 
 /// The rest, by its own load.
 Vector6 own_support(const CompliantBody& body, const Stand& stand) {
-  const RegionSupport& support = body.world.regions.at<RegionSupport>(stand.region);
+  const RegionSupport& support = body.state.regions.at<RegionSupport>(stand.region);
   const glm::dvec3& center = footing_of(body, stand).center;
   return support_at(support, center) - support_by_others(support, center);
 }
@@ -59,7 +59,7 @@ Vector6 own_support(const CompliantBody& body, const Stand& stand) {
 /// The motion that Newton's step starts from. A region with contact model patch, which knows in its
 /// own equations what its load does (patch/support.hpp), stands where that has moved it.
 Vector6 support_now(const CompliantBody& body, const Stand& stand) {
-  const RegionSupport& support = body.world.regions.at<RegionSupport>(stand.region);
+  const RegionSupport& support = body.state.regions.at<RegionSupport>(stand.region);
   const glm::dvec3& center = footing_of(body, stand).center;
   return stand.solved ? Vector6(stand.motion + support_by_others(support, center))
                       : support_at(support, center);
@@ -96,7 +96,7 @@ void move_by_others(const CompliantBody& body, std::size_t i, const NewtonStep& 
   const Stand& stand = body.stands[i];
   const StiffnessRoot& root = newton.roots[i];
   const Footing& footing = footing_of(body, stand);
-  RegionSupport& support = body.world.regions.at<RegionSupport>(stand.region);
+  RegionSupport& support = body.state.regions.at<RegionSupport>(stand.region);
   Vector6 by_others = support_by_others(support, footing.center) + root.inverse * scaled;
   if (footing.on_layer == 0) {
     const Eigen::Map<const Matrix6> own(footing.own.data());
@@ -105,7 +105,7 @@ void move_by_others(const CompliantBody& body, std::size_t i, const NewtonStep& 
       by_others -= own * (wrench_by_place(stand) * (newton.moved[i] + root.inverse * scaled));
     }
   }
-  const RegionReaction& reaction = body.world.regions.at<RegionReaction>(stand.region);
+  const RegionReaction& reaction = body.state.regions.at<RegionReaction>(stand.region);
   if (reaction.active != 0) {
     by_others -= Eigen::Map<const Matrix6>(reaction.motion.data()) * (root.root * scaled);
   }
@@ -129,7 +129,7 @@ void move_supports(const CompliantBody& body, const Eigen::Map<Eigen::VectorXd>&
   for (std::size_t i = 0; i < body.count; ++i) {
     const Stand& stand = body.stands[i];
     const glm::dvec3& center = footing_of(body, stand).center;
-    RegionSupport& support = body.world.regions.at<RegionSupport>(stand.region);
+    RegionSupport& support = body.state.regions.at<RegionSupport>(stand.region);
     const Vector6 before = support_at(support, center);
     const Vector6 scaled = change.segment<6>(static_cast<Eigen::Index>(6 * i));
     // Where it is to be seen next. For contact model patch that foresees how its own load changes,
@@ -140,7 +140,7 @@ void move_supports(const CompliantBody& body, const Eigen::Map<Eigen::VectorXd>&
       move_by_others(body, i, newton, scaled);
     } else {
       // The load that it is to have there.
-      Eigen::Map<Vector6>(body.world.regions.at<RegionReaction>(stand.region).wrench.data()) =
+      Eigen::Map<Vector6>(body.state.regions.at<RegionReaction>(stand.region).wrench.data()) =
           stand.load.wrench - newton.roots[i].root * scaled;
     }
     const Vector6 step = after - before + answer_at(support, center);
@@ -258,7 +258,7 @@ void find_reactions(const CompliantBody& body,
   for (std::size_t i = 0; i < body.count; ++i) {
     const Stand& stand = body.stands[i];
     const Footing& footing = footing_of(body, stand);
-    RegionReaction& reaction = body.world.regions.at<RegionReaction>(stand.region);
+    RegionReaction& reaction = body.state.regions.at<RegionReaction>(stand.region);
     if (footing.on_layer != 0) {
       continue;
     }
@@ -293,7 +293,7 @@ void add_sway(const CompliantBody& body, const Eigen::Map<RowMatrix>& upper, New
   full = upper.selfadjointView<Eigen::Upper>();
   for (std::size_t j = 0; j < body.count; ++j) {
     const Stand& from = body.stands[j];
-    const RegionSupport& support = body.world.regions.at<RegionSupport>(from.region);
+    const RegionSupport& support = body.state.regions.at<RegionSupport>(from.region);
     newton.moved[j] =
         from.motion - own_support(body, from) + answer_at(support, footing_of(body, from).center);
     const Matrix6 by_place = wrench_by_place(from);
@@ -309,15 +309,15 @@ void add_sway(const CompliantBody& body, const Eigen::Map<RowMatrix>& upper, New
 }
 
 /// Where a region's equations have reckoned with the others' answer, that has moved it by now.
-void take_answers(World& world, std::uint32_t row) {
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    RegionReaction& reaction = world.regions.at<RegionReaction>(region);
-    RegionSupport& support = world.regions.at<RegionSupport>(region);
-    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+void take_answers(const Model& model, State& state, std::uint32_t row) {
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    RegionReaction& reaction = state.regions.at<RegionReaction>(region);
+    RegionSupport& support = state.regions.at<RegionSupport>(region);
+    const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
     if (identity.body != row) {
       continue;
     }
-    if (law_of(world, row).moves_own_support) {
+    if (law_of(model, row).moves_own_support) {
       reaction.active = 0;
       continue;  // it has moved its support by that already (own_answer.hpp)
     }
@@ -326,8 +326,8 @@ void take_answers(World& world, std::uint32_t row) {
     if (reaction.active == 0) {
       continue;
     }
-    const Footing& footing = world.footings.at<Footing>(block_of(identity));
-    const Vector6 more = contact_load(world, region, footing).wrench -
+    const Footing& footing = state.footings.at<Footing>(block_of(identity));
+    const Vector6 more = contact_load(model, state, region, footing).wrench -
                          Eigen::Map<const Vector6>(reaction.wrench.data());
     const Vector6 moved = -(Eigen::Map<const Matrix6>(reaction.motion.data()) * more);
     const glm::dvec3 translation(moved[0], moved[1], moved[2]);
@@ -343,8 +343,8 @@ void take_answers(World& world, std::uint32_t row) {
 }
 
 void deform_body(StepContext& context, std::uint32_t row) {
-  take_answers(context.world, row);
-  CompliantBody body{context.world, row, ports_of(context.world, row)};
+  take_answers(context.model, context.state, row);
+  CompliantBody body{context.model, context.state, row, ports_of(context.model, row)};
   find_stands(body);
   find_couplings(body);
   NewtonStep newton;
@@ -357,7 +357,7 @@ void deform_body(StepContext& context, std::uint32_t row) {
   Eigen::Map<Eigen::VectorXd> change(context.compliance.residuals.data(), rows);
   Eigen::Map<RowMatrix> copy(context.compliance.copy.data(), rows, rows);
   change.setZero();
-  const ContactLaw& law = law_of(context.world, row);
+  const ContactLaw& law = law_of(context.model, row);
   const bool answers = answers_within_a_step(body, law, newton.roots);
   const bool sways_together = answers && law.by_cells;
   if (!sways_together) {
@@ -379,7 +379,7 @@ void deform_body(StepContext& context, std::uint32_t row) {
         matrix, copy, [&] { change = residual; }, change);
   }
   if (!change.allFinite()) {
-    raise(context.world.clock.at<Clock>(0), Fault::kResultNotFinite);
+    raise(context.state.clock, Fault::kResultNotFinite);
     change.setZero();
   }
   move_supports(body, change, newton);
@@ -396,8 +396,8 @@ const BodyLaw kComplianceLaw{
     .join = join_support,
 };
 
-void ComplianceScratch::reserve(const World& world) {
-  if (!world.footings.empty()) {
+void ComplianceScratch::reserve(const State& state) {
+  if (!state.footings.empty()) {
     constexpr std::size_t kRows = std::size_t{6} * kMaxRegionsPerBody;
     matrix.resize(kRows * kRows);
     copy.resize(kRows * kRows);
@@ -407,8 +407,8 @@ void ComplianceScratch::reserve(const World& world) {
 }
 
 void compliance(StepContext& context) {
-  for (std::uint32_t body = 0; body < context.world.bodies.size(); ++body) {
-    if (context.world.bodies.at<BodyModels>(body).body == BodyModel::kCompliance) {
+  for (std::uint32_t body = 0; body < context.model.bodies.size(); ++body) {
+    if (context.model.bodies.at<BodyModels>(body).body == BodyModel::kCompliance) {
       deform_body(context, body);
     }
   }

@@ -16,8 +16,8 @@ struct ComplianceScratch {
   std::vector<double> inverse;    // likewise
   std::vector<double> residuals;  // (6 kMaxRegionsPerBody)
 
-  /// Takes all memory that a step of `world` can need; none where no body has this model.
-  void reserve(const World& world);
+  /// Takes all memory that a step can need; none where no body has this model.
+  void reserve(const State& state);
 };
 
 /// The body's own compliance in series with its contacts: how far the material under each region

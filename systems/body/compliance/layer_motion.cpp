@@ -22,7 +22,7 @@ std::array<DiscForces, 6> unit_wrenches(const ContactEllipse& contact, double Di
 
 }  // namespace
 
-Matrix6 layer_motion(const World& world, std::uint32_t body, const ContactEllipse& contact,
+Matrix6 layer_motion(const Model& model, std::uint32_t body, const ContactEllipse& contact,
                      double thickness) {
   const std::array<DiscForces, 6> loads = unit_wrenches(contact, &DiscPoint::ball_share);
   const std::array<DiscForces, 6> means = unit_wrenches(contact, &DiscPoint::disc_share);
@@ -32,7 +32,7 @@ Matrix6 layer_motion(const World& world, std::uint32_t body, const ContactEllips
     for (std::size_t from = 0; from < kDiscPoints; ++from) {
       const glm::dvec2 away = disc_points()[to].place - disc_points()[from].place;
       const glm::dmat3 response =
-          layer_coupling(world, body, contact.normal,
+          layer_coupling(model, body, contact.normal,
                          contact.axis_1 * away.x + contact.axis_2 * away.y, thickness);
       for (std::size_t c = 0; c < 6; ++c) {
         moved[c] += response * loads[c][from];

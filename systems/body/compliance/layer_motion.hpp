@@ -9,7 +9,7 @@ namespace torsion {
 /// rigid body (6 x 6, body axes, about its centre) beyond what it would do on a half-space.
 /// @param body       with a layer's kernel
 /// @param thickness  m
-Matrix6 layer_motion(const World& world, std::uint32_t body, const ContactEllipse& contact,
+Matrix6 layer_motion(const Model& model, std::uint32_t body, const ContactEllipse& contact,
                      double thickness);
 
 }  // namespace torsion

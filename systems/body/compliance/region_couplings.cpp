@@ -18,9 +18,9 @@ namespace {
 Matrix6 on_layer(const CompliantBody& body, const Matrix6& half_space, const Footing& to,
                  const Footing& from, double thickness) {
   Matrix6 motion = Matrix6::Zero();
-  if (has_layer_kernel(body.world, body.row)) {
+  if (has_layer_kernel(body.model, body.row)) {
     const glm::dmat3 layer =
-        layer_coupling(body.world, body.row, from.normal, to.center - from.center, thickness);
+        layer_coupling(body.model, body.row, from.normal, to.center - from.center, thickness);
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 3; ++column) {
         motion(row, column) = half_space(row, column) + layer[column][row];
@@ -82,10 +82,10 @@ std::size_t find_some_couplings(const CompliantBody& body, bool found_before, st
 
 }  // namespace
 
-void forget_couplings(World& world, std::uint32_t block) {
-  for (std::uint32_t other = 0; other < world.footings.size(); ++other) {
+void forget_couplings(State& state, std::uint32_t block) {
+  for (std::uint32_t other = 0; other < state.footings.size(); ++other) {
     if (other != block) {
-      world.couplings.at<RegionCoupling>(coupling_row(block, other)) = RegionCoupling{};
+      state.couplings.at<RegionCoupling>(coupling_row(block, other)) = RegionCoupling{};
     }
   }
 }
@@ -93,12 +93,12 @@ void forget_couplings(World& world, std::uint32_t block) {
 Matrix6 motion_of(const CompliantBody& body, const Footing& there, const Footing& here) {
   Matrix6 motion = there.share * here.share * motion_between(body.ports, there, here);
   if (there.center != here.center) {
-    const bool by_cells = law_of(body.world, body.row).by_cells;
+    const bool by_cells = law_of(body.model, body.row).by_cells;
     motion +=
         half_space_coupling({apart(there, here, by_cells), there.normal},
-                            {here.center, here.normal}, body.world.bodies.at<Elasticity>(body.row));
+                            {here.center, here.normal}, body.model.bodies.at<Elasticity>(body.row));
   }
-  const double thickness = layer_thickness(body.world, body.row, here.normal, here.center);
+  const double thickness = layer_thickness(body.model, body.row, here.normal, here.center);
   if (thickness > 0.0) {
     motion = on_layer(body, motion, there, here, thickness);
   }
@@ -110,7 +110,7 @@ void find_couplings(const CompliantBody& body) {
 }
 
 RegionCoupling& coupling_between(const CompliantBody& body, const Stand& to, const Stand& from) {
-  return body.world.couplings.at<RegionCoupling>(coupling_row(to.block, from.block));
+  return body.state.couplings.at<RegionCoupling>(coupling_row(to.block, from.block));
 }
 
 }  // namespace torsion

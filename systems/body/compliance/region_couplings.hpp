@@ -17,7 +17,7 @@ inline constexpr std::size_t kCouplingsAStep = kMaxRegionsPerBody;
 Matrix6 motion_of(const CompliantBody& body, const Footing& there, const Footing& here);
 
 /// A new region knows nothing of what the last one with its footing did to others.
-void forget_couplings(World& world, std::uint32_t block);
+void forget_couplings(State& state, std::uint32_t block);
 
 /// Finds couplings anew between regions whose footings have been laid since, kCouplingsAStep at
 /// most, of new regions first; the others stay as they are a step longer.

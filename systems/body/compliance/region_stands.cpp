@@ -49,7 +49,7 @@ struct RelativeCompliance {
 Eigen::Matrix3d motion_by_bend(const CompliantBody& body, const Stand& stand) {
   Eigen::Matrix3d motion = Eigen::Matrix3d::Zero();
   if (!stand.solved) {
-    const FootingResponse& bend = body.world.footings.at<FootingResponse>(stand.block);
+    const FootingResponse& bend = body.state.footings.at<FootingResponse>(stand.block);
     for (Eigen::Index column = 0; column < 3; ++column) {
       for (Eigen::Index row = 0; row < 3; ++row) {
         motion(row, column) = bend.terms[static_cast<std::size_t>(
@@ -62,20 +62,20 @@ Eigen::Matrix3d motion_by_bend(const CompliantBody& body, const Stand& stand) {
 
 /// Finds it.
 void find_bend(const CompliantBody& body, const Stand& stand, const Footing& footing) {
-  FootingResponse& bend = body.world.footings.at<FootingResponse>(stand.block);
+  FootingResponse& bend = body.state.footings.at<FootingResponse>(stand.block);
   bend = FootingResponse{};
-  if (!may_bend(body.world, body.row)) {
+  if (!may_bend(body.model, body.row)) {
     return;
   }
   RegionFrame axes;
   axes.tangent_x = footing.tangent_x;
   axes.tangent_y = footing.tangent_y;
   axes.normal = footing.normal;
-  const SurfaceBend found = find_surface_bend(body.world, body.row, footing, axes, footing.radius);
+  const SurfaceBend found = find_surface_bend(body.model, body.row, footing, axes, footing.radius);
   if (found.reach == 0.0) {
     return;
   }
-  const Elasticity& elasticity = body.world.bodies.at<Elasticity>(body.row);
+  const Elasticity& elasticity = body.model.bodies.at<Elasticity>(body.row);
   const CurvedResponse response = curved_response(found.curvature, elasticity.poisson_ratio);
   std::array<double, kCurvedKinds> mean{};  // kZZ, kXX, kXY, kYY
   for (std::size_t kind = 0; kind < kCurvedKinds; ++kind) {
@@ -118,8 +118,8 @@ void find_motion_on_layer(const CompliantBody& body, const Stand& stand,
   footing.share = 0.0;
   footing.on_layer = 1;
   footing.own = {};
-  if (!law_of(body.world, body.row).by_cells && has_layer_kernel(body.world, body.row)) {
-    const Matrix6 motion = layer_motion(body.world, body.row, contact, thickness);
+  if (!law_of(body.model, body.row).by_cells && has_layer_kernel(body.model, body.row)) {
+    const Matrix6 motion = layer_motion(body.model, body.row, contact, thickness);
     Eigen::Map<Matrix6>(footing.own.data()) =
         RelativeCompliance(body, stand, motion).at_least(kStiffest);
   }
@@ -131,9 +131,9 @@ void lay_footings(const CompliantBody& body) {
   for (std::size_t i = 0; i < body.count; ++i) {
     const Stand& stand = body.stands[i];
     const Footing& footing = footing_of(body, stand);
-    const ContactEllipse contact = contact_ellipse(body.world, stand.region);
+    const ContactEllipse contact = contact_ellipse(body.model, body.state, stand.region);
     if (footing.reach == 0.0) {
-      forget_couplings(body.world, stand.block);
+      forget_couplings(body.state, stand.block);
       lay_stand(body, stand, contact);
     } else if (!still_fits(footing, contact) &&
                (first_laid == nullptr || footing.serial < footing_of(body, *first_laid).serial)) {
@@ -149,8 +149,8 @@ void lay_footings(const CompliantBody& body) {
 /// The region's own motion and bending by its own load.
 void move_by_own_load(const CompliantBody& body, Stand& stand) {
   const Footing& footing = footing_of(body, stand);
-  SupportField& field = body.world.regions.at<SupportField>(stand.region);
-  stand.load = contact_load(body.world, stand.region, footing);
+  SupportField& field = body.state.regions.at<SupportField>(stand.region);
+  stand.load = contact_load(body.model, body.state, stand.region, footing);
   if (footing.on_layer != 0) {
     stand.motion = Eigen::Map<const Matrix6>(footing.own.data()) * stand.load.wrench;
     field = SupportField{};
@@ -171,13 +171,13 @@ void move_by_own_load(const CompliantBody& body, Stand& stand) {
 }  // namespace
 
 Footing& footing_of(const CompliantBody& body, const Stand& stand) {
-  return body.world.footings.at<Footing>(stand.block);
+  return body.state.footings.at<Footing>(stand.block);
 }
 
 StiffnessRoot stiffness_root(const CompliantBody& body, const Stand& stand) {
-  const RegionFrame& frame = body.world.regions.at<RegionFrame>(stand.region);
+  const RegionFrame& frame = body.state.regions.at<RegionFrame>(stand.region);
   const StuckStiffness stuck =
-      stuck_stiffness(body.world, stand.region, footing_of(body, stand).radius);
+      stuck_stiffness(body.model, body.state, stand.region, footing_of(body, stand).radius);
   Vector6 root;
   root << stuck.along_tangents, stuck.along_tangents, stuck.along_normal, stuck.about_tangents.x,
       stuck.about_tangents.y, stuck.about_normal;
@@ -193,11 +193,12 @@ StiffnessRoot stiffness_root(const CompliantBody& body, const Stand& stand) {
 }
 
 void lay_stand(const CompliantBody& body, const Stand& stand, const ContactEllipse& contact) {
-  World& world = body.world;
+  const Model& model = body.model;
+  State& state = body.state;
   Footing& footing = footing_of(body, stand);
   lay_footing(body.ports, contact, footing);
-  footing.serial = world.clock.at<Clock>(0).step * world.footings.size() + stand.block + 1;
-  const double thickness = layer_thickness(world, body.row, contact.normal, contact.center);
+  footing.serial = state.clock.step * state.footings.size() + stand.block + 1;
+  const double thickness = layer_thickness(model, body.row, contact.normal, contact.center);
   if (thickness > 0.0) {
     find_motion_on_layer(body, stand, contact, thickness, footing);
   } else {
@@ -206,14 +207,15 @@ void lay_stand(const CompliantBody& body, const Stand& stand, const ContactEllip
 }
 
 void find_stands(CompliantBody& body) {
-  World& world = body.world;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const Model& model = body.model;
+  State& state = body.state;
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
     if (identity.body == body.row) {
       Stand& stand = body.stands[body.count++];
       stand.region = region;
       stand.block = block_of(identity);
-      stand.solved = law_of(world, body.row).by_cells;
+      stand.solved = law_of(model, body.row).by_cells;
     }
   }
   lay_footings(body);

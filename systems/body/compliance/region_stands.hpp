@@ -20,7 +20,8 @@ struct Stand {
 
 /// One body at work.
 struct CompliantBody {
-  World& world;
+  const Model& model;
+  State& state;
   std::uint32_t row;
   PortCompliance ports;
   std::array<Stand, kMaxRegionsPerBody> stands{};

@@ -27,10 +27,10 @@ ToEachOther to_each_other(const CompliantBody& body, const Footing& there, const
   return both;
 }
 
-Stand solved_stand(const World& world, std::uint32_t region) {
+Stand solved_stand(const State& state, std::uint32_t region) {
   Stand stand;
   stand.region = region;
-  stand.block = block_of(world.regions.at<RegionIdentity>(region));
+  stand.block = block_of(state.regions.at<RegionIdentity>(region));
   stand.solved = true;
   return stand;
 }
@@ -61,50 +61,51 @@ void move_by_part(const Matrix6& motion, const Matrix6& known, const Vector6& lo
 
 }  // namespace
 
-void begin_support(World& world, std::uint32_t region) {
-  const std::uint32_t row = world.regions.at<RegionIdentity>(region).body;
-  RegionSupport& support = world.regions.at<RegionSupport>(region);
+void begin_support(const Model& model, State& state, std::uint32_t region) {
+  const std::uint32_t row = state.regions.at<RegionIdentity>(region).body;
+  RegionSupport& support = state.regions.at<RegionSupport>(region);
   support = RegionSupport{};
-  const CompliantBody body{world, row, ports_of(world, row)};
+  const CompliantBody body{model, state, row, ports_of(model, row)};
   Footing there;
   Vector6 motion = Vector6::Zero();
-  for (std::uint32_t other = 0; other < world.regions.size(); ++other) {
-    const RegionIdentity& identity = world.regions.at<RegionIdentity>(other);
-    const Footing& here = world.footings.at<Footing>(block_of(identity));
+  for (std::uint32_t other = 0; other < state.regions.size(); ++other) {
+    const RegionIdentity& identity = state.regions.at<RegionIdentity>(other);
+    const Footing& here = state.footings.at<Footing>(block_of(identity));
     if (identity.body != row || other == region || here.reach == 0.0) {
       continue;
     }
     if (there.reach == 0.0) {
-      lay_footing(body.ports, disc_of_grid(world.regions.at<RegionFrame>(region)), there);
+      lay_footing(body.ports, disc_of_grid(state.regions.at<RegionFrame>(region)), there);
       there.share = 1.0;
     }
-    motion += motion_of(body, there, here) * contact_load(world, other, here).wrench;
+    motion += motion_of(body, there, here) * contact_load(model, state, other, here).wrench;
   }
-  support.about = world.regions.at<RegionFrame>(region).origin;
+  support.about = state.regions.at<RegionFrame>(region).origin;
   support.translation = {motion[0], motion[1], motion[2]};
   support.rotation = {motion[3], motion[4], motion[5]};
   support.translation_by_others = support.translation;
   support.rotation_by_others = support.rotation;
 }
 
-void begin_split_support(World& world, std::uint32_t from, std::uint32_t region) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(from);
-  RegionSupport& old = world.regions.at<RegionSupport>(from);
-  RegionSupport& fresh = world.regions.at<RegionSupport>(region);
+void begin_split_support(const Model& model, State& state, std::uint32_t from,
+                         std::uint32_t region) {
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(from);
+  RegionSupport& old = state.regions.at<RegionSupport>(from);
+  RegionSupport& fresh = state.regions.at<RegionSupport>(region);
   fresh = old;
-  const Footing& here = world.footings.at<Footing>(block_of(identity));
-  if (law_of(world, identity.body).by_cells || here.reach == 0.0) {
+  const Footing& here = state.footings.at<Footing>(block_of(identity));
+  if (law_of(model, identity.body).by_cells || here.reach == 0.0) {
     return;
   }
-  const CompliantBody body{world, identity.body, ports_of(world, identity.body)};
+  const CompliantBody body{model, state, identity.body, ports_of(model, identity.body)};
   Footing there;
-  lay_footing(body.ports, disc_of_grid(world.regions.at<RegionFrame>(region)), there);
+  lay_footing(body.ports, disc_of_grid(state.regions.at<RegionFrame>(region)), there);
   there.share = here.share;
   const ToEachOther both = to_each_other(body, there, here);
   const double relative = there.radius / here.radius;
   const double share = std::min(relative * relative, 0.5);
   Vector6 taken = Vector6::Zero();
-  const Vector6 load = contact_load(world, from, here).wrench;
+  const Vector6 load = contact_load(model, state, from, here).wrench;
   taken.head<3>() = share * load.head<3>();
   Vector6 left = load - taken;
   const glm::dvec3 arm = there.center - here.center;
@@ -113,50 +114,50 @@ void begin_split_support(World& world, std::uint32_t from, std::uint32_t region)
   move_by_part(both.motion, both.known, left, there.center, fresh);
   move_by_part(both.motion.transpose(), both.known.transpose(), taken, here.center, old);
   // What each has given way to by its own load (own_answer.hpp).
-  Eigen::Map<Vector6>(world.regions.at<RegionReaction>(from).wrench.data()) -= load - left;
-  Eigen::Map<Vector6>(world.regions.at<RegionReaction>(region).wrench.data()) = taken;
+  Eigen::Map<Vector6>(state.regions.at<RegionReaction>(from).wrench.data()) -= load - left;
+  Eigen::Map<Vector6>(state.regions.at<RegionReaction>(region).wrench.data()) = taken;
 }
 
-void split_support(World& world, std::uint32_t from, std::uint32_t region) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(from);
-  const Footing& here = world.footings.at<Footing>(block_of(identity));
+void split_support(const Model& model, State& state, std::uint32_t from, std::uint32_t region) {
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(from);
+  const Footing& here = state.footings.at<Footing>(block_of(identity));
   if (here.reach == 0.0) {
     return;
   }
-  const CompliantBody body{world, identity.body, ports_of(world, identity.body)};
-  const Stand stand = solved_stand(world, region);
-  forget_couplings(world, stand.block);
-  lay_stand(body, stand, contact_ellipse(world, region));
+  const CompliantBody body{model, state, identity.body, ports_of(model, identity.body)};
+  const Stand stand = solved_stand(state, region);
+  forget_couplings(state, stand.block);
+  lay_stand(body, stand, contact_ellipse(model, state, region));
   const Footing& there = footing_of(body, stand);
   const ToEachOther both = to_each_other(body, there, here);
-  RegionSupport& old = world.regions.at<RegionSupport>(from);
-  RegionSupport& fresh = world.regions.at<RegionSupport>(region);
+  RegionSupport& old = state.regions.at<RegionSupport>(from);
+  RegionSupport& fresh = state.regions.at<RegionSupport>(region);
   fresh = old;
-  move_by_part(both.motion, both.known, contact_load(world, from, here).wrench, there.center,
+  move_by_part(both.motion, both.known, contact_load(model, state, from, here).wrench, there.center,
                fresh);
   move_by_part(both.motion.transpose(), both.known.transpose(),
-               contact_load(world, region, there).wrench, here.center, old);
-  RegionReaction& reaction = world.regions.at<RegionReaction>(from);
+               contact_load(model, state, region, there).wrench, here.center, old);
+  RegionReaction& reaction = state.regions.at<RegionReaction>(from);
   if (reaction.active != 0) {
     // They have answered to the whole load, and it is still there.
-    Eigen::Map<Vector6>(reaction.wrench.data()) -= contact_load(world, region, here).wrench;
+    Eigen::Map<Vector6>(reaction.wrench.data()) -= contact_load(model, state, region, here).wrench;
   }
 }
 
-void join_support(World& world, std::uint32_t ended, std::uint32_t heir) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(heir);
-  const Footing& here = world.footings.at<Footing>(block_of(identity));
+void join_support(const Model& model, State& state, std::uint32_t ended, std::uint32_t heir) {
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(heir);
+  const Footing& here = state.footings.at<Footing>(block_of(identity));
   const Footing& there =
-      world.footings.at<Footing>(block_of(world.regions.at<RegionIdentity>(ended)));
+      state.footings.at<Footing>(block_of(state.regions.at<RegionIdentity>(ended)));
   if (here.reach == 0.0 || there.reach == 0.0) {
     return;
   }
-  const CompliantBody body{world, identity.body, ports_of(world, identity.body)};
+  const CompliantBody body{model, state, identity.body, ports_of(model, identity.body)};
   const ToEachOther both = to_each_other(body, here, there);
-  RegionSupport& support = world.regions.at<RegionSupport>(heir);
-  move_by_part(both.motion, both.known, -contact_load(world, ended, there).wrench, here.center,
-               support);
-  world.regions.at<RegionReaction>(heir) = RegionReaction{};
+  RegionSupport& support = state.regions.at<RegionSupport>(heir);
+  move_by_part(both.motion, both.known, -contact_load(model, state, ended, there).wrench,
+               here.center, support);
+  state.regions.at<RegionReaction>(heir) = RegionReaction{};
 }
 
 }  // namespace torsion

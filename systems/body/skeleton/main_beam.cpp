@@ -24,10 +24,10 @@ void add_section(const BeamSection& section, double weight, BeamSection& sum) {
 /// Weights (1 - d/R)^2 / (d^2 + e^2) with R a little more than twice the distance of the nearest
 /// anchor: at least one anchor always counts, those that enter or leave the circle do so with
 /// weight zero.
-void interpolate_sections(const World& world, Range anchors, const glm::dvec3& tip, double size,
+void interpolate_sections(const Model& model, Range anchors, const glm::dvec3& tip, double size,
                           MainBeam& beam) {
-  const auto rest = world.anchors.rows<AnchorRest>(anchors);
-  const auto sections = world.sections.column<BeamSection>();
+  const auto rest = model.anchors.rows<AnchorRest>(anchors);
+  const auto sections = model.sections.column<BeamSection>();
   double nearest_squared = std::numeric_limits<double>::infinity();
   for (const AnchorRest& anchor : rest) {
     const glm::dvec3 offset = anchor.position - tip;
@@ -77,10 +77,10 @@ SectionMotion motion_in_piece(const BeamPiece& piece, double t) {
 
 }  // namespace
 
-MainBeam main_beam(const World& world, std::uint32_t body, const glm::dvec3& tip) {
-  const FixedRegion& fixed = world.bodies.at<FixedRegion>(body);
-  const Bounds& bounds = world.bodies.at<Bounds>(body);
-  const Range anchors = world.bodies.at<OwnedRows>(body).anchors;
+MainBeam main_beam(const Model& model, std::uint32_t body, const glm::dvec3& tip) {
+  const FixedRegion& fixed = model.bodies.at<FixedRegion>(body);
+  const Bounds& bounds = model.bodies.at<Bounds>(body);
+  const Range anchors = model.bodies.at<OwnedRows>(body).anchors;
   const double size = glm::length(bounds.highest - bounds.lowest);
   const glm::dvec3 reference = beam_reference(fixed, bounds);
   MainBeam beam;
@@ -95,8 +95,8 @@ MainBeam main_beam(const World& world, std::uint32_t body, const glm::dvec3& tip
   beam.first = axes.first;
   beam.second = axes.second;
   // Other body models have anchors too, but no sections.
-  if (anchors.count > 0 && world.bodies.at<BodyModels>(body).body == BodyModel::kSkeleton) {
-    interpolate_sections(world, anchors, tip, size, beam);
+  if (anchors.count > 0 && model.bodies.at<BodyModels>(body).body == BodyModel::kSkeleton) {
+    interpolate_sections(model, anchors, tip, size, beam);
   }
   return beam;
 }

@@ -24,7 +24,7 @@ struct MainBeam {
 /// The beam to `tip`; its sections are means of those of the anchors' beams around, weighted so
 /// that they are the anchor's own at an anchor and change continuously in between.
 /// @param tip  m, body frame
-MainBeam main_beam(const World& world, std::uint32_t body, const glm::dvec3& tip);
+MainBeam main_beam(const Model& model, std::uint32_t body, const glm::dvec3& tip);
 
 /// One piece of a deflected beam, t [m] from its start, in the beam's frame (first, second,
 /// direction): turn = turn0 + turn1 t + turn2 t^2, rad about first and second; shift = shift0 +

@@ -18,15 +18,16 @@ BeamSpring beam_spring(const MainBeam& beam, const Elasticity& elasticity) {
 const BodyLaw kSkeletonLaw{.model = BodyModel::kSkeleton};
 
 void main_beams(StepContext& context) {
-  World& world = context.world;
-  for (std::uint32_t region = 0; region < world.regions.size(); ++region) {
-    const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
+  const Model& model = context.model;
+  State& state = context.state;
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
     const std::uint32_t block = block_of(identity);
     context.scratch.beams[block] = BeamSpring{};
-    if (world.bodies.at<BodyModels>(identity.body).body == BodyModel::kSkeleton) {
+    if (model.bodies.at<BodyModels>(identity.body).body == BodyModel::kSkeleton) {
       const MainBeam beam =
-          main_beam(world, identity.body, world.regions.at<RegionGeometry>(region).rest_point);
-      context.scratch.beams[block] = beam_spring(beam, world.bodies.at<Elasticity>(identity.body));
+          main_beam(model, identity.body, state.regions.at<RegionGeometry>(region).rest_point);
+      context.scratch.beams[block] = beam_spring(beam, model.bodies.at<Elasticity>(identity.body));
     }
   }
 }

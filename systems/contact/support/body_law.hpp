@@ -19,23 +19,25 @@ struct BodyLaw {
   /// Where a region that begins finds the material: moved by what the body's other regions do to it
   /// now. Without it the first solution would press on the body at rest, and the others would feel
   /// that.
-  void (*begin)(World& world, std::uint32_t region) = nullptr;
+  void (*begin)(const Model& model, State& state, std::uint32_t region) = nullptr;
   /// The same of a region that splits off another one: where that one has it. Of a contact law by
   /// cells `split` has the rest to do, of others the load is shared out by the discs' areas.
-  void (*begin_split)(World& world, std::uint32_t from, std::uint32_t region) = nullptr;
+  void (*begin_split)(const Model& model, State& state, std::uint32_t from,
+                      std::uint32_t region) = nullptr;
   /// A region that has taken a part of another's load: to each of the two what the other one's part
   /// does to it is by another region from now on. For contact laws by cells.
-  void (*split)(World& world, std::uint32_t from, std::uint32_t region) = nullptr;
+  void (*split)(const Model& model, State& state, std::uint32_t from,
+                std::uint32_t region) = nullptr;
   /// A region that has taken over another one's tractions, which that still has, too: what they do
   /// here is by its own load from now on. For contact laws by cells.
-  void (*join)(World& world, std::uint32_t ended, std::uint32_t heir) = nullptr;
+  void (*join)(const Model& model, State& state, std::uint32_t ended, std::uint32_t heir) = nullptr;
 };
 
 /// @pre model is not kAuto
 const BodyLaw& body_law(BodyModel model);
 
-inline const BodyLaw& body_law_of(const World& world, std::uint32_t body) {
-  return body_law(world.bodies.at<BodyModels>(body).body);
+inline const BodyLaw& body_law_of(const Model& model, std::uint32_t body) {
+  return body_law(model.bodies.at<BodyModels>(body).body);
 }
 
 }  // namespace torsion

@@ -24,11 +24,11 @@ struct LoadedCells {
   std::span<const CellTraction> tractions;
 };
 
-LoadedCells cells_of(const World& world, std::uint32_t region) {
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
+LoadedCells cells_of(const Model& model, const State& state, std::uint32_t region) {
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const std::uint32_t side = model.settings.grid_side;
   return {frame, side, cell_area(frame, side),
-          world.cells.rows<CellTraction>(world.regions.at<RegionIdentity>(region).cells)};
+          state.cells.rows<CellTraction>(state.regions.at<RegionIdentity>(region).cells)};
 }
 
 /// Calls each(x and y of the cell's centre, traction) for the cells with pressure.
@@ -44,15 +44,15 @@ void for_loaded(const LoadedCells& cells, const Each& each) {
   }
 }
 
-bool by_cells(const World& world, std::uint32_t region) {
-  return law_of(world, world.regions.at<RegionIdentity>(region).body).by_cells;
+bool by_cells(const Model& model, const State& state, std::uint32_t region) {
+  return law_of(model, state.regions.at<RegionIdentity>(region).body).by_cells;
 }
 
 /// A disc at the region's place.
-ContactEllipse disc_of(const World& world, std::uint32_t region) {
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const RegionGeometry& geometry = world.regions.at<RegionGeometry>(region);
-  const glm::dvec2 extent = overlap_extent(world, region);
+ContactEllipse disc_of(const State& state, std::uint32_t region) {
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+  const glm::dvec2 extent = overlap_extent(state, region);
   const double least = 1e-3 * std::max(extent.x, extent.y);
   ContactEllipse disc;
   disc.center = geometry.rest_point;
@@ -63,8 +63,8 @@ ContactEllipse disc_of(const World& world, std::uint32_t region) {
   return disc;
 }
 
-ContactEllipse ellipse_of(const World& world, std::uint32_t region) {
-  const LoadedCells cells = cells_of(world, region);
+ContactEllipse ellipse_of(const Model& model, const State& state, std::uint32_t region) {
+  const LoadedCells cells = cells_of(model, state, region);
   double count = 0.0;
   glm::dvec2 sum(0.0);
   double xx = 0.0;
@@ -78,7 +78,7 @@ ContactEllipse ellipse_of(const World& world, std::uint32_t region) {
     yy += at.y * at.y;
   });
   if (count == 0.0) {
-    return disc_of(world, region);
+    return disc_of(state, region);
   }
   const glm::dvec2 middle = sum / count;
   // A cell's own second moment is a twelfth of its side's square.
@@ -143,8 +143,9 @@ struct PlainSums {
   double turning = 0.0;                  // Pa m: place x traction
 };
 
-ContactLoad load_of_cells(const World& world, std::uint32_t region, const Footing& footing) {
-  const LoadedCells cells = cells_of(world, region);
+ContactLoad load_of_cells(const Model& model, const State& state, std::uint32_t region,
+                          const Footing& footing) {
+  const LoadedCells cells = cells_of(model, state, region);
   const RegionFrame& frame = cells.frame;
   const glm::dvec2 origin = plain_coordinates_in(footing, frame.origin);
   const glm::dvec2 by_x(glm::dot(footing.tangent_x, frame.tangent_x) / footing.reach,
@@ -193,11 +194,11 @@ ContactLoad load_of_cells(const World& world, std::uint32_t region, const Footin
 }
 
 /// Force and couple spread over the region's disc.
-ContactLoad load_of_disc(const World& world, std::uint32_t region, const Footing& footing) {
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const RegionFriction& friction = world.regions.at<RegionFriction>(region);
-  const ContactEllipse disc = disc_of(world, region);
-  const glm::dvec3 force = -frame.normal * world.regions.at<RegionNormal>(region).force -
+ContactLoad load_of_disc(const State& state, std::uint32_t region, const Footing& footing) {
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const RegionFriction& friction = state.regions.at<RegionFriction>(region);
+  const ContactEllipse disc = disc_of(state, region);
+  const glm::dvec3 force = -frame.normal * state.regions.at<RegionNormal>(region).force -
                            tangent_to_body(frame, friction.force);
   ContactLoad load;
   double polar = 0.0;
@@ -219,19 +220,20 @@ ContactLoad load_of_disc(const World& world, std::uint32_t region, const Footing
 
 }  // namespace
 
-PortCompliance ports_of(const World& world, std::uint32_t body) {
-  const OwnedRows& owned = world.bodies.at<OwnedRows>(body);
-  return {world.ports.rows<CompliancePort>(owned.ports),
-          world.compliance.rows<ComplianceValue>(owned.compliance)};
+PortCompliance ports_of(const Model& model, std::uint32_t body) {
+  const OwnedRows& owned = model.bodies.at<OwnedRows>(body);
+  return {model.ports.rows<CompliancePort>(owned.ports),
+          model.compliance.rows<ComplianceValue>(owned.compliance)};
 }
 
-ContactEllipse contact_ellipse(const World& world, std::uint32_t region) {
-  return by_cells(world, region) ? ellipse_of(world, region) : disc_of(world, region);
+ContactEllipse contact_ellipse(const Model& model, const State& state, std::uint32_t region) {
+  return by_cells(model, state, region) ? ellipse_of(model, state, region) : disc_of(state, region);
 }
 
-ContactLoad contact_load(const World& world, std::uint32_t region, const Footing& footing) {
-  return by_cells(world, region) ? load_of_cells(world, region, footing)
-                                 : load_of_disc(world, region, footing);
+ContactLoad contact_load(const Model& model, const State& state, std::uint32_t region,
+                         const Footing& footing) {
+  return by_cells(model, state, region) ? load_of_cells(model, state, region, footing)
+                                        : load_of_disc(state, region, footing);
 }
 
 }  // namespace torsion

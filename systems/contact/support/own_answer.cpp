@@ -18,12 +18,12 @@ constexpr double kFirst = 0.9;
 using LoadColumns = Eigen::Matrix<double, 6, 4>;  // wrenches by loads
 
 /// The footing whose compliance the region's support comes from, or null.
-const Footing* footing_under(const World& world, std::uint32_t region) {
-  const RegionIdentity& identity = world.regions.at<RegionIdentity>(region);
-  if (!body_law_of(world, identity.body).moves_as_a_whole) {
+const Footing* footing_under(const Model& model, const State& state, std::uint32_t region) {
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  if (!body_law_of(model, identity.body).moves_as_a_whole) {
     return nullptr;
   }
-  const Footing& footing = world.footings.at<Footing>(block_of(identity));
+  const Footing& footing = state.footings.at<Footing>(block_of(identity));
   return footing.reach > 0.0 && footing.on_layer == 0 ? &footing : nullptr;
 }
 
@@ -43,8 +43,8 @@ LoadColumns unit_loads(const RegionFrame& frame, const Footing& footing, const g
 }
 
 /// What the region's own loads move it by: less what the others' answers take back.
-Matrix6 yielding(const World& world, std::uint32_t region, const Footing& footing) {
-  const RegionReaction& reaction = world.regions.at<RegionReaction>(region);
+Matrix6 yielding(const State& state, std::uint32_t region, const Footing& footing) {
+  const RegionReaction& reaction = state.regions.at<RegionReaction>(region);
   Matrix6 motion = Eigen::Map<const Matrix6>(footing.own.data());
   if (reaction.active != 0) {
     motion -= Eigen::Map<const Matrix6>(reaction.motion.data());
@@ -54,17 +54,18 @@ Matrix6 yielding(const World& world, std::uint32_t region, const Footing& footin
 
 }  // namespace
 
-OwnAnswer own_answer(const World& world, std::uint32_t region, const glm::dvec3& point) {
+OwnAnswer own_answer(const Model& model, const State& state, std::uint32_t region,
+                     const glm::dvec3& point) {
   OwnAnswer answer;
-  const Footing* const footing = footing_under(world, region);
+  const Footing* const footing = footing_under(model, state, region);
   if (footing == nullptr) {
     return answer;
   }
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   answer.wrenches = unit_loads(frame, *footing, point);
-  answer.motions.noalias() = yielding(world, region, *footing) * answer.wrenches;
+  answer.motions.noalias() = yielding(state, region, *footing) * answer.wrenches;
   const Eigen::Matrix4d compliance = answer.wrenches.transpose() * answer.motions;
-  const auto& wrench = world.regions.at<RegionReaction>(region).wrench;
+  const auto& wrench = state.regions.at<RegionReaction>(region).wrench;
   const glm::dvec3 force(wrench[0], wrench[1], wrench[2]);
   const glm::dvec3 couple(wrench[3], wrench[4], wrench[5]);
   answer.any = true;
@@ -80,13 +81,14 @@ OwnAnswer own_answer(const World& world, std::uint32_t region, const glm::dvec3&
   return answer;
 }
 
-void move_by_own_answer(World& world, std::uint32_t region, const OwnAnswer& answer,
-                        const ContactLoads& more, const ContactLoads& reckoned) {
-  const RegionFrame& frame = world.regions.at<RegionFrame>(region);
-  const Footing& footing = *footing_under(world, region);
+void move_by_own_answer(const Model& model, State& state, std::uint32_t region,
+                        const OwnAnswer& answer, const ContactLoads& more,
+                        const ContactLoads& reckoned) {
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  const Footing& footing = *footing_under(model, state, region);
   const Eigen::Vector4d loads(more.x, more.y, more.z, more.w);
   const Vector6 motion = answer.motions * loads;
-  RegionSupport& support = world.regions.at<RegionSupport>(region);
+  RegionSupport& support = state.regions.at<RegionSupport>(region);
   const glm::dvec3 rotation(motion[3], motion[4], motion[5]);
   support.translation += glm::dvec3(motion[0], motion[1], motion[2]) +
                          glm::cross(rotation, support.about - footing.center);
@@ -95,7 +97,7 @@ void move_by_own_answer(World& world, std::uint32_t region, const OwnAnswer& ans
   support.rotation_step = left.z * frame.normal;
   support.translation_step = left.x * frame.tangent_x + left.y * frame.tangent_y +
                              glm::cross(support.rotation_step, support.about - answer.point);
-  auto& wrench = world.regions.at<RegionReaction>(region).wrench;
+  auto& wrench = state.regions.at<RegionReaction>(region).wrench;
   Eigen::Map<Vector6>(wrench.data()) += answer.wrenches * loads;
 }
 

@@ -26,12 +26,14 @@ struct OwnAnswer {
 };
 
 /// @param point  m, body: where the loads act
-OwnAnswer own_answer(const World& world, std::uint32_t region, const glm::dvec3& point);
+OwnAnswer own_answer(const Model& model, const State& state, std::uint32_t region,
+                     const glm::dvec3& point);
 
 /// The body has given way to so much more: moves the region's support, which is in this step still
 /// to move it by what of that the contact has not reckoned with.
 /// @param reckoned  motion of the material that the contact has taken
-void move_by_own_answer(World& world, std::uint32_t region, const OwnAnswer& answer,
-                        const ContactLoads& more, const ContactLoads& reckoned);
+void move_by_own_answer(const Model& model, State& state, std::uint32_t region,
+                        const OwnAnswer& answer, const ContactLoads& more,
+                        const ContactLoads& reckoned);
 
 }  // namespace torsion

@@ -23,17 +23,17 @@ constexpr double kFlat = 1e-3;  // curvature times reach: less is not worth tabl
 constexpr double kEdge = 0.9;   // cosine between normals a reach apart: no gentle curve
 constexpr double kSpan = 0.5;   // of the reach: where the curvature is measured
 
-double port_spacing(const World& world, std::uint32_t body) {
-  const Bounds& bounds = world.bodies.at<Bounds>(body);
+double port_spacing(const Model& model, std::uint32_t body) {
+  const Bounds& bounds = model.bodies.at<Bounds>(body);
   const glm::dvec3 extent = bounds.highest - bounds.lowest;
   return std::max({extent.x, extent.y, extent.z}) / compliance_elements(bounds);
 }
 
 /// The mean logarithm of the distance between the forces at the ports that a force on the contact
 /// is, and their displacements that its own is.
-double mean_reach(const World& world, std::uint32_t body, const Footing& footing) {
-  const auto ports = world.ports.rows<CompliancePort>(world.bodies.at<OwnedRows>(body).ports);
-  const double nearest = kElementsSee * port_spacing(world, body);
+double mean_reach(const Model& model, std::uint32_t body, const Footing& footing) {
+  const auto ports = model.ports.rows<CompliancePort>(model.bodies.at<OwnedRows>(body).ports);
+  const double nearest = kElementsSee * port_spacing(model, body);
   const double least = nearest * nearest * nearest * nearest;
   const auto share = [&footing](std::size_t port) {
     return glm::dot(footing.unit_forces[0][port], glm::dvec3(1.0, 0.0, 0.0));
@@ -52,17 +52,17 @@ double mean_reach(const World& world, std::uint32_t body, const Footing& footing
 
 }  // namespace
 
-SurfaceBend find_surface_bend(const World& world, std::uint32_t body, const Footing& footing,
+SurfaceBend find_surface_bend(const Model& model, std::uint32_t body, const Footing& footing,
                               const RegionFrame& axes, double across) {
   SurfaceBend bend;
-  const double reach = mean_reach(world, body, footing);
+  const double reach = mean_reach(model, body, footing);
   const double span = std::max(kSpan * reach, across);
-  const Range parts = world.bodies.at<OwnedRows>(body).parts;
+  const Range parts = model.bodies.at<OwnedRows>(body).parts;
   const auto slope = [&](const glm::dvec3& direction) {
     const glm::dvec3 before =
-        glm::normalize(signed_distance(world, parts, footing.center - span * direction).gradient);
+        glm::normalize(signed_distance(model, parts, footing.center - span * direction).gradient);
     const glm::dvec3 after =
-        glm::normalize(signed_distance(world, parts, footing.center + span * direction).gradient);
+        glm::normalize(signed_distance(model, parts, footing.center + span * direction).gradient);
     const bool gentle =
         std::min(glm::dot(before, axes.normal), glm::dot(after, axes.normal)) > kEdge;
     const glm::dvec3 change = (after - before) / (2.0 * span);
@@ -81,8 +81,8 @@ SurfaceBend find_surface_bend(const World& world, std::uint32_t body, const Foot
   return bend;
 }
 
-bool may_bend(const World& world, std::uint32_t body) {
-  const auto parts = world.parts.rows<ShapePart>(world.bodies.at<OwnedRows>(body).parts);
+bool may_bend(const Model& model, std::uint32_t body) {
+  const auto parts = model.parts.rows<ShapePart>(model.bodies.at<OwnedRows>(body).parts);
   return std::ranges::any_of(parts,
                              [](const ShapePart& part) { return part.kind != ShapeKind::kBox; });
 }

@@ -17,10 +17,10 @@ struct SurfaceBend {
 /// between them, know only the part at their own distances. `reach` is the distance at which they
 /// have it: the mean, in logarithms, over what the footing makes of the ports.
 /// @param across  m: of the contact
-SurfaceBend find_surface_bend(const World& world, std::uint32_t body, const Footing& footing,
+SurfaceBend find_surface_bend(const Model& model, std::uint32_t body, const Footing& footing,
                               const RegionFrame& axes, double across);
 
 /// Whether any surface of the body may be curved at all.
-bool may_bend(const World& world, std::uint32_t body);
+bool may_bend(const Model& model, std::uint32_t body);
 
 }  // namespace torsion

@@ -41,8 +41,8 @@ TEST(BodyEdgesTest, ARodAcrossABlockPressesOnItsTopFromEdgeToEdge) {
   hand.step_to({{glm::dvec3(0.0, kRodRadius + 1e-4, 0.0), kUpright}});
   hand.move({0.0, -depth - 1e-4, 0.0}, kUp, 0.0, 100);
   hand.move({0.0, 0.0, 0.0}, kUp, 0.0, 20);  // what faded in at birth is over
-  ASSERT_EQ(hand.world().regions.size(), 1U);
-  const RegionGeometry& geometry = hand.world().regions.at<RegionGeometry>(0);
+  ASSERT_EQ(hand.world().state.regions.size(), 1U);
+  const RegionGeometry& geometry = hand.world().state.regions.at<RegionGeometry>(0);
   const double half_strip = std::sqrt(2.0 * kRodRadius * depth - depth * depth);
   const double area = 4.0 * kHalfWidth * half_strip;
   // The ends of the strip lie between cells of 4 mm; across, 16 cells resolve it to 0.5 %.
@@ -95,7 +95,7 @@ Tilting tilt_rod(ContactModel model, int steps) {
   for (int i = 0; i <= steps; ++i) {
     const glm::dquat turn = glm::angleAxis(kTiltStep * i, glm::dvec3(0.0, 0.0, 1.0));
     hand.step_to({{lowest + turn * glm::dvec3(0.0, kRodRadius, 0.0), turn}});
-    const glm::dvec3 arm = hand.world().tools.at<ToolMotion>(0).mass_center - lowest;
+    const glm::dvec3 arm = hand.world().state.tools.at<ToolMotion>(0).mass_center - lowest;
     const Wrench& wrench = hand.wrench();
     tilting.force.push_back(wrench.force.y);
     tilting.place.push_back((wrench.torque + glm::cross(arm, wrench.force)).z / wrench.force.y);

@@ -63,9 +63,9 @@ Felt press_and_turn_ring(std::uint32_t side) {
                          {{0.0, 0.10302, 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)});
   const glm::dvec3 up(0.0, 1.0, 0.0);
   hand.move({0.0, -5.2e-4, 0.0}, up, 0.0, 500);
-  EXPECT_EQ(hand.world().regions.size(), 1U);
+  EXPECT_EQ(hand.world().state.regions.size(), 1U);
   hand.move(glm::dvec3(0.0), up, 0.5, 500);
-  EXPECT_EQ(hand.world().regions.size(), 1U);
+  EXPECT_EQ(hand.world().state.regions.size(), 1U);
   return {hand.wrench().force.y, -hand.wrench().torque.y};
 }
 
@@ -93,7 +93,7 @@ TEST(JoinClustersTest, ACornerIsOneRegion) {
       hand.move({0.0, -1e-3, 0.0}, up, 0.0, 500);
       for (int step = 0; step < 300; ++step) {
         hand.move(glm::dvec3(0.0), up, 1e-3, 1);
-        ASSERT_EQ(hand.world().regions.size(), 1U) << step;
+        ASSERT_EQ(hand.world().state.regions.size(), 1U) << step;
       }
     }
   }

@@ -64,7 +64,7 @@ TEST(MeshToolTest, MeshOfABallPressesAndTwistsLikeTheBall) {
   for (Hand* const hand : {&exact, &meshed}) {
     hand->step_to({{glm::dvec3(0.0, radius + 1e-4, 0.0), kUpright}});
     hand->move({0.0, -depth - 1e-4, 0.0}, kUp, 0.0, 50);
-    ASSERT_EQ(hand->world().regions.size(), 1U);
+    ASSERT_EQ(hand->world().state.regions.size(), 1U);
   }
   // The mesh lies up to `facets` inside the ball, so it is less deep by that at most; its field
   // adds 1e-5 of the tool's size. Force goes as depth^1.5, torque as depth^2, and the two grids lie
@@ -121,14 +121,14 @@ TEST(MeshToolTest, BothLegsOfAUPressAsFlatPunches) {
   Hand hand(scene);
   hand.step_to({{glm::dvec3(0.0, 1e-4, 0.0), kUpright}});
   hand.move({0.0, -depth - 1e-4, 0.0}, kUp, 0.0, 50);
-  ASSERT_EQ(hand.world().regions.size(), 2U);
+  ASSERT_EQ(hand.world().state.regions.size(), 2U);
   const double area = 2.0 * leg * half_depth;
   const double radius = std::sqrt(area / std::numbers::pi);
   const PaperNormalLaw law =
       paper_normal_law(scene.bodies[0].elasticity.contact_modulus(), radius, 0.0, 0.0);
   double sides = 0.0;
   for (std::uint32_t region = 0; region < 2; ++region) {
-    const RegionGeometry& geometry = hand.world().regions.at<RegionGeometry>(region);
+    const RegionGeometry& geometry = hand.world().state.regions.at<RegionGeometry>(region);
     // The field rounds edges by about a fine cell, 60 mm / 29 / 4 = 0.5 mm; the two of a sole of
     // 15 mm may shift by half of it each: 3.5 % of its width and as much of its length.
     EXPECT_NEAR(geometry.area / area, 1.0, 0.07);
@@ -137,8 +137,8 @@ TEST(MeshToolTest, BothLegsOfAUPressAsFlatPunches) {
     EXPECT_NEAR(geometry.rest_point.y, 0.0, 0.05 * depth);
     EXPECT_NEAR(geometry.rest_point.z, 0.0, 5e-4);
     // Force goes as the root of the area and as the depth.
-    EXPECT_NEAR(hand.world().regions.at<RegionNormal>(region).force / (law.linear * depth), 1.0,
-                0.07);
+    EXPECT_NEAR(hand.world().state.regions.at<RegionNormal>(region).force / (law.linear * depth),
+                1.0, 0.07);
     sides += geometry.rest_point.x;
   }
   EXPECT_NEAR(sides, 0.0, 5e-4);  // one on either side
@@ -152,8 +152,8 @@ TEST(MeshToolTest, ATorusOnItsSideTouchesInOneRing) {
   Hand hand(slab_under(mesh_part(torus_mesh(ring, tube, 240, 96))));
   hand.step_to({{glm::dvec3(0.0, tube + 1e-4, 0.0), kUpright}});
   hand.move({0.0, -depth - 1e-4, 0.0}, kUp, 0.0, 50);
-  ASSERT_EQ(hand.world().regions.size(), 1U);
-  const RegionGeometry& geometry = hand.world().regions.at<RegionGeometry>(0);
+  ASSERT_EQ(hand.world().state.regions.size(), 1U);
+  const RegionGeometry& geometry = hand.world().state.regions.at<RegionGeometry>(0);
   // All where the circle of the tube is lower than y = 0; the hole in the middle is none of it.
   const double half_strip = std::sqrt(2.0 * tube * depth - depth * depth);
   const double area = 4.0 * std::numbers::pi * ring * half_strip;

@@ -39,7 +39,7 @@ SceneDescription scene_of(std::vector<BodyDescription> bodies, std::vector<ToolD
 
 std::vector<std::uint64_t> orders(const World& world) {
   std::vector<std::uint64_t> result;
-  for (const RegionIdentity& region : world.regions.column<RegionIdentity>()) {
+  for (const RegionIdentity& region : world.state.regions.column<RegionIdentity>()) {
     result.push_back(region.order);
   }
   return result;
@@ -55,10 +55,10 @@ TEST(RegionsTest, TenFeetThatTouchOneAfterAnotherKeepTheirOrder) {
   Hand hand(scene_of({slab()}, {feet(places)}));
   hand.step_to({{glm::dvec3(0.0, 1e-4, 0.0), kUpright}});
   hand.move({0.0, -1.5e-3, 0.0}, kUp, 0.0, 600);
-  ASSERT_EQ(hand.world().regions.size(), 10U);
+  ASSERT_EQ(hand.world().state.regions.size(), 10U);
   for (std::uint32_t i = 0; i < 10; ++i) {
-    EXPECT_EQ(hand.world().regions.at<RegionIdentity>(i).order, i);
-    const glm::dvec3& point = hand.world().regions.at<RegionGeometry>(i).equivalent_point;
+    EXPECT_EQ(hand.world().state.regions.at<RegionIdentity>(i).order, i);
+    const glm::dvec3& point = hand.world().state.regions.at<RegionGeometry>(i).equivalent_point;
     EXPECT_NEAR(point.x, places[i].x, 1e-4);
     EXPECT_NEAR(point.z, places[i].z, 1e-4);
   }
@@ -73,23 +73,23 @@ TEST(RegionsTest, TenFeetThatTouchOneAfterAnotherKeepTheirOrder) {
 TEST(RegionsTest, AFootIsSeenWhenItTouchesNotWhenASampleDoes) {
   Hand hand(scene_of({slab()}, {feet({{0.0123, 0.0, 0.0045}})}));
   hand.step_to({{glm::dvec3(0.0, 1e-6, 0.0), kUpright}});
-  EXPECT_EQ(hand.world().regions.size(), 0U);
+  EXPECT_EQ(hand.world().state.regions.size(), 0U);
   hand.move({0.0, -2e-6, 0.0}, kUp, 0.0, 1);
   // One micrometre deep: sixty times less than the height of the ball between two samples.
-  ASSERT_EQ(hand.world().regions.size(), 1U);
-  EXPECT_NEAR(hand.world().regions.at<RegionGeometry>(0).largest_depth, 1e-6, 0.1e-6);
+  ASSERT_EQ(hand.world().state.regions.size(), 1U);
+  EXPECT_NEAR(hand.world().state.regions.at<RegionGeometry>(0).largest_depth, 1e-6, 0.1e-6);
 }
 
 TEST(RegionsTest, ARegionThatEndedIsNotTheNextOneThere) {
   Hand hand(scene_of({slab()}, {feet({{0.0, 0.0, 0.0}})}));
   hand.step_to({{glm::dvec3(0.0, 1e-4, 0.0), kUpright}});
   hand.move({0.0, -3e-4, 0.0}, kUp, 0.0, 30);
-  EXPECT_EQ(hand.world().regions.at<RegionIdentity>(0).order, 0U);
+  EXPECT_EQ(hand.world().state.regions.at<RegionIdentity>(0).order, 0U);
   hand.move({0.0, 3e-4, 0.0}, kUp, 0.0, 30);
-  ASSERT_EQ(hand.world().regions.size(), 0U);
+  ASSERT_EQ(hand.world().state.regions.size(), 0U);
   hand.move({0.0, -3e-4, 0.0}, kUp, 0.0, 30);
-  ASSERT_EQ(hand.world().regions.size(), 1U);
-  EXPECT_EQ(hand.world().regions.at<RegionIdentity>(0).order, 1U);
+  ASSERT_EQ(hand.world().state.regions.size(), 1U);
+  EXPECT_EQ(hand.world().state.regions.at<RegionIdentity>(0).order, 1U);
 }
 
 TEST(RegionsTest, RegionsThatMergeKeepTheOldest) {
@@ -105,9 +105,9 @@ TEST(RegionsTest, RegionsThatMergeKeepTheOldest) {
   EXPECT_EQ(orders(hand.world()), (std::vector<std::uint64_t>{0}));
   hand.move({0.0, 2e-3, 0.0}, kUp, 0.0, 400);
   // Split again: the larger part keeps the history, the other is new.
-  ASSERT_EQ(hand.world().regions.size(), 2U);
-  EXPECT_EQ(hand.world().regions.at<RegionIdentity>(0).order, 0U);
-  EXPECT_EQ(hand.world().regions.at<RegionIdentity>(1).order, 2U);
+  ASSERT_EQ(hand.world().state.regions.size(), 2U);
+  EXPECT_EQ(hand.world().state.regions.at<RegionIdentity>(0).order, 0U);
+  EXPECT_EQ(hand.world().state.regions.at<RegionIdentity>(1).order, 2U);
 }
 
 TEST(RegionsTest, TwoBodiesUnderOneToolHaveRegionsOfTheirOwn) {
@@ -118,14 +118,14 @@ TEST(RegionsTest, TwoBodiesUnderOneToolHaveRegionsOfTheirOwn) {
   Hand hand(scene_of({left, right}, {feet({{-0.1, 0.0, 0.0}, {0.1, 0.0, 0.0}})}));
   hand.step_to({{glm::dvec3(0.0, 1e-4, 0.0), kUpright}});
   hand.move({0.0, -4e-4, 0.0}, kUp, 0.0, 40);
-  ASSERT_EQ(hand.world().regions.size(), 2U);
-  EXPECT_EQ(hand.world().regions.at<RegionIdentity>(0).body, 0U);
-  EXPECT_EQ(hand.world().regions.at<RegionIdentity>(1).body, 1U);
+  ASSERT_EQ(hand.world().state.regions.size(), 2U);
+  EXPECT_EQ(hand.world().state.regions.at<RegionIdentity>(0).body, 0U);
+  EXPECT_EQ(hand.world().state.regions.at<RegionIdentity>(1).body, 1U);
   // Mirror images but for where the samples lie and so the grids: 0.5 % is the error of 16 x 16
   // cells.
-  EXPECT_NEAR(hand.world().regions.at<RegionNormal>(0).force,
-              hand.world().regions.at<RegionNormal>(1).force,
-              0.005 * hand.world().regions.at<RegionNormal>(1).force);
+  EXPECT_NEAR(hand.world().state.regions.at<RegionNormal>(0).force,
+              hand.world().state.regions.at<RegionNormal>(1).force,
+              0.005 * hand.world().state.regions.at<RegionNormal>(1).force);
 }
 
 TEST(RegionsTest, TwoToolsOnOneBodyFeelTheirOwnForces) {
@@ -137,8 +137,8 @@ TEST(RegionsTest, TwoToolsOnOneBodyFeelTheirOwnForces) {
     hand.step_to({hand.poses[0], hand.poses[1]});
   }
   EXPECT_GT(hand.wrench(1).force.y, 0.1);
-  ASSERT_EQ(hand.world().regions.size(), 1U);
-  EXPECT_EQ(hand.world().regions.at<RegionIdentity>(0).tool, 1U);
+  ASSERT_EQ(hand.world().state.regions.size(), 1U);
+  EXPECT_EQ(hand.world().state.regions.at<RegionIdentity>(0).tool, 1U);
 }
 
 TEST(RegionsTest, MoreThanSixteenRegionsRaiseAFaultAndTheStepEnds) {
@@ -149,7 +149,7 @@ TEST(RegionsTest, MoreThanSixteenRegionsRaiseAFaultAndTheStepEnds) {
   Hand hand(scene_of({slab()}, {feet(places)}));
   hand.step_to({{glm::dvec3(0.0, 1e-4, 0.0), kUpright}});
   hand.move({0.0, -3e-4, 0.0}, kUp, 0.0, 30);
-  EXPECT_EQ(hand.world().regions.size(), kMaxRegionsPerBody);
+  EXPECT_EQ(hand.world().state.regions.size(), kMaxRegionsPerBody);
   EXPECT_TRUE(raised(hand.clock().faults, Fault::kRegionsFull));
 }
 

@@ -46,7 +46,7 @@ Stiffness stiffness_of(std::uint32_t side, double angle, double drag) {
   Stiffness stiffness;
   const double contact_modulus = kModulus / (1.0 - 0.25);
   stiffness.force = hand.wrench().force.y / (contact_modulus * kSide * kDepth);
-  hand.simulation().world.bodies.at<Friction>(0) = {100.0, 100.0};
+  hand.simulation().world.model.bodies.at<Friction>(0) = {100.0, 100.0};
   hand.move(glm::dvec3(0.0), up, kTwist, 20);
   stiffness.torque = std::abs(hand.wrench().torque.y);
   return stiffness;

@@ -23,7 +23,7 @@ class StickShareTest : public testing::TestWithParam<ContactModel> {
 
 /// Of the area.
 double stick_share(const PressedBall& ball) {
-  return ball.hand.world().regions.at<RegionFriction>(0).stick_share;
+  return ball.hand.world().state.regions.at<RegionFriction>(0).stick_share;
 }
 
 /// Of the cells with pressure, as the trace has it.
@@ -31,7 +31,7 @@ double stick_fraction(const PressedBall& ball) {
   const World& world = ball.hand.world();
   double stuck = 0.0;
   for (const CellTraction& cell :
-       world.cells.rows<CellTraction>(world.regions.at<RegionIdentity>(0).cells)) {
+       world.state.cells.rows<CellTraction>(world.state.regions.at<RegionIdentity>(0).cells)) {
     stuck += cell.pressure > 0.0 && cell.sticks != 0 ? 1.0 : 0.0;
   }
   return stuck / ball.loaded_cells();

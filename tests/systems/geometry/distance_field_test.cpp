@@ -33,7 +33,7 @@ struct Field {
   Field(const SurfaceMesh& mesh, const FieldOptions& options)
       : world(field_world(built(mesh, options))) {}
   [[nodiscard]] Distance at(const glm::dvec3& p) const {
-    return FieldDistance(world, 0)(p.x, p.y, p.z);
+    return FieldDistance(world.model, 0)(p.x, p.y, p.z);
   }
   World world;
 };
@@ -97,7 +97,7 @@ TEST(DistanceFieldTest, CubeIsExactButWithinAFineCellOfItsEdges) {
   const double half = 0.05;
   const FieldOptions options;
   const Field field(box_mesh(glm::dvec3(half)), options);
-  const double fine = field.world.fields.at<DistanceField>(0).spacing / options.subdivision;
+  const double fine = field.world.model.fields.at<DistanceField>(0).spacing / options.subdivision;
   const BoxDistance exact{glm::dvec3(half)};
   std::mt19937 random(2);
   std::uniform_real_distribution<double> along(-half, half);
@@ -161,7 +161,7 @@ TEST(DistanceFieldTest, InnerEdgeKeepsItsSignAndSize) {
   ASSERT_TRUE(exact.ok());
   const FieldOptions options;
   const Field field(mesh, options);
-  const double fine = field.world.fields.at<DistanceField>(0).spacing / options.subdivision;
+  const double fine = field.world.model.fields.at<DistanceField>(0).spacing / options.subdivision;
   std::mt19937 random(3);
   std::uniform_real_distribution<double> coordinate(-0.055, 0.055);
   for (int i = 0; i < 4000; ++i) {
@@ -182,7 +182,7 @@ TEST(DistanceFieldTest, InnerEdgeKeepsItsSignAndSize) {
 
 TEST(DistanceFieldTest, HasNoJumpsNearTheSurfaceAndSmallOnesFarFromIt) {
   const Field field(torus_mesh(0.04, 0.015, 60, 30), {});
-  const double spacing = field.world.fields.at<DistanceField>(0).spacing;
+  const double spacing = field.world.model.fields.at<DistanceField>(0).spacing;
   // Straight lines in small steps: the value changes by at most the step, and a bit for what the
   // blend's slope exceeds 1. A brick reaches a quarter of a coarse cell from the surface at least;
   // on the face where it ends its blend differs from the coarse one by the latter's error, of third

@@ -25,9 +25,10 @@ World world_with(const std::vector<ShapePart>& shapes) {
   World world;
   Capacities capacities;
   capacities.parts = static_cast<std::uint32_t>(shapes.size());
-  world.reserve(capacities, Settings{});
+  world.model.reserve(capacities, Settings{});
+  world.state.reserve(capacities, Settings{});
   for (const ShapePart& shape : shapes) {
-    world.parts.at<ShapePart>(world.parts.append(1)->first) = shape;
+    world.model.parts.at<ShapePart>(world.model.parts.append(1)->first) = shape;
   }
   return world;
 }
@@ -271,7 +272,7 @@ TEST(UnionTest, IsTheNearestPartsDistanceInTheOwnersFrame) {
         gradient = part.pose.rotation * own.gradient;
       }
     }
-    const Distance all = signed_distance(world, {0, 5}, p);
+    const Distance all = signed_distance(world.model, {0, 5}, p);
     EXPECT_NEAR(all.value, nearest, 1e-15);
     EXPECT_NEAR(glm::distance(all.gradient, gradient), 0.0, 1e-12);
   }
@@ -295,11 +296,11 @@ TEST(UnionTest, ManyPointsAtOnceGiveWhatSinglePointsGive) {
        {std::vector<std::uint32_t>{0, 1, 2, 3, 4}, {2, 3}, {4}}) {
     const Range parts{rows.front(), static_cast<std::uint32_t>(rows.size())};
     for (const Pose& seen_from : {Pose{}, frame}) {
-      signed_distances(world, rows, seen_from, columns);
-      distance_values(world, parts, seen_from, {columns.x, columns.y, columns.z}, values);
+      signed_distances(world.model, rows, seen_from, columns);
+      distance_values(world.model, parts, seen_from, {columns.x, columns.y, columns.z}, values);
       for (std::size_t i = 0; i < points.size(); ++i) {
-        const Distance single =
-            signed_distance(world, parts, seen_from.rotation * points[i] + seen_from.position);
+        const Distance single = signed_distance(
+            world.model, parts, seen_from.rotation * points[i] + seen_from.position);
         // The turn by a matrix and by a quaternion round differently.
         EXPECT_NEAR(batch.at(i).value, single.value, 1e-15);
         EXPECT_NEAR(glm::distance(seen_from.rotation * batch.at(i).gradient, single.gradient), 0.0,
@@ -312,14 +313,14 @@ TEST(UnionTest, ManyPointsAtOnceGiveWhatSinglePointsGive) {
 
 TEST(UnionTest, OfNothingIsInfinitelyFar) {
   const World world = world_with(mallet());
-  EXPECT_EQ(signed_distance(world, {0, 0}, glm::dvec3(0.0)).value,
+  EXPECT_EQ(signed_distance(world.model, {0, 0}, glm::dvec3(0.0)).value,
             std::numeric_limits<double>::infinity());
   const std::array<glm::dvec3, 3> points{};
   test::PointBatch batch(points);
   std::array<double, 3> values{};
   const DistanceColumns columns = batch.columns();
-  signed_distances(world, {}, Pose{}, columns);
-  distance_values(world, Range{0, 0}, Pose{}, {columns.x, columns.y, columns.z}, values);
+  signed_distances(world.model, {}, Pose{}, columns);
+  distance_values(world.model, Range{0, 0}, Pose{}, {columns.x, columns.y, columns.z}, values);
   for (std::size_t i = 0; i < values.size(); ++i) {
     EXPECT_EQ(batch.at(i).value, std::numeric_limits<double>::infinity());
     EXPECT_EQ(values[i], std::numeric_limits<double>::infinity());
@@ -334,15 +335,15 @@ TEST(PartsNearTest, KeepsEveryPartThatIsNearestToSomePointWithinReach) {
   for (int i = 0; i < 200; ++i) {
     const glm::dvec3 center = random_in_box(random, glm::dvec3(0.15));
     const double reach = 0.03;
-    const auto near = parts_near(world, {0, 5}, center, reach, rows);
+    const auto near = parts_near(world.model, {0, 5}, center, reach, rows);
     ASSERT_FALSE(near.empty());
     EXPECT_TRUE(std::is_sorted(near.begin(), near.end()));
     dropped_some = dropped_some || near.size() < 5;
     for (int j = 0; j < 30; ++j) {
       const glm::dvec3 p = center + random_direction(random) * reach;
-      const Distance of_all = signed_distance(world, {0, 5}, p);
+      const Distance of_all = signed_distance(world.model, {0, 5}, p);
       test::PointBatch batch({&p, 1});
-      signed_distances(world, near, Pose{}, batch.columns());
+      signed_distances(world.model, near, Pose{}, batch.columns());
       EXPECT_NEAR(batch.at(0).value, of_all.value, 1e-15);
     }
   }

@@ -67,10 +67,11 @@ LoopOutcome run_loop(const HandTraits& traits, const DeviceTraits& device,
     wanted.position.y = 0.1505 - 2e-3 * down;
     wanted.rotation = glm::angleAxis(turn * round, glm::dvec3(0.0, 1.0, 0.0));
     const Pose handle = hand.measured();
-    physics.step_to({next_held_pose(physics.world(), 0, hold, coupling, handle)});
+    physics.step_to(
+        {next_held_pose(physics.world().model, physics.world().state, 0, hold, coupling, handle)});
     const Wrench felt =
-        felt_wrench(hold, coupling, handle, physics.world().tools.at<ToolPose>(0).now,
-                    wrench_about_frame(physics.world(), 0));
+        felt_wrench(hold, coupling, handle, physics.world().state.tools.at<ToolPose>(0).now,
+                    wrench_about_frame(physics.world().state, 0));
     const Wrench passive = keep_passive(books, limits, felt, handle.position - last.position,
                                         turn_between(last.rotation, handle.rotation), kPeriod);
     last = handle;
@@ -152,11 +153,12 @@ TEST(HeldToolLoopTest, HeldDirectlyTheHandFeelsASoftContactItself) {
   for (int i = 0; i < 2000; ++i) {
     wanted.position.y = 0.1505 - 4e-3 * std::min(1.0, i / 300.0);
     const Pose handle = hand.measured();
-    physics.step_to({next_held_pose(physics.world(), 0, ToolHold::kDirect, coupling, handle)});
-    const Pose& tool = physics.world().tools.at<ToolPose>(0).now;
+    physics.step_to({next_held_pose(physics.world().model, physics.world().state, 0,
+                                    ToolHold::kDirect, coupling, handle)});
+    const Pose& tool = physics.world().state.tools.at<ToolPose>(0).now;
     EXPECT_EQ(tool.position, handle.position);
     felt = felt_wrench(ToolHold::kDirect, coupling, handle, tool,
-                       wrench_about_frame(physics.world(), 0));
+                       wrench_about_frame(physics.world().state, 0));
     hand.move(felt, wanted, kPeriod);
   }
   const double depth = 0.15 - hand.measured().position.y;

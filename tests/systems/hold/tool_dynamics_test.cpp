@@ -41,18 +41,19 @@ double error_of_free_motion(double rate, double stiffness) {
   hand.step_to({start});
   const VirtualCoupling coupling = springs(stiffness, 1.0);
   const Pose handle{{kOff, kFree, 0.0}, kUpright};
-  const MassProperties& properties = hand.world().tools.at<MassProperties>(0);
+  const MassProperties& properties = hand.world().model.tools.at<MassProperties>(0);
   const double frequency = std::sqrt(stiffness / properties.mass);
   const double decay = 0.5 * choose_damping(coupling, properties).translation / properties.mass;
   const double ringing = std::sqrt(frequency * frequency - decay * decay);
   double worst = 0.0;
   for (int i = 1; i <= static_cast<int>(0.2 * rate); ++i) {
-    hand.step_to({next_heavy_tool_pose(hand.world(), 0, coupling, handle)});
+    hand.step_to(
+        {next_heavy_tool_pose(hand.world().model, hand.world().state, 0, coupling, handle)});
     const double t = i / rate;
     const double exact =
         kOff * (1.0 - std::exp(-decay * t) *
                           (std::cos(ringing * t) + decay / ringing * std::sin(ringing * t)));
-    const double x = hand.world().tools.at<ToolPose>(0).now.position.x;
+    const double x = hand.world().state.tools.at<ToolPose>(0).now.position.x;
     worst = std::max(worst, std::abs(x - exact) / kOff);
   }
   return worst;
@@ -76,9 +77,9 @@ TEST(ToolDynamicsTest, NothingThatPullsLetsItMoveOn) {
     hand.step_to({{glm::dvec3(0.0, kFree, 0.0) + static_cast<double>(i) * each, kUpright}});
   }
   for (int i = 3; i < 50; ++i) {
-    hand.step_to({next_heavy_tool_pose(hand.world(), 0, {}, {})});
+    hand.step_to({next_heavy_tool_pose(hand.world().model, hand.world().state, 0, {}, {})});
     const glm::dvec3 there = glm::dvec3(0.0, kFree, 0.0) + static_cast<double>(i) * each;
-    EXPECT_LT(glm::distance(hand.world().tools.at<ToolPose>(0).now.position, there), 1e-12);
+    EXPECT_LT(glm::distance(hand.world().state.tools.at<ToolPose>(0).now.position, there), 1e-12);
   }
 }
 
@@ -96,14 +97,16 @@ TEST(ToolDynamicsTest, ComesToRestWhereAToolWithoutMassDoes) {
       const double share = std::min(1.0, i / 500.0);
       const Pose handle{{0.0, 0.1501 - down * share, 0.0},
                         glm::angleAxis(0.05 * share, glm::dvec3(0.0, 1.0, 0.0))};
-      heavy.step_to({next_heavy_tool_pose(heavy.world(), 0, coupling, handle)});
-      light.step_to({next_tool_pose(light.world(), 0, coupling, handle)});
+      heavy.step_to(
+          {next_heavy_tool_pose(heavy.world().model, heavy.world().state, 0, coupling, handle)});
+      light.step_to(
+          {next_tool_pose(light.world().model, light.world().state, 0, coupling, handle)});
     }
     SCOPED_TRACE(testing::Message() << stiffness << " N/m");
     EXPECT_GT(light.wrench().force.y, 0.5);
     EXPECT_NEAR(heavy.wrench().force.y, light.wrench().force.y, 1e-3 * light.wrench().force.y);
     EXPECT_EQ(heavy.clock().faults, 0U);
-    const glm::dvec3 velocity = heavy.world().tools.at<ToolMotion>(0).velocity;
+    const glm::dvec3 velocity = heavy.world().state.tools.at<ToolMotion>(0).velocity;
     EXPECT_LT(glm::length(velocity), 1e-6);
   }
 }

@@ -61,7 +61,7 @@ TEST(MdrNormalForceTest, IsAFunctionOfTheDepthAlone) {
       if (step < 50) {
         continue;  // a region forms, and fades in
       }
-      const double force = ball.hand.world().regions.at<RegionNormal>(0).force;
+      const double force = ball.hand.world().state.regions.at<RegionNormal>(0).force;
       lowest = std::min(lowest, force);
       highest = std::max(highest, force);
     }

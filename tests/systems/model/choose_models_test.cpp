@@ -109,7 +109,7 @@ ExpectedContact ball_goes_on(double way, double turn) {
     poses.push_back({{{0.1 * i * way, 0.1195, 0.0},
                       glm::angleAxis(0.1 * i * turn, glm::dvec3(0.0, 0.0, 1.0))}});
   }
-  return expect_contact(hand.world(), 0, poses);
+  return expect_contact(hand.world().model, 0, poses);
 }
 
 TEST(ChooseModelsTest, RollingIsWhatAContactGoesOverBothSurfaces) {

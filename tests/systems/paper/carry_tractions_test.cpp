@@ -26,15 +26,16 @@ Hand ball_at(double depth) {
 /// A turn that no cell slips at, neither now nor at half the depth.
 double small_turn(const Hand& hand) {
   const World& world = hand.world();
-  const PaperShaft shaft{
-      world.regions.at<RegionNormal>(0).force, world.bodies.at<Friction>(0).dynamic_friction,
-      world.bodies.at<Elasticity>(0).shear_modulus(), world.regions.at<RegionGeometry>(0).radius,
-      world.regions.at<RegionMotion>(0).lever};
+  const PaperShaft shaft{world.state.regions.at<RegionNormal>(0).force,
+                         world.model.bodies.at<Friction>(0).dynamic_friction,
+                         world.model.bodies.at<Elasticity>(0).shear_modulus(),
+                         world.state.regions.at<RegionGeometry>(0).radius,
+                         world.state.regions.at<RegionMotion>(0).lever};
   return 0.2 * shaft.yield_turn();
 }
 
 double radius_of(const Hand& hand) {
-  return hand.world().regions.at<RegionGeometry>(0).radius;
+  return hand.world().state.regions.at<RegionGeometry>(0).radius;
 }
 
 TEST(CarryTractionsTest, ShrinkingContactLosesTheTractionOfTheAreaItLeaves) {
@@ -64,8 +65,8 @@ TEST(CarryTractionsTest, GrowingContactGetsNewAreaWithoutTraction) {
 TEST(CarryTractionsTest, StillContactKeepsItsTractions) {
   Hand hand = ball_at(kDeep);
   hand.move(glm::dvec3(0.0), kUp, small_turn(hand), 50);
-  const auto cells = hand.world().regions.at<RegionIdentity>(0).cells;
-  const auto rows = hand.world().cells.rows<CellTraction>(cells);
+  const auto cells = hand.world().state.regions.at<RegionIdentity>(0).cells;
+  const auto rows = hand.world().state.cells.rows<CellTraction>(cells);
   const std::vector<CellTraction> before(rows.begin(), rows.end());
   hand.move(glm::dvec3(0.0), kUp, 0.0, 100);
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -80,8 +81,8 @@ TEST(CarryTractionsTest, SlidingContactIsAtItsLimitAgainstTheMotion) {
   Hand hand = ball_at(kDeep);
   hand.move(glm::dvec3(0.02, 0.0, 0.0), kUp, 0.0, 400);
   const World& world = hand.world();
-  const double limit =
-      world.bodies.at<Friction>(0).static_friction * world.regions.at<RegionNormal>(0).force;
+  const double limit = world.model.bodies.at<Friction>(0).static_friction *
+                       world.state.regions.at<RegionNormal>(0).force;
   // Sliding along x: all of the friction is along -x, of the full size.
   EXPECT_NEAR(hand.wrench().force.x, -limit, 0.02 * limit);
   EXPECT_LT(std::abs(hand.wrench().force.z), 0.01 * limit);

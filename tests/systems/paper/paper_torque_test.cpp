@@ -33,15 +33,17 @@ Hand pressed_ball(std::uint32_t grid_side = 16, const Friction& friction = {},
 /// The closed form with the region's own force, radius and lever.
 PaperShaft shaft_of(const Hand& hand) {
   const World& world = hand.world();
-  return {world.regions.at<RegionNormal>(0).force, world.bodies.at<Friction>(0).dynamic_friction,
-          world.bodies.at<Elasticity>(0).shear_modulus(),
-          world.regions.at<RegionGeometry>(0).radius, world.regions.at<RegionMotion>(0).lever};
+  return {world.state.regions.at<RegionNormal>(0).force,
+          world.model.bodies.at<Friction>(0).dynamic_friction,
+          world.model.bodies.at<Elasticity>(0).shear_modulus(),
+          world.state.regions.at<RegionGeometry>(0).radius,
+          world.state.regions.at<RegionMotion>(0).lever};
 }
 
 TEST(PaperTorqueTest, RegionOfThePressedBallIsTheOverlapDisc) {
   const Hand hand = pressed_ball();
-  ASSERT_EQ(hand.world().regions.size(), 1U);
-  const RegionGeometry& geometry = hand.world().regions.at<RegionGeometry>(0);
+  ASSERT_EQ(hand.world().state.regions.size(), 1U);
+  const RegionGeometry& geometry = hand.world().state.regions.at<RegionGeometry>(0);
   // The sphere cuts the plane in a disc of a^2 = 2 R d - d^2; the grid's cells, 0.14 a wide,
   // resolve its area to about half of their square over a^2.
   const double exact = std::sqrt(2.0 * 0.05 * kPressDepth - kPressDepth * kPressDepth);
@@ -56,8 +58,8 @@ TEST(PaperTorqueTest, RegionOfThePressedBallIsTheOverlapDisc) {
 TEST(PaperTorqueTest, CellsInContactAreAboutTwoHundred) {
   const Hand hand = pressed_ball();
   int covered = 0;
-  for (const CellGeometry& cell :
-       hand.world().cells.rows<CellGeometry>(hand.world().regions.at<RegionIdentity>(0).cells)) {
+  for (const CellGeometry& cell : hand.world().state.cells.rows<CellGeometry>(
+           hand.world().state.regions.at<RegionIdentity>(0).cells)) {
     covered += cell.coverage > 0.0 ? 1 : 0;
   }
   EXPECT_GE(covered, 150);

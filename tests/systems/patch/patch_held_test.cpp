@@ -25,14 +25,14 @@ using test::options_of;
 /// pressures cause, over the largest depth.
 double worst_difference(const Hand& hand) {
   const World& world = hand.world();
-  const RegionIdentity& region = world.regions.at<RegionIdentity>(0);
-  const RegionFrame& frame = world.regions.at<RegionFrame>(0);
-  const Elasticity& elasticity = world.bodies.at<Elasticity>(region.body);
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
-  const auto influences =
-      world.influences.rows<Influence>(world.bodies.at<OwnedRows>(region.body).influences);
-  const auto tractions = world.cells.rows<CellTraction>(region.cells);
-  const auto held = world.patch_cells.rows<PatchDepression>(region.cells);
+  const RegionIdentity& region = world.state.regions.at<RegionIdentity>(0);
+  const RegionFrame& frame = world.state.regions.at<RegionFrame>(0);
+  const Elasticity& elasticity = world.model.bodies.at<Elasticity>(region.body);
+  const std::uint32_t side = world.model.settings.grid_side;
+  const auto influences = world.model.influences.rows<Influence>(
+      world.model.bodies.at<OwnedRows>(region.body).influences);
+  const auto tractions = world.state.cells.rows<CellTraction>(region.cells);
+  const auto held = world.state.patch_cells.rows<PatchDepression>(region.cells);
   std::vector<std::vector<double>> columns(11, std::vector<double>(tractions.size(), 0.0));
   for (std::size_t cell = 0; cell < tractions.size(); ++cell) {
     columns[4][cell] = tractions[cell].pressure;
@@ -54,7 +54,7 @@ double worst_difference(const Hand& hand) {
   for (std::size_t cell = 0; cell < tractions.size(); ++cell) {
     worst = std::max(worst, std::abs(columns[7][cell] - held[cell].value));
   }
-  return worst / world.regions.at<RegionGeometry>(0).largest_depth;
+  return worst / world.state.regions.at<RegionGeometry>(0).largest_depth;
 }
 
 /// A tool of one part over the cube's top face, pressed `depth` deep.

@@ -147,7 +147,7 @@ TEST_P(PatchHollowTest, PressesAndSpinsAsADenseSolutionSays) {
     hand.move(glm::dvec3(0.0), kUp, 0.4, 300);
     EXPECT_NEAR(-hand.wrench().torque.y / (kBallFriction * exact.moment), 1.0, resolution.bound)
         << resolution.side;
-    EXPECT_EQ(hand.world().regions.size(), 1U);
+    EXPECT_EQ(hand.world().state.regions.size(), 1U);
   }
 }
 

@@ -203,7 +203,7 @@ TEST_P(BallTest, SlidingAndTwistingTogetherMatchABoundaryElementTable) {
     const double limit = reference::full_slip_force(ball.mindlin());
     const double largest = reference::saturated_torque(ball.lubkin());
     ball.go(kBallDepth, {row.slide, 0.0}, row.turn, 200);
-    const RegionFriction& found = ball.hand.world().regions.at<RegionFriction>(0);
+    const RegionFriction& found = ball.hand.world().state.regions.at<RegionFriction>(0);
     EXPECT_NEAR(glm::length(found.force), row.force, GetParam().combined * limit);
     EXPECT_NEAR(-found.couple, row.couple, GetParam().combined * largest);
   }
@@ -218,7 +218,7 @@ TEST_P(BallTest, SteadySlidingWithSpinIsOnTheExactLimitSurface) {
     // Sliding over up to four radii and turning by one: far more than sticks.
     ball.go(kBallDepth, {ratio * radius, 0.0}, 1.0, 400);
     const reference::SlidingSpinning exact = reference::hertz_limit_surface(ratio);
-    const RegionFriction& found = ball.hand.world().regions.at<RegionFriction>(0);
+    const RegionFriction& found = ball.hand.world().state.regions.at<RegionFriction>(0);
     // The 1.5 %; mdr's limit curve has corners 1.2 % from each other's middle.
     EXPECT_NEAR(glm::length(found.force) / limit, exact.force, 0.015) << ratio;
     EXPECT_NEAR(-found.couple / (limit * radius), exact.moment,

@@ -78,9 +78,10 @@ struct Axes {
 
 Axes axes_of(const Hand& hand) {
   const World& world = hand.world();
-  const RegionFrame& frame = world.regions.at<RegionFrame>(0);
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
-  const auto cells = world.cells.rows<CellTraction>(world.regions.at<RegionIdentity>(0).cells);
+  const RegionFrame& frame = world.state.regions.at<RegionFrame>(0);
+  const std::uint32_t side = world.model.settings.grid_side;
+  const auto cells =
+      world.state.cells.rows<CellTraction>(world.state.regions.at<RegionIdentity>(0).cells);
   double sum = 0.0;
   glm::dvec2 first(0.0);
   double xx = 0.0;
@@ -243,7 +244,7 @@ TEST_P(ShapeTest, TwoFarFeetCarryWhatTwoSingleFeetDo) {
     hand.step_to({{glm::dvec3(0.0, 0.1 + test::kBallRadius + 1e-6, 0.0), glm::dquat(1, 0, 0, 0)}});
     hand.move({0.0, -1e-6 - kBallDepth, 0.0}, kUp, 0.0, 200);
   }
-  ASSERT_EQ(hands[0].world().regions.size(), 2U);
+  ASSERT_EQ(hands[0].world().state.regions.size(), 2U);
   // Slides of 0 to 0.5 mm: from partial slip to full.
   for (int step = 0; step < 100; ++step) {
     for (Hand& hand : hands) {

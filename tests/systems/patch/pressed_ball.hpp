@@ -77,7 +77,8 @@ class PressedBall {
   /// Cells with pressure in the first region.
   [[nodiscard]] int loaded_cells() const {
     const World& world = hand.world();
-    const auto cells = world.cells.rows<CellTraction>(world.regions.at<RegionIdentity>(0).cells);
+    const auto cells =
+        world.state.cells.rows<CellTraction>(world.state.regions.at<RegionIdentity>(0).cells);
     return static_cast<int>(
         std::ranges::count_if(cells, [](const CellTraction& cell) { return cell.pressure > 0.0; }));
   }

@@ -49,7 +49,7 @@ class SplitPatchTest : public testing::TestWithParam<Event> {
     std::size_t event = 0;
     while (wrenches.size() < 2000 && (event == 0 || wrenches.size() <= event + kBeside)) {
       hand.move({0.0, shift, 0.0}, {0.0, 1.0, 0.0}, 0.0, 1);
-      event = event == 0 && hand.world().regions.size() == regions ? wrenches.size() : event;
+      event = event == 0 && hand.world().state.regions.size() == regions ? wrenches.size() : event;
       wrenches.push_back(hand.wrench());
     }
     ASSERT_GT(event, kBeside);
@@ -67,13 +67,13 @@ class SplitPatchTest : public testing::TestWithParam<Event> {
 
 TEST_P(SplitPatchTest, ForceAndTorqueGoOnWhereOneBecomesTwo) {
   press_and_turn(4.5e-3);
-  ASSERT_EQ(hand.world().regions.size(), 1U);
+  ASSERT_EQ(hand.world().state.regions.size(), 1U);
   expect_to_go_on(2e-6, 2);
 }
 
 TEST_P(SplitPatchTest, ForceAndTorqueGoOnWhereTwoBecomeOne) {
   press_and_turn(2e-3);
-  ASSERT_EQ(hand.world().regions.size(), 2U);
+  ASSERT_EQ(hand.world().state.regions.size(), 2U);
   expect_to_go_on(-2e-6, 1);
 }
 
@@ -81,12 +81,12 @@ TEST_P(SplitPatchTest, GivesNoEnergyOverClosedPaths) {
   hand.step_to({{glm::dvec3(0.0, 0.1205, 0.0), glm::dquat(1.0, 0.0, 0.0, 0.0)}});
   hand.move({0.0, -2.5e-3, 0.0}, {0.0, 1.0, 0.0}, 0.0, 500);
   for (int loop = 0; loop < 4; ++loop) {
-    const double before = hand.world().tools.at<ToolWrench>(0).work;
+    const double before = hand.world().state.tools.at<ToolWrench>(0).work;
     hand.move({0.0, -2.5e-3, 0.0}, {0.0, 1.0, 0.0}, 0.0, 300);
-    EXPECT_EQ(hand.world().regions.size(), 1U);
+    EXPECT_EQ(hand.world().state.regions.size(), 1U);
     hand.move({0.0, 2.5e-3, 0.0}, {0.0, 1.0, 0.0}, 0.0, 300);
-    EXPECT_EQ(hand.world().regions.size(), 2U);
-    EXPECT_GE(hand.world().tools.at<ToolWrench>(0).work, before);
+    EXPECT_EQ(hand.world().state.regions.size(), 2U);
+    EXPECT_GE(hand.world().state.tools.at<ToolWrench>(0).work, before);
   }
 }
 

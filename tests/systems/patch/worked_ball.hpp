@@ -131,7 +131,7 @@ class WorkedBall {
   }
 
   [[nodiscard]] const PatchEnergy& energy() const {
-    return hand_.world().regions.at<PatchEnergy>(0);
+    return hand_.world().state.regions.at<PatchEnergy>(0);
   }
 
   static constexpr glm::dvec3 kPressed{0.0, 0.1 + kBallRadius - kBallDepth, 0.0};

@@ -22,15 +22,15 @@ struct Drawn {
     world = body_world(scene.bodies.front());
     ToolDescription tool;
     scene.tools.push_back(tool);
-    frame = prepare_frame(scene, world);
-    snapshot.reserve(world);
+    frame = prepare_frame(scene, world.model, world.state);
+    snapshot.reserve(world.model, world.state);
   }
 
   /// Draws what the world holds now.
   void draw() {
-    capture(world, snapshot);
-    skeleton_motions(world, snapshot);
-    surface_field(world, snapshot, frame);
+    capture(world.state, snapshot);
+    skeleton_motions(world.model, world.state, snapshot);
+    surface_field(world.model, snapshot, frame);
     positions.resize(frame.body_vertices.size());
     deform_vertices(frame, 0, positions);
   }
@@ -65,13 +65,13 @@ inline Drawn cube() {
 inline std::uint32_t twisting_region(World& world, double stick_turn, double stick_radius,
                                      double radius) {
   const std::uint32_t region = add_region(world, {.point = {0.0, 0.05, 0.0}, .radius = radius});
-  world.regions.at<RegionMotion>(region) = RegionMotion{};
-  world.regions.at<RegionMotion>(region).axis = kUp;
-  world.regions.at<RegionMotion>(region).axis_share = 1.0;
-  world.regions.at<RegionMotion>(region).largest_turn = std::abs(stick_turn);
-  world.regions.at<RegionMotion>(region).largest_rotation = 1.0;
-  world.regions.at<RegionFriction>(region).stick_turn = stick_turn;
-  world.regions.at<RegionFriction>(region).stick_radius = stick_radius;
+  world.state.regions.at<RegionMotion>(region) = RegionMotion{};
+  world.state.regions.at<RegionMotion>(region).axis = kUp;
+  world.state.regions.at<RegionMotion>(region).axis_share = 1.0;
+  world.state.regions.at<RegionMotion>(region).largest_turn = std::abs(stick_turn);
+  world.state.regions.at<RegionMotion>(region).largest_rotation = 1.0;
+  world.state.regions.at<RegionFriction>(region).stick_turn = stick_turn;
+  world.state.regions.at<RegionFriction>(region).stick_radius = stick_radius;
   return region;
 }
 
@@ -83,7 +83,7 @@ inline void press_sphere(World& world, double top, double depth, const glm::dvec
                      .force_on_body = {0.0, -1.0, 0.0},
                      .radius = radius,
                      .depth = depth});
-  world.tools.at<ToolPose>(0).now.position = glm::dvec3(place.x, top + 0.05 - depth, place.y);
+  world.state.tools.at<ToolPose>(0).now.position = glm::dvec3(place.x, top + 0.05 - depth, place.y);
 }
 
 }  // namespace torsion

@@ -264,7 +264,7 @@ TEST_P(DrawnTwistTest, IsLubkinsWithinEightRadii) {
   ball.press(test::kBallDepth, 200);
   ball.twist(GetParam().twist, 400);
   Snapshot snapshot;
-  snapshot.reserve(ball.hand.world());
+  snapshot.reserve(ball.hand.world().model, ball.hand.world().state);
   take_snapshot(ball.hand.simulation(), snapshot);
   const RegionField& field = snapshot.region_fields.at<RegionField>(0);
   TurnedDiscs discs;

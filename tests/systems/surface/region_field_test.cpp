@@ -41,14 +41,14 @@ TEST(RegionTwistTest, ADeepContactTurnsTheRestSurfaceByAllOfTheAngle) {
   Drawn drawn = cube();
   const std::uint32_t region =
       add_region(drawn.world, {.point = {0.0, 0.05, 0.0}, .radius = 0.02, .depth = 0.02});
-  RegionMotion& motion = drawn.world.regions.at<RegionMotion>(region);
+  RegionMotion& motion = drawn.world.state.regions.at<RegionMotion>(region);
   motion.axis = kUp;
   motion.axis_share = 1.0;
-  RegionFriction& friction = drawn.world.regions.at<RegionFriction>(region);
+  RegionFriction& friction = drawn.world.state.regions.at<RegionFriction>(region);
   friction.stick_turn = 0.4;
   friction.stick_radius = 0.02;
-  capture(drawn.world, drawn.snapshot);
-  const RegionTwist twist = region_twist(drawn.world, drawn.snapshot, region);
+  capture(drawn.world.state, drawn.snapshot);
+  const RegionTwist twist = region_twist(drawn.world.model, drawn.snapshot, region);
   EXPECT_NEAR(twist.angle({0.0, 0.05, 0.01}), 0.4, 1e-12);
   EXPECT_NEAR(twist.angle({0.0, 0.04, 0.01}), 0.4 * 0.9, 1e-12);
   EXPECT_NEAR(twist.angle({0.0, 0.0, 0.01}), 0.2, 1e-12);
@@ -96,10 +96,10 @@ TEST(RegionTwistTest, NothingBehindTheFixedPointTurns) {
   Drawn drawn(exact_body(ShapeKind::kEllipsoid, {0.06, 0.04, 0.05}, FixedKind::kPoint, 10));
   const std::uint32_t region = add_region(
       drawn.world, {.point = {0.06, 0.0, 0.0}, .normal = {1.0, 0.0, 0.0}, .radius = 0.01});
-  drawn.world.regions.at<RegionMotion>(region).axis_share = 1.0;
-  drawn.world.regions.at<RegionMotion>(region).axis = glm::dvec3(1.0, 0.0, 0.0);
-  drawn.world.regions.at<RegionFriction>(region).stick_turn = 0.5;
-  drawn.world.regions.at<RegionFriction>(region).stick_radius = 0.01;
+  drawn.world.state.regions.at<RegionMotion>(region).axis_share = 1.0;
+  drawn.world.state.regions.at<RegionMotion>(region).axis = glm::dvec3(1.0, 0.0, 0.0);
+  drawn.world.state.regions.at<RegionFriction>(region).stick_turn = 0.5;
+  drawn.world.state.regions.at<RegionFriction>(region).stick_radius = 0.01;
   drawn.draw();
   for (std::uint32_t v = 0; v < drawn.vertices(); ++v) {
     if (drawn.rest(v).x <= 0.0) {
@@ -121,11 +121,12 @@ TEST(RegionTwistTest, TorqueOfAnAxisThatMissesTheRegionTwistsBarsAsSaintVenantSa
     Drawn drawn(exact_body(bar.kind, bar.half, FixedKind::kFace, 12));
     const std::uint32_t region =
         add_region(drawn.world, {.point = {0.0, bar.half.y, 0.0}, .radius = 0.005});
-    drawn.world.regions.at<RegionMotion>(region).axis = kUp;
-    drawn.world.regions.at<RegionWrench>(region).on_tool.torque = -bar.torque * kUp;
-    drawn.world.tools.at<ToolMotion>(0).axis = kUp;
-    drawn.world.tools.at<ToolMotion>(0).axis_turn = 0.02;  // what is remembered of a long turn
-    drawn.world.tools.at<ToolMotion>(0).mass_center = glm::dvec3(0.0, 0.3, 0.0);
+    drawn.world.state.regions.at<RegionMotion>(region).axis = kUp;
+    drawn.world.state.regions.at<RegionWrench>(region).on_tool.torque = -bar.torque * kUp;
+    drawn.world.state.tools.at<ToolMotion>(0).axis = kUp;
+    drawn.world.state.tools.at<ToolMotion>(0).axis_turn =
+        0.02;  // what is remembered of a long turn
+    drawn.world.state.tools.at<ToolMotion>(0).mass_center = glm::dvec3(0.0, 0.3, 0.0);
     drawn.draw();
     for (std::uint32_t v = 0; v < drawn.vertices(); ++v) {
       const double share = (drawn.rest(v).y + bar.half.y) / (2.0 * bar.half.y);
@@ -146,10 +147,10 @@ TEST(RegionTwistTest, TorqueAgainstTheAxisTurnsTheSameWayAsAlongTheFlippedAxis) 
     const glm::dvec3 axis = i == 0 ? kUp : -kUp;
     const std::uint32_t region =
         add_region(drawn.world, {.point = {0.0, 0.05, 0.0}, .radius = 0.005});
-    drawn.world.regions.at<RegionMotion>(region).axis = axis;
-    drawn.world.regions.at<RegionWrench>(region).on_tool.torque = -0.1 * kUp;
-    drawn.world.tools.at<ToolMotion>(0).axis = axis;
-    drawn.world.tools.at<ToolMotion>(0).axis_turn = 0.02;
+    drawn.world.state.regions.at<RegionMotion>(region).axis = axis;
+    drawn.world.state.regions.at<RegionWrench>(region).on_tool.torque = -0.1 * kUp;
+    drawn.world.state.tools.at<ToolMotion>(0).axis = axis;
+    drawn.world.state.tools.at<ToolMotion>(0).axis_turn = 0.02;
     drawn.draw();
     const std::uint32_t v = 4 * 21 * 21;  // a corner of the top face
     ASSERT_NEAR(drawn.rest(v).y, 0.05, 1e-9);
@@ -162,14 +163,14 @@ TEST(RegionTwistTest, TorqueAgainstTheAxisTurnsTheSameWayAsAlongTheFlippedAxis) 
 TEST(RegionTwistTest, SharesOfTheAxisBlendWithoutAJump) {
   Drawn drawn(exact_body(ShapeKind::kBox, glm::dvec3(0.05), FixedKind::kFace, 2));
   const std::uint32_t region = twisting_region(drawn.world, 0.3, 0.01, 0.02);
-  drawn.world.regions.at<RegionWrench>(region).on_tool.torque = -0.5 * kUp;
-  drawn.world.tools.at<ToolMotion>(0).axis_turn = 0.02;
-  drawn.world.tools.at<ToolMotion>(0).mass_center = glm::dvec3(0.02, 0.1, 0.0);
+  drawn.world.state.regions.at<RegionWrench>(region).on_tool.torque = -0.5 * kUp;
+  drawn.world.state.tools.at<ToolMotion>(0).axis_turn = 0.02;
+  drawn.world.state.tools.at<ToolMotion>(0).mass_center = glm::dvec3(0.02, 0.1, 0.0);
   double before = 0.0;
   for (int i = 0; i <= 100; ++i) {
-    drawn.world.regions.at<RegionMotion>(region).axis_share = i / 100.0;
-    capture(drawn.world, drawn.snapshot);
-    const RegionTwist twist = region_twist(drawn.world, drawn.snapshot, region);
+    drawn.world.state.regions.at<RegionMotion>(region).axis_share = i / 100.0;
+    capture(drawn.world.state, drawn.snapshot);
+    const RegionTwist twist = region_twist(drawn.world.model, drawn.snapshot, region);
     const double angle = twist.angle({0.03, 0.05, 0.02});
     if (i > 0) {
       EXPECT_NEAR(angle, before, 0.005);
@@ -180,16 +181,16 @@ TEST(RegionTwistTest, SharesOfTheAxisBlendWithoutAJump) {
 
 TEST(RegionTwistTest, ARegionWithoutAFieldTurnsNothing) {
   Drawn drawn = cube();
-  drawn.world.bodies.at<BodyModels>(0).contact = ContactModel::kPatch;
+  drawn.world.model.bodies.at<BodyModels>(0).contact = ContactModel::kPatch;
   const std::uint32_t region =
       add_region(drawn.world, {.point = {0.0, 0.05, 0.0}, .radius = 0.01, .depth = 0.001});
-  RegionFriction& friction = drawn.world.regions.at<RegionFriction>(region);
+  RegionFriction& friction = drawn.world.state.regions.at<RegionFriction>(region);
   friction.stick_turn = 0.3;
   friction.stick_radius = 0.01;
-  drawn.world.regions.at<RegionMotion>(region).axis = kUp;
-  drawn.world.regions.at<RegionMotion>(region).axis_share = 1.0;
-  capture(drawn.world, drawn.snapshot);
-  const RegionTwist twist = region_twist(drawn.world, drawn.snapshot, region);
+  drawn.world.state.regions.at<RegionMotion>(region).axis = kUp;
+  drawn.world.state.regions.at<RegionMotion>(region).axis_share = 1.0;
+  capture(drawn.world.state, drawn.snapshot);
+  const RegionTwist twist = region_twist(drawn.world.model, drawn.snapshot, region);
   EXPECT_EQ(twist.angle({0.002, 0.05, 0.0}), 0.0);
   EXPECT_NEAR(glm::length(glm::vec3(twist.axis.direction)), 1.0F, 1e-6F);
 }

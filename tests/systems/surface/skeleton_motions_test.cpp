@@ -20,9 +20,9 @@ using std::numbers::pi;
 /// Of all anchors of the world.
 std::vector<AnchorMotion> skeleton_of(const World& world) {
   Snapshot snapshot;
-  snapshot.reserve(world);
-  capture(world, snapshot);
-  skeleton_motions(world, snapshot);
+  snapshot.reserve(world.model, world.state);
+  capture(world.state, snapshot);
+  skeleton_motions(world.model, world.state, snapshot);
   const auto motion = snapshot.anchors.column<AnchorMotion>();
   return {motion.begin(), motion.end()};
 }
@@ -47,7 +47,7 @@ TEST(SkeletonMotionsTest, TransverseTipForceGivesTimoshenkosDeflectionAlongTheBa
   add_region(bar.world, {.point = bar.tip, .force_on_body = {force, 0.0, 0.0}});
   const double moment = bar.kWidthZ * std::pow(bar.kWidthX, 3) / 12.0;  // bends about z
   const double tip_deflection = force * std::pow(bar.kLength, 3) / (3.0 * bar.youngs * moment);
-  const auto rest = bar.world.anchors.column<AnchorRest>();
+  const auto rest = bar.world.model.anchors.column<AnchorRest>();
   const auto motion = skeleton_of(bar.world);
   ASSERT_GE(rest.size(), 20U);
   for (std::size_t j = 0; j < rest.size(); ++j) {
@@ -69,7 +69,7 @@ TEST(SkeletonMotionsTest, AxialTipForceStretchesAndThinsTheBar) {
   const double force = 5.0;
   add_region(bar.world, {.point = bar.tip, .force_on_body = {0.0, -force, 0.0}});
   const double strain = -force / (bar.youngs * bar.area);
-  const auto rest = bar.world.anchors.column<AnchorRest>();
+  const auto rest = bar.world.model.anchors.column<AnchorRest>();
   const auto motion = skeleton_of(bar.world);
   for (std::size_t j = 0; j < rest.size(); ++j) {
     const double s = rest[j].position.y + bar.kLength / 2;
@@ -89,7 +89,7 @@ TEST(SkeletonMotionsTest, TipCoupleAcrossTheBarBendsItToACircularArc) {
                          .normal = {1.0, 0.0, 0.0},
                          .couple_on_body = couple});
   const double moment = bar.kWidthX * std::pow(bar.kWidthZ, 3) / 12.0;  // bends about x
-  const auto rest = bar.world.anchors.column<AnchorRest>();
+  const auto rest = bar.world.model.anchors.column<AnchorRest>();
   const auto motion = skeleton_of(bar.world);
   const double tip_deflection = couple * bar.kLength * bar.kLength / (2.0 * bar.youngs * moment);
   for (std::size_t j = 0; j < rest.size(); ++j) {
@@ -115,7 +115,7 @@ TEST(SkeletonMotionsTest, SeveralRegionsAdd) {
   const auto by_first = skeleton_of(alone_first.world);
   const auto by_second = skeleton_of(alone_second.world);
   const auto by_both = skeleton_of(both.world);
-  for (std::uint32_t j = 0; j < both.world.anchors.size(); ++j) {
+  for (std::uint32_t j = 0; j < both.world.model.anchors.size(); ++j) {
     const glm::dvec3 sum = by_first[j].displacement + by_second[j].displacement;
     EXPECT_NEAR(glm::length(by_both[j].displacement - sum), 0.0, 1e-15);
   }
@@ -130,7 +130,7 @@ TEST(SkeletonMotionsTest, BodyWithoutRegionsIsAtRest) {
 
 TEST(SkeletonMotionsTest, OtherBodyModelsLeaveTheAnchorsAtRest) {
   Bar bar;
-  bar.world.bodies.at<BodyModels>(0).body = BodyModel::kNone;
+  bar.world.model.bodies.at<BodyModels>(0).body = BodyModel::kNone;
   add_region(bar.world, {.point = bar.tip, .force_on_body = {1.0, -1.0, 0.0}});
   for (const AnchorMotion& motion : skeleton_of(bar.world)) {
     EXPECT_EQ(motion.displacement, glm::dvec3(0.0));
@@ -143,14 +143,14 @@ TEST(SkeletonMotionsTest, FixedFaceStaysUnderAnObliqueBeam) {
                          .normal = {1.0, 0.0, 0.0},
                          .force_on_body = {-3.0, 1.0, 2.0}});
   // An anchor put on the fixed face moves with the root.
-  bar.world.anchors.at<AnchorRest>(7).position = glm::dvec3(0.012, -0.1, -0.02);
+  bar.world.model.anchors.at<AnchorRest>(7).position = glm::dvec3(0.012, -0.1, -0.02);
   EXPECT_NEAR(glm::length(skeleton_of(bar.world)[7].displacement), 0.0, 1e-15);
 }
 
 TEST(SkeletonMotionsTest, FixedPointStays) {
   const glm::dvec3 half(0.06, 0.04, 0.05);
   World world = body_world(exact_body(ShapeKind::kEllipsoid, half, FixedKind::kPoint));
-  world.anchors.at<AnchorRest>(7).position = glm::dvec3(0.0, -half.y, 0.0);
+  world.model.anchors.at<AnchorRest>(7).position = glm::dvec3(0.0, -half.y, 0.0);
   add_region(world, {.point = {0.0, half.y, 0.0}, .force_on_body = {1.0, -5.0, 0.5}});
   EXPECT_NEAR(glm::length(skeleton_of(world)[7].displacement), 0.0, 1e-15);
 }
@@ -166,7 +166,7 @@ TEST(SkeletonMotionsTest, AnchorsMoveContinuouslyWhileTheContactSlides) {
     const double angle = 1.0 * i / kSteps;
     const glm::dvec3 point = half * glm::dvec3(std::sin(angle), std::cos(angle), 0.0);
     const glm::dvec3 normal = glm::normalize(point / (half * half));
-    world.regions.clear();
+    world.state.regions.clear();
     add_region(world, {.point = point, .normal = normal, .force_on_body = -2.0 * normal});
     const auto motion = skeleton_of(world);
     for (std::size_t j = 0; j < before.size(); ++j) {

@@ -39,7 +39,7 @@ TEST(SurfaceFieldTest, FixedVerticesStay) {
 TEST(SurfaceFieldTest, VertexAtAnAnchorMovesWithIt) {
   BodyDescription body = exact_body(ShapeKind::kBox, {0.015, 0.1, 0.025}, FixedKind::kFace, 8);
   const World first = body_world(body);
-  for (const AnchorRest& anchor : first.anchors.column<AnchorRest>()) {
+  for (const AnchorRest& anchor : first.model.anchors.column<AnchorRest>()) {
     body.draw.positions.emplace_back(anchor.position);
     body.draw.normals.emplace_back(glm::vec3(0.0F, 1.0F, 0.0F));
     body.draw.fixed.push_back(false);
@@ -48,7 +48,7 @@ TEST(SurfaceFieldTest, VertexAtAnAnchorMovesWithIt) {
   add_region(drawn.world,
              {.point = {0.0, 0.1, 0.0}, .force_on_body = {0.2, -1.0, 0.1}, .radius = 0.0});
   drawn.draw();
-  const std::uint32_t count = drawn.world.anchors.size();
+  const std::uint32_t count = drawn.world.model.anchors.size();
   double largest = 0.0;
   for (std::uint32_t j = 0; j < count; ++j) {
     const glm::dvec3 wanted = drawn.snapshot.anchors.at<AnchorMotion>(j).displacement;
@@ -89,7 +89,8 @@ TEST(SurfaceFieldTest, NoVertexIsInsideTheTool) {
     drawn.draw();
     double touching = 0;
     for (std::uint32_t v = 0; v < drawn.vertices(); ++v) {
-      const glm::dvec3 in_tool = to_inner(drawn.world.tools.at<ToolPose>(0).now, drawn.moved(v));
+      const glm::dvec3 in_tool =
+          to_inner(drawn.world.state.tools.at<ToolPose>(0).now, drawn.moved(v));
       const double gap = glm::length(in_tool) - 0.05;
       EXPECT_GT(gap, -1e-7);  // two roundings to float of coordinates of 0.1 m
       touching += gap < 1e-4 ? 1 : 0;
@@ -110,19 +111,20 @@ TEST(SurfaceFieldTest, BesideASteepWallVerticesGoToTheWallNotDownAllOfIt) {
     body.draw.fixed.push_back(false);
   }
   Drawn drawn(body);
-  ShapePart& pin = drawn.world.parts.at<ShapePart>(1);
+  ShapePart& pin = drawn.world.model.parts.at<ShapePart>(1);
   pin.kind = ShapeKind::kCapsule;
   pin.half_extent = glm::dvec3(0.005, 0.03, 0.005);
-  drawn.world.tools.at<Bounds>(0) = {-pin.half_extent, pin.half_extent};
+  drawn.world.model.tools.at<Bounds>(0) = {-pin.half_extent, pin.half_extent};
   const double depth = 0.012;
-  drawn.world.tools.at<ToolPose>(0).now.position = glm::dvec3(0.0, 0.05 + 0.03 - depth, 0.0);
+  drawn.world.state.tools.at<ToolPose>(0).now.position = glm::dvec3(0.0, 0.05 + 0.03 - depth, 0.0);
   add_region(drawn.world, {.point = {0.0, 0.05, 0.0}, .radius = 0.005, .depth = depth});
   drawn.draw();
   for (std::uint32_t v = 0; v < drawn.vertices(); ++v) {
     // Pushed out of the pin, but never farther than its tip is deep.
     EXPECT_LT(glm::distance(drawn.moved(v), drawn.rest(v)), 1.01 * depth);
-    const glm::dvec3 in_tool = to_inner(drawn.world.tools.at<ToolPose>(0).now, drawn.moved(v));
-    EXPECT_GT(signed_distance(drawn.world, {1, 1}, in_tool).value, -1e-7);
+    const glm::dvec3 in_tool =
+        to_inner(drawn.world.state.tools.at<ToolPose>(0).now, drawn.moved(v));
+    EXPECT_GT(signed_distance(drawn.world.model, {1, 1}, in_tool).value, -1e-7);
   }
   for (auto v = static_cast<std::uint32_t>(first + 1); v < drawn.vertices(); ++v) {
     // The wall holds neighbours: the surface is stretched along it, not torn.
@@ -144,7 +146,8 @@ TEST(SurfaceFieldTest, SurfaceUnderTheSphereLiesOnIt) {
     const glm::dvec3 x = drawn.rest(v);
     if (x.y > 0.05 - 1e-9 && std::hypot(x.x, x.z) < 0.95 * contact_radius) {
       const double gap =
-          glm::distance(drawn.moved(v), drawn.world.tools.at<ToolPose>(0).now.position) - 0.05;
+          glm::distance(drawn.moved(v), drawn.world.state.tools.at<ToolPose>(0).now.position) -
+          0.05;
       EXPECT_NEAR(gap, 0.0, 0.01 * depth);
       EXPECT_GT(drawn.frame.body_vertices.at<VertexDisplacement>(v).displacement.w, 0.0F);
       ++seen;
@@ -166,10 +169,10 @@ TEST(SurfaceFieldTest, FieldIsContinuousAcrossTheRegionsRim) {
   }
   Drawn drawn(body);
   press_sphere(drawn.world, 0.05, 0.006, {0.004, 0.0});
-  drawn.world.regions.at<RegionFriction>(0).stick_turn = 0.3;
-  drawn.world.regions.at<RegionFriction>(0).stick_radius = 0.01;
-  drawn.world.regions.at<RegionMotion>(0).axis_share = 1.0;
-  drawn.world.regions.at<RegionMotion>(0).axis = kUp;
+  drawn.world.state.regions.at<RegionFriction>(0).stick_turn = 0.3;
+  drawn.world.state.regions.at<RegionFriction>(0).stick_radius = 0.01;
+  drawn.world.state.regions.at<RegionMotion>(0).axis_share = 1.0;
+  drawn.world.state.regions.at<RegionMotion>(0).axis = kUp;
   drawn.draw();
   for (std::size_t i = first + 1; i < first + kPoints; ++i) {
     const auto v = static_cast<std::uint32_t>(i);
@@ -180,8 +183,8 @@ TEST(SurfaceFieldTest, FieldIsContinuousAcrossTheRegionsRim) {
     EXPECT_NEAR(drawn.twist(0, v), drawn.twist(0, v - 1), 1e-3);
     const float pressure = drawn.frame.body_vertices.at<VertexDisplacement>(v).displacement.w;
     const float before = drawn.frame.body_vertices.at<VertexDisplacement>(v - 1).displacement.w;
-    const double mean = drawn.world.regions.at<RegionNormal>(0).force /
-                        drawn.world.regions.at<RegionGeometry>(0).area;
+    const double mean = drawn.world.state.regions.at<RegionNormal>(0).force /
+                        drawn.world.state.regions.at<RegionGeometry>(0).area;
     EXPECT_NEAR(static_cast<double>(pressure - before), 0.0, 0.02 * mean);
   }
 }
@@ -190,7 +193,7 @@ TEST(SurfaceFieldTest, BodyWithoutContactIsDrawnAtRest) {
   Drawn drawn = cube();
   twisting_region(drawn.world, 0.1, 0.01, 0.02);
   drawn.draw();
-  drawn.world.regions.clear();
+  drawn.world.state.regions.clear();
   drawn.draw();
   EXPECT_EQ(drawn.frame.bodies.at<FrameBody>(0).regions_drawn, 0U);
   for (std::uint32_t v = 0; v < drawn.vertices(); ++v) {
@@ -201,8 +204,8 @@ TEST(SurfaceFieldTest, BodyWithoutContactIsDrawnAtRest) {
 
 TEST(SurfaceFieldTest, ToolsAreDrawnWhereTheSnapshotHasThem) {
   Drawn drawn = cube();
-  drawn.world.tools.at<ToolPose>(0).now = {glm::dvec3(1.0, 2.0, 3.0),
-                                           glm::dquat(0.6, 0.8, 0.0, 0.0)};
+  drawn.world.state.tools.at<ToolPose>(0).now = {glm::dvec3(1.0, 2.0, 3.0),
+                                                 glm::dquat(0.6, 0.8, 0.0, 0.0)};
   drawn.draw();
   EXPECT_EQ(drawn.frame.tools.at<Pose>(0).position, glm::dvec3(1.0, 2.0, 3.0));
   EXPECT_EQ(drawn.frame.tools.at<Pose>(0).rotation, glm::dquat(0.6, 0.8, 0.0, 0.0));

@@ -64,18 +64,18 @@ TEST(ComplianceTest, TwistOfAColumnAndOfItsContactAdd) {
                         2.0 * half.y);
   hand.move(glm::dvec3(0.0, -8e-4, 0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 200);
   hand.move(glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 20);
-  const RegionSupport pressed = hand.world().regions.at<RegionSupport>(0);
+  const RegionSupport pressed = hand.world().state.regions.at<RegionSupport>(0);
   constexpr double kTurn = 1e-3;
   hand.move(glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), kTurn, 100);
   hand.move(glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 20);
-  const double a = hand.world().regions.at<RegionGeometry>(0).radius;
+  const double a = hand.world().state.regions.at<RegionGeometry>(0).radius;
   const double disc = 16.0 / 3.0 * kSoftShearModulus * a * a * a;
   const double length = 2.0 * half.y - 0.35 * side;
   const double bar = 0.140577 * kSoftShearModulus * std::pow(side, 4) / length;
   const double in_series = disc * bar / (disc + bar);
   ASSERT_GT(disc / bar, 0.05);
   EXPECT_NEAR(-hand.wrench().torque.y / kTurn / in_series, 1.0, 0.005 + 0.04 * disc / bar);
-  const RegionSupport& support = hand.world().regions.at<RegionSupport>(0);
+  const RegionSupport& support = hand.world().state.regions.at<RegionSupport>(0);
   const double turned = support.rotation.y - pressed.rotation.y;
   EXPECT_NEAR(turned / (kTurn * in_series / bar), 1.0, 0.04);
   // Pressing turns nothing, by symmetry; the ports are not placed symmetrically.
@@ -93,7 +93,7 @@ TEST(ComplianceTest, ABodyThatGivesWayIsPressedLess) {
     hand->move(glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 50);
   }
   // What is left of the depth presses as on the half-space: F ~ depth^1.5.
-  const double sunk = -soft.world().regions.at<RegionSupport>(0).translation.y;
+  const double sunk = -soft.world().state.regions.at<RegionSupport>(0).translation.y;
   EXPECT_GT(sunk, 5e-5);
   EXPECT_NEAR(normal_force(soft) / normal_force(stiff), std::pow(1.0 - sunk / 1e-3, 1.5), 0.02);
 }
@@ -108,7 +108,7 @@ TEST(ComplianceTest, AHigherColumnSinksByTheStretchOfWhatIsAdded) {
         box_scene(half, {ball_at(0.0)}, ContactModel::kPatch, BodyModel::kCompliance), height);
     hand.move(glm::dvec3(0.0, -1e-3, 0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 100);
     hand.move(glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 50);
-    return -hand.world().regions.at<RegionSupport>(0).translation.y / normal_force(hand);
+    return -hand.world().state.regions.at<RegionSupport>(0).translation.y / normal_force(hand);
   };
   const double bar = 1.0 / (3.0 * kSoftShearModulus * 0.04 * 0.04);  // 1/N: E A, E = 3 G
   const double low = compliance_of(0.08);
@@ -122,7 +122,7 @@ TEST(ComplianceTest, ComesBackToRest) {
       0.06);
   hand.move(glm::dvec3(0.0, -1e-3, 0.0), glm::dvec3(0.0, 1.0, 0.0), 0.2, 100);
   Snapshot snapshot;
-  snapshot.reserve(hand.world());
+  snapshot.reserve(hand.world().model, hand.world().state);
   take_snapshot(hand.simulation(), snapshot);
   double most = 0.0;
   for (const AnchorMotion& anchor : snapshot.anchors.column<AnchorMotion>()) {
@@ -130,7 +130,7 @@ TEST(ComplianceTest, ComesBackToRest) {
   }
   EXPECT_GT(most, 1e-5);
   hand.move(glm::dvec3(0.0, 2e-3, 0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 100);
-  EXPECT_EQ(hand.world().regions.size(), 0U);
+  EXPECT_EQ(hand.world().state.regions.size(), 0U);
   EXPECT_EQ(glm::length(hand.wrench().force), 0.0);
   take_snapshot(hand.simulation(), snapshot);
   for (const AnchorMotion& anchor : snapshot.anchors.column<AnchorMotion>()) {
@@ -148,7 +148,7 @@ TEST(ComplianceTest, TheOrderOfRegionsDoesNotMatter) {
                           0.08);
     hand.move(glm::dvec3(0.0, -1e-3, 0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 100);
     hand.move(glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), 0.1, 100);
-    EXPECT_EQ(hand.world().regions.size(), 2U);
+    EXPECT_EQ(hand.world().state.regions.size(), 2U);
     return hand.wrench();
   };
   const Wrench one = pressed(-0.022, 0.023);
@@ -192,10 +192,10 @@ struct Laid {
   std::vector<std::uint64_t> couplings;
 
   explicit Laid(const World& world) {
-    for (const Footing& footing : world.footings.column<Footing>()) {
+    for (const Footing& footing : world.state.footings.column<Footing>()) {
       footings.push_back(footing.serial);
     }
-    for (const RegionCoupling& coupling : world.couplings.column<RegionCoupling>()) {
+    for (const RegionCoupling& coupling : world.state.couplings.column<RegionCoupling>()) {
       couplings.push_back(
           coupling.serial_to == 0 ? 0 : coupling.serial_to * 100003 + coupling.serial_from);
     }
@@ -234,12 +234,13 @@ TEST(ComplianceTest, AStepLaysOneFootingAndTheForceDoesNotJump) {
   glm::dvec3 force(0.0);
   for (int step = 0; step < 700; ++step) {
     const bool presses = step < 100;
-    const std::uint32_t regions = hand.world().regions.size();
+    const std::uint32_t regions = hand.world().state.regions.size();
     hand.move(presses ? glm::dvec3(0.0, -1e-5, 0.0) : glm::dvec3(2e-5, 0.0, 1e-5),
               glm::dvec3(0.0, 1.0, 0.0), 0.0, 1);
     const Laid now(hand.world());
     const std::size_t footings = Laid::newer(now.footings, before.footings);
-    most_footings = std::max(most_footings, footings - (hand.world().regions.size() - regions));
+    most_footings =
+        std::max(most_footings, footings - (hand.world().state.regions.size() - regions));
     most_couplings = std::max(most_couplings, Laid::newer(now.couplings, before.couplings));
     if (step > 300) {
       laid += footings;
@@ -248,7 +249,7 @@ TEST(ComplianceTest, AStepLaysOneFootingAndTheForceDoesNotJump) {
     force = hand.wrench().force;
     before = now;
   }
-  EXPECT_EQ(hand.world().regions.size(), 9U);
+  EXPECT_EQ(hand.world().state.regions.size(), 9U);
   EXPECT_EQ(most_footings, 1U);
   EXPECT_LE(most_couplings, 16U);
   EXPECT_GT(laid, 9U);

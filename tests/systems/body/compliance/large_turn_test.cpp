@@ -84,36 +84,36 @@ class LargeTurnTest : public ::testing::Test {
   LargeTurnTest() : scene_(column_scene()), hand_(scene_) {
     hand_.step_to({{(kColumnHeight + 0.02) * kUp, glm::dquat(1.0, 0.0, 0.0, 0.0)}});
     hand_.move(-1e-3 * kUp, kUp, 0.0, 10);
-    frame_ = prepare_frame(scene_, hand_.world());
-    snapshot_.reserve(hand_.world());
+    frame_ = prepare_frame(scene_, hand_.world().model, hand_.world().state);
+    snapshot_.reserve(hand_.world().model, hand_.world().state);
     positions_.resize(frame_.body_vertices.size());
   }
 
   /// A force [N] and a couple [N m] about the column's axis, on the material.
   void draw(const glm::dvec3& force, double couple) {
     World& world = hand_.simulation().world;
-    ASSERT_EQ(world.regions.size(), 1U);
-    RegionFrame& grid = world.regions.at<RegionFrame>(0);
+    ASSERT_EQ(world.state.regions.size(), 1U);
+    RegionFrame& grid = world.state.regions.at<RegionFrame>(0);
     grid.origin = kColumnHeight * kUp;
     grid.normal = kUp;
     grid.tangent_x = {1.0, 0.0, 0.0};
     grid.tangent_y = {0.0, 0.0, -1.0};
-    RegionGeometry& geometry = world.regions.at<RegionGeometry>(0);
+    RegionGeometry& geometry = world.state.regions.at<RegionGeometry>(0);
     geometry.rest_point = grid.origin;
     geometry.equivalent_point = grid.origin;
     geometry.radius = kContact;
     geometry.largest_depth = 0.0;  // nothing is dented
-    world.regions.at<RegionNormal>(0).force = -force.y;
-    RegionFriction& friction = world.regions.at<RegionFriction>(0);
+    world.state.regions.at<RegionNormal>(0).force = -force.y;
+    RegionFriction& friction = world.state.regions.at<RegionFriction>(0);
     friction.force = {-force.x, force.z};
     friction.couple = -couple;
-    capture(world, snapshot_);
+    capture(world.state, snapshot_);
     RegionField& field = snapshot_.region_fields.at<RegionField>(0);
     field.radius = kContact;  // a bonded disc: Reissner and Sagoci, 1944
     field.turn[kFieldDiscs - 1] =
         couple / (16.0 / 3.0 * kSoftShearModulus * std::pow(kContact, 3.0));
-    anchor_motions(world, snapshot_);
-    surface_field(world, snapshot_, frame_);
+    anchor_motions(world.model, world.state, snapshot_);
+    surface_field(world.model, snapshot_, frame_);
     deform_vertices(frame_, 0, positions_);
   }
 
@@ -269,15 +269,15 @@ TEST(TurnedByAToolTest, SurfaceTurnsWithTheToolAndTheColumnSwellsOnlyByTheForce)
   hand.move(-4e-3 * kUp, kUp, 0.0, 100);
   hand.move(glm::dvec3(0.0), kUp, kQuarter, 1600);
   hand.move(glm::dvec3(0.0), kUp, 0.0, 16);
-  FrameWorld frame = prepare_frame(scene, hand.world());
+  FrameWorld frame = prepare_frame(scene, hand.world().model, hand.world().state);
   Snapshot snapshot;
-  snapshot.reserve(hand.world());
+  snapshot.reserve(hand.world().model, hand.world().state);
   take_snapshot(hand.simulation(), snapshot);
-  surface_field(hand.world(), snapshot, frame);
+  surface_field(hand.world().model, snapshot, frame);
   std::vector<glm::vec4> positions(frame.body_vertices.size());
   deform_vertices(frame, 0, positions);
   EXPECT_NEAR(static_cast<double>(positions.back().w), kQuarter, 0.05 * kQuarter);
-  EXPECT_GT(hand.world().regions.at<RegionSupport>(0).rotation.y, 0.3);
+  EXPECT_GT(hand.world().state.regions.at<RegionSupport>(0).rotation.y, 0.3);
   const double area = std::numbers::pi * kColumnRadius * kColumnRadius;
   const double swollen = 0.5 * hand.wrench().force.y / (3.0 * kSoftShearModulus * area);
   for (std::uint32_t ring = 8; ring < kEnd; ++ring) {

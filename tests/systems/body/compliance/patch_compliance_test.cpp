@@ -147,7 +147,7 @@ TEST_P(PatchComplianceTest, AddsInAStepWhatTheStepBeforeAdded) {
   std::uniform_real_distribution<double> part(-1.0, 1.0);
   constexpr int kSteps = 50;
   hand.move(glm::dvec3(0.0, -ground.depth, 0.0), kUp, 0.0, kSteps);
-  const double modulus = hand.world().bodies.at<Elasticity>(0).contact_modulus();
+  const double modulus = hand.world().model.bodies.at<Elasticity>(0).contact_modulus();
   for (int leg = 0; leg < 3; ++leg) {
     const glm::dvec3 way =
         ground.depth * glm::dvec3(part(random), 0.3 * part(random), part(random));
@@ -155,7 +155,7 @@ TEST_P(PatchComplianceTest, AddsInAStepWhatTheStepBeforeAdded) {
     // There and back, so that it stays on the body.
     for (const double sign : {1.0, -1.0}) {
       const double bend = largest_bend(hand, sign * way, sign * turn, kSteps);
-      const double radius = hand.world().regions.at<RegionGeometry>(0).radius;
+      const double radius = hand.world().state.regions.at<RegionGeometry>(0).radius;
       const double step = (glm::length(way) + std::abs(turn) * radius) / kSteps;
       EXPECT_LT(bend, 2.0 * modulus * radius * step) << leg << " " << sign;
     }
@@ -197,8 +197,8 @@ TEST(FootingResponseTest, IsWhatThePortsMakeOfMoments) {
   Hand hand = hand_over(kGrounds[1], 12, 2);
   hand.move(glm::dvec3(0.0, -1e-3, 0.0), kUp, 0.0, 50);
   const World& world = hand.world();
-  const PortCompliance ports = ports_of(world, 0);
-  const Footing& footing = world.footings.at<Footing>(0);
+  const PortCompliance ports = ports_of(world.model, 0);
+  const Footing& footing = world.state.footings.at<Footing>(0);
   ASSERT_GT(footing.count, 10U);
   FootingResponse response;
   find_response(ports, footing, response);

@@ -105,7 +105,7 @@ Swapped compare(Hand& one, Hand& other, const std::vector<std::uint32_t>& rows,
       result.step = std::max(result.step, apart(one.wrench(tool), before[tool], kLever));
     }
   }
-  EXPECT_EQ(one.world().regions.size(), 2U);
+  EXPECT_EQ(one.world().state.regions.size(), 2U);
   EXPECT_EQ(one.clock().faults_ever | other.clock().faults_ever, 0U);
   return result;
 }
@@ -165,7 +165,7 @@ TEST_P(PatchRegionsTest, TwoFarFeetCarryWhatTwoSingleFeetDo) {
     worst = std::max(worst, apart(hands[0].wrench(), singles, kFoot));
   }
   EXPECT_LE(worst, 0.005 * hands[0].wrench().force.y);
-  EXPECT_EQ(hands[0].world().regions.size(), 2U);
+  EXPECT_EQ(hands[0].world().state.regions.size(), 2U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Grounds, PatchRegionsTest,

@@ -222,9 +222,10 @@ TEST(ForceBoundTest, AForceBeyondARigidPunchIsAFaultAndFades) {
   const double before = hand.wrench().force.y;
   ASSERT_GT(before, 1.0);
   Simulation& simulation = hand.simulation();
-  StepContext context = simulation.scratch->context(simulation.world, hand.poses);
-  simulation.world.bodies.at<BodyModels>(0).contact = ContactModel::kMdr;
-  simulation.world.regions.at<RegionNormal>(0).force = 1e4;
+  StepContext context =
+      simulation.scratch->context(simulation.world.model, simulation.world.state, hand.poses);
+  simulation.world.model.bodies.at<BodyModels>(0).contact = ContactModel::kMdr;
+  simulation.world.state.regions.at<RegionNormal>(0).force = 1e4;
   region_wrenches(context);
   sum_wrenches(context);
   EXPECT_TRUE(raised(hand.clock().faults, Fault::kForceTooLarge));
@@ -244,8 +245,9 @@ TEST(ForceBoundTest, AForceForWhichNobodyHasWorkedIsAFault) {
   hand.move({0.0, -0.0025, 0.0}, {0.0, 1.0, 0.0}, 0.0, 100);
   ASSERT_EQ(hand.clock().faults_ever, 0U);
   Simulation& simulation = hand.simulation();
-  StepContext context = simulation.scratch->context(simulation.world, hand.poses);
-  RegionNormal& normal = simulation.world.regions.at<RegionNormal>(0);
+  StepContext context =
+      simulation.scratch->context(simulation.world.model, simulation.world.state, hand.poses);
+  RegionNormal& normal = simulation.world.state.regions.at<RegionNormal>(0);
   normal.force *= 5.0;
   region_wrenches(context);
   EXPECT_TRUE(raised(hand.clock().faults, Fault::kForceTooLarge));
@@ -260,9 +262,10 @@ TEST(ForceBoundTest, AWrongForceHasDoneNoWork) {
   hand.step_to({{glm::dvec3(0.0, 0.151, 0.0), glm::dquat(1, 0, 0, 0)}});
   hand.move({0.0, -0.0025, 0.0}, {0.0, 1.0, 0.0}, 0.0, 100);
   Simulation& simulation = hand.simulation();
-  StepContext context = simulation.scratch->context(simulation.world, hand.poses);
+  StepContext context =
+      simulation.scratch->context(simulation.world.model, simulation.world.state, hand.poses);
   for (const double times : {1000.0, 5.0}) {
-    simulation.world.regions.at<RegionNormal>(0).force *= times;
+    simulation.world.state.regions.at<RegionNormal>(0).force *= times;
     region_wrenches(context);
     EXPECT_TRUE(raised(hand.clock().faults, Fault::kForceTooLarge)) << times;
     hand.move({0.0, -2.5e-5, 0.0}, {0.0, 1.0, 0.0}, 0.0, 1);

@@ -114,8 +114,8 @@ TEST(BeamSpringTest, ASquareBarHasEAOverL) {
   const double side = 0.1;
   const World world =
       body_world(exact_body(ShapeKind::kBox, glm::dvec3(side / 2), FixedKind::kFace));
-  const BeamSpring spring =
-      beam_spring(main_beam(world, 0, {0.0, side / 2, 0.0}), world.bodies.at<Elasticity>(0));
+  const BeamSpring spring = beam_spring(main_beam(world.model, 0, {0.0, side / 2, 0.0}),
+                                        world.model.bodies.at<Elasticity>(0));
   EXPECT_NEAR(spring.length, side, 1e-12);
   EXPECT_NEAR(spring.stiffness / (3e6 * side), 1.0, 5e-3);
 }

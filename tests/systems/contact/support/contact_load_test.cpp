@@ -25,12 +25,12 @@ test::Hand pressed_and_turned() {
 TEST(ContactLoadTest, MomentsAreTheSumsOverTheCells) {
   const test::Hand hand = pressed_and_turned();
   const World& world = hand.world();
-  ASSERT_EQ(world.regions.size(), 1U);
-  const RegionFrame& frame = world.regions.at<RegionFrame>(0);
-  const Range rows = world.regions.at<RegionIdentity>(0).cells;
-  const auto tractions = world.cells.rows<CellTraction>(rows);
-  const std::uint32_t side = world.settings.at<Settings>(0).grid_side;
-  const Footing& footing = world.footings.at<Footing>(rows.first / rows.count);
+  ASSERT_EQ(world.state.regions.size(), 1U);
+  const RegionFrame& frame = world.state.regions.at<RegionFrame>(0);
+  const Range rows = world.state.regions.at<RegionIdentity>(0).cells;
+  const auto tractions = world.state.cells.rows<CellTraction>(rows);
+  const std::uint32_t side = world.model.settings.grid_side;
+  const Footing& footing = world.state.footings.at<Footing>(rows.first / rows.count);
   SupportMoments moments{};
   glm::dvec3 couple(0.0);
   double friction = 0.0;
@@ -51,7 +51,7 @@ TEST(ContactLoadTest, MomentsAreTheSumsOverTheCells) {
     friction += glm::length(tractions[cell].traction);
   }
   ASSERT_GT(friction, 0.0);
-  const ContactLoad load = contact_load(world, 0, footing);
+  const ContactLoad load = contact_load(world.model, world.state, 0, footing);
   const double force = glm::length(moments[0]);
   for (std::size_t k = 0; k < kSupportTerms; ++k) {
     EXPECT_LT(glm::distance(load.moments[k], moments[k]), 1e-12 * force) << k;

@@ -1,4 +1,4 @@
-// A saved world in which bytes are changed and the checksum is right again, so that what comes
+// A saved state in which bytes are changed and the checksum is right again, so that what comes
 // after it is read. The input is a list of changes: four bytes say where, one says what.
 
 #include <cstddef>
@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <span>
+#include <utility>
 #include <vector>
 
 #define XXH_INLINE_ALL
@@ -17,6 +18,7 @@
 namespace {
 
 struct Base {
+  torsion::Model model;
   std::vector<std::byte> bytes;
   std::size_t content = 0;  // where it begins, behind the header, which ends with its checksum
 };
@@ -31,7 +33,9 @@ Base make_base() {
   options.body_model = torsion::BodyModel::kNone;
   options.use_cache = false;
   auto simulation = torsion::prepare(torsion::test::ball_on_cube(), options);
-  Base base{torsion::to_bytes(simulation.value().world), 0};
+  torsion::World& world = simulation.value().world;
+  std::vector<std::byte> bytes = torsion::to_bytes(world.model, world.state);
+  Base base{std::move(world.model), std::move(bytes), 0};
   for (std::size_t at = sizeof(std::uint64_t); at < 256; ++at) {
     std::uint64_t there = 0;
     std::memcpy(&there, base.bytes.data() + at - sizeof there, sizeof there);
@@ -57,6 +61,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const std::uint64_t checksum = checksum_of(std::span(bytes).subspan(base.content));
   std::memcpy(bytes.data() + base.content - sizeof checksum, &checksum, sizeof checksum);
-  const auto world = torsion::from_bytes(bytes, "fuzz");
-  return world || !world.error().text.empty() ? 0 : 1;
+  const auto state = torsion::from_bytes(bytes, base.model, "fuzz");
+  return state || !state.error().text.empty() ? 0 : 1;
 }

@@ -1,7 +1,8 @@
 #pragma once
 
-// Every component of the simulation: one plain struct is one column of one table (ecs/world.hpp
-// lists the tables). Units are SI: m, kg, s, N, N m, rad, Pa. A frame is named with every vector:
+// Every component of the simulation: one plain struct is one column of one table (ecs/model.hpp
+// and ecs/state.hpp list the tables). Units are SI: m, kg, s, N, N m, rad, Pa. A frame is named
+// with every vector:
 //
 // - world: the scene's frame, +Y up.
 // - body: the elastic node's frame without its scale; a body does not move, so this is a fixed

@@ -27,8 +27,8 @@ struct FrameBody {
 /// The frame world: per-vertex columns, laid out as the GPU reads them. Nothing of it is read by a
 /// physics step.
 struct FrameWorld {
-  Table<Pose, DrawRange, FrameBody> bodies;  // row = row of World::bodies
-  Table<Pose, DrawRange> tools;  // row = row of World::tools; pose written by surface_field
+  Table<Pose, DrawRange, FrameBody> bodies;  // row = row of Model::bodies
+  Table<Pose, DrawRange> tools;  // row = row of Model::tools; pose written by surface_field
   Table<VertexRest, VertexNormal, VertexDisplacement> body_vertices;
   Table<TwistAngle> twist;
   Table<TwistAxis> axes;

@@ -8,8 +8,8 @@
 
 namespace torsion {
 
-/// How large the tables of a world are. Set at load; a full table sets a fault that names the limit
-/// to raise.
+/// How large the tables of a model and its state are. Set at load; a full table sets a fault that
+/// names the limit to raise.
 struct Capacities {
   std::uint32_t bodies = 0;
   std::uint32_t tools = 0;

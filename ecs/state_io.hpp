@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ecs/result.hpp"
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 
 namespace torsion {
 

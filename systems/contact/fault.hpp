@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 
 namespace torsion {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 #include "systems/contact/scratch.hpp"
 
 namespace torsion {

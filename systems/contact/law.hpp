@@ -10,7 +10,7 @@
 #include <glm/vec2.hpp>
 
 #include "ecs/schedule.hpp"
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 #include "systems/contact/step_context.hpp"
 
 namespace torsion {

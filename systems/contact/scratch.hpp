@@ -9,7 +9,7 @@
 
 #include "ecs/column.hpp"
 #include "ecs/components.hpp"
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 #include "systems/contact/group_points.hpp"
 #include "systems/geometry/distance.hpp"
 
@@ -112,7 +112,7 @@ class CellColumnMemory {
 };
 
 /// Memory that the systems of one step share about contacts. Reserved at load; nothing in it
-/// outlives a step, so that a saved world replays without it.
+/// outlives a step, so that a saved state replays without it.
 struct ContactScratch {
   // detect_contacts
   std::vector<SampleState> sample_states;    // (samples)

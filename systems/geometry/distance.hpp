@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "ecs/world.hpp"
+#include "ecs/model.hpp"
 
 namespace torsion {
 

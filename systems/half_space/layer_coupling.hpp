@@ -4,7 +4,7 @@
 
 #include <glm/mat3x3.hpp>
 
-#include "ecs/world.hpp"
+#include "ecs/model.hpp"
 
 namespace torsion {
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 #include "systems/hold/virtual_coupling.hpp"
 #include "systems/math/matrix6.hpp"
 

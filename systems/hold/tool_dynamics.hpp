@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 #include "systems/hold/virtual_coupling.hpp"
 
 namespace torsion {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 #include "systems/hold/virtual_coupling.hpp"
 
 namespace torsion {

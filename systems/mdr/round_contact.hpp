@@ -6,7 +6,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 #include "systems/mdr/places.hpp"
 
 namespace torsion {

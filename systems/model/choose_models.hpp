@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "ecs/world.hpp"
+#include "ecs/model.hpp"
 #include "systems/model/options.hpp"
 
 namespace torsion {
@@ -26,7 +26,7 @@ struct ExpectedContact {
 };
 
 /// Looks where the samples of all tools come to lie in `body` on their expected poses.
-/// @param world  shapes, samples, tools and bodies are there
+/// @param model  shapes, samples, tools and bodies are there
 /// @param poses  (times) of (tools); empty: unknown
 ExpectedContact expect_contact(const Model& model, std::uint32_t body,
                                std::span<const std::vector<Pose>> poses);

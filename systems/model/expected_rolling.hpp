@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "ecs/world.hpp"
+#include "ecs/model.hpp"
 
 namespace torsion {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ecs/world.hpp"
+#include "ecs/model.hpp"
 #include "systems/model/expected_place.hpp"
 
 namespace torsion {

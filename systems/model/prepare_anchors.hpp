@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "ecs/model.hpp"
 #include "ecs/scene_description.hpp"
-#include "ecs/world.hpp"
 
 namespace torsion {
 
@@ -18,7 +18,7 @@ struct PreparedAnchors {
 /// from the fixed point to each of them. Load time only; the same input gives the same bits.
 /// Returns nothing (empty vectors) only for a body whose whole surface is fixed.
 /// @param description  surfaces (m, body frame) and the fixed region
-/// @param world  read: parts, fields, field_nodes, field_bricks, fixed_volumes
+/// @param model  read: parts, fields, field_nodes, field_bricks, fixed_volumes
 /// @param parts  the body's rows in world.parts
 /// @param volumes  the body's rows in world.fixed_volumes
 /// @param count  how many anchors, 8 to 60

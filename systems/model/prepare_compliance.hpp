@@ -3,9 +3,9 @@
 #include <functional>
 #include <vector>
 
+#include "ecs/model.hpp"
 #include "ecs/result.hpp"
 #include "ecs/scene_description.hpp"
-#include "ecs/world.hpp"
 #include "systems/model/expected_place.hpp"
 
 namespace torsion {
@@ -22,7 +22,7 @@ struct PreparedCompliance {
 /// time for a shape and clamp it takes seconds, then it comes from the cache. The same input gives
 /// the same bits.
 /// Fails where elements or ports are too coarse for the body's walls.
-/// @param world     shapes and the body `row` are there
+/// @param model     shapes and the body `row` are there
 /// @param place     where contacts are expected
 /// @param progress  called with 0 to 1 while there is something to solve, if set
 Result<PreparedCompliance> prepare_compliance(const BodyDescription& description,

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 #include "systems/patch/solver.hpp"
 
 namespace torsion {

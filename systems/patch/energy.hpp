@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 #include "systems/patch/solver.hpp"
 
 namespace torsion {

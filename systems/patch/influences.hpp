@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 #include "systems/half_space/influence.hpp"
 
 namespace torsion {

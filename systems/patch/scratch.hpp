@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 #include "systems/contact/scratch.hpp"
 #include "systems/patch/cells.hpp"
 #include "systems/patch/definite_response.hpp"

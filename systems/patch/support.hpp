@@ -9,7 +9,7 @@
 
 #include <glm/mat3x3.hpp>
 
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 #include "systems/patch/definite_response.hpp"
 
 namespace torsion {

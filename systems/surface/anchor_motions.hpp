@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ecs/snapshot.hpp"
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 
 namespace torsion {
 

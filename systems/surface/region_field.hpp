@@ -10,7 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include "ecs/snapshot.hpp"
-#include "ecs/world.hpp"
+#include "ecs/model.hpp"
 #include "systems/surface/vertex_block.hpp"
 
 namespace torsion {

@@ -3,7 +3,7 @@
 #include "ecs/frame_world.hpp"
 #include "ecs/scene_description.hpp"
 #include "ecs/snapshot.hpp"
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 
 namespace torsion {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ecs/snapshot.hpp"
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 #include "systems/mdr/places.hpp"
 #include "systems/surface/ring_turns.hpp"
 

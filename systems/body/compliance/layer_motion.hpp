@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ecs/world.hpp"
+#include "ecs/model.hpp"
 #include "systems/contact/support/footing.hpp"
 
 namespace torsion {

@@ -6,7 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "ecs/world.hpp"
+#include "ecs/model.hpp"
 
 namespace torsion {
 

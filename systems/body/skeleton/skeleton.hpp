@@ -4,7 +4,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "ecs/world.hpp"
+#include "ecs/model.hpp"
 #include "systems/body/skeleton/main_beam.hpp"
 #include "systems/contact/scratch.hpp"
 #include "systems/contact/step_context.hpp"

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 
 namespace torsion {
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 #include "systems/contact/support/footing.hpp"
 
 namespace torsion {

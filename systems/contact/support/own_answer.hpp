@@ -8,7 +8,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
-#include "ecs/world.hpp"
+#include "ecs/state.hpp"
 
 namespace torsion {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ecs/world.hpp"
+#include "ecs/model.hpp"
 #include "systems/half_space/curved_influence.hpp"
 
 namespace torsion {

@@ -235,10 +235,35 @@ struct SweepLimits {
   std::uint32_t of_rolling = 0;
 };
 
+/// Where the solution of this step starts from, and how long it may take.
+void begin_solution(Patch& patch, const SweepLimits& sweeps) {
+  if (is_anew(patch.own)) {
+    foresee_cells(patch.rows, {}, patch.columns, patch.problem);
+    start_anew(patch, sweeps.anew);
+    set_targets(patch.motion, patch.places, patch.columns);
+    return;
+  }
+  set_targets(patch.motion, patch.places, patch.columns);
+  foresee_cells(patch.rows, foreseen_shares(patch), patch.columns, patch.problem);
+  let_go_cells(patch.problem, patch.columns, patch.work, kNoContact);
+  if (patch.own.settling > 0) {
+    solve_longer(patch, sweeps.anew);
+  } else if (rolls(patch)) {
+    patch.problem.sweeps = std::max(patch.problem.sweeps, sweeps.of_rolling);
+  }
+}
+
+/// The first solution is no change from which the next step could go on.
+void forget_change(const PatchChange& change) {
+  for (const std::span<double>& each : {change.traction_x, change.traction_y, change.pressure,
+                                        change.moved_x, change.moved_y, change.depression}) {
+    std::ranges::fill(each, 0.0);
+  }
+}
+
 void solve_region(StepContext& context, std::uint32_t region, const SweepLimits& sweeps) {
   const RegionCarrier carrier = context.state.regions.at<RegionCarrier>(region);
   Patch patch = patch_of(context, region);
-  const bool anew = is_anew(patch.own);
   const std::uint32_t settling = patch.own.settling;
   const std::uint32_t body = patch.state.regions.at<RegionIdentity>(region).body;
   if (load_cells(patch.rows, patch.model.bodies.at<Friction>(body), patch.columns, patch.places)) {
@@ -249,20 +274,7 @@ void solve_region(StepContext& context, std::uint32_t region, const SweepLimits&
   const double depth = largest(whole_lanes(patch.columns.depth.size()), patch.columns.depth.data());
   const double deepened = depth - patch.own.depth;
   patch.own.along_last = share_of_last(patch, deepened);
-  if (anew) {
-    foresee_cells(patch.rows, {}, patch.columns, patch.problem);
-    start_anew(patch, sweeps.anew);
-    set_targets(patch.motion, patch.places, patch.columns);
-  } else {
-    set_targets(patch.motion, patch.places, patch.columns);
-    foresee_cells(patch.rows, foreseen_shares(patch), patch.columns, patch.problem);
-    let_go_cells(patch.problem, patch.columns, patch.work, kNoContact);
-    if (settling > 0) {
-      solve_longer(patch, sweeps.anew);
-    } else if (rolls(patch)) {
-      patch.problem.sweeps = std::max(patch.problem.sweeps, sweeps.of_rolling);
-    }
-  }
+  begin_solution(patch, sweeps);
   if (has_support(patch)) {
     find_support(patch);
     take_off_support(patch.rows.surface.known, patch.support.x, patch.support.y, patch.columns);
@@ -282,24 +294,17 @@ void solve_region(StepContext& context, std::uint32_t region, const SweepLimits&
   store_cells(patch.columns, has_support(patch) ? patch.support.x : none,
               has_support(patch) ? patch.support.y : none, patch.rows);
   if (start == SolutionStart::kNone) {
-    const PatchChange& change = patch.rows.change;
-    for (const std::span<double>& each : {change.traction_x, change.traction_y, change.pressure,
-                                          change.moved_x, change.moved_y, change.depression}) {
-      std::ranges::fill(each, 0.0);
-    }
+    forget_change(patch.rows.change);
   }
-  patch.own = {patch.motion.slide,
-               patch.motion.spin,
-               deepened,
-               patch.own.along_last,
-               depth,
-               outcome.residual,
-               outcome.sweeps,
-               1,
-               0,
-               0,
-               settling > 0 ? settling - 1 : 0,
-               0};
+  patch.own = {.slide = patch.motion.slide,
+               .spin = patch.motion.spin,
+               .deepened = deepened,
+               .along_last = patch.own.along_last,
+               .depth = depth,
+               .residual = outcome.residual,
+               .sweeps = outcome.sweeps,
+               .started = 1,
+               .settling = settling > 0 ? settling - 1 : 0};
   summarize(patch, sums);
   settle_energy(patch.model, patch.state, region,
                 {patch.problem, patch.columns, patch.support.z, held_by_body, patch.work}, start);

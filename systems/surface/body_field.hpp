@@ -13,7 +13,7 @@
 #include "ecs/frame_world.hpp"
 #include "ecs/snapshot.hpp"
 #include "systems/surface/anchor_interpolation.hpp"
-#include "systems/surface/region_field.hpp"
+#include "systems/surface/twist_and_dent.hpp"
 
 namespace torsion {
 

@@ -8,9 +8,9 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/surface/region_field.hpp"
 #include "systems/surface/ring_turns.hpp"
 #include "systems/surface/turn_vertex.hpp"
+#include "systems/surface/twist_and_dent.hpp"
 #include "tests/reference/exact/hertz.hpp"
 #include "tests/reference/exact/lubkin.hpp"
 #include "tests/reference/exact/reissner_sagoci.hpp"

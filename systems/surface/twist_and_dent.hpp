@@ -9,8 +9,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "ecs/snapshot.hpp"
 #include "ecs/model.hpp"
+#include "ecs/snapshot.hpp"
 #include "systems/surface/vertex_block.hpp"
 
 namespace torsion {

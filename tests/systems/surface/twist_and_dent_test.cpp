@@ -1,4 +1,4 @@
-#include "systems/surface/region_field.hpp"
+#include "systems/surface/twist_and_dent.hpp"
 
 #include <algorithm>
 #include <cmath>

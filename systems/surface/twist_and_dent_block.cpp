@@ -1,4 +1,4 @@
-// The fields of systems/surface/region_field.hpp for blocks of points, in float. Most points of a
+// The fields of systems/surface/twist_and_dent.hpp for blocks of points, in float. Most points of a
 // body are far from a region, where one force and one couple are all there is to it.
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 #include "systems/math/lanes.hpp"
 #include "systems/math/smooth_step.hpp"
-#include "systems/surface/region_field.hpp"
+#include "systems/surface/twist_and_dent.hpp"
 
 namespace torsion {
 namespace {

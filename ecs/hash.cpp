@@ -47,13 +47,13 @@ std::uint64_t hash(const Model& model) {
   return XXH3_64bits_digest(&state);
 }
 
-std::uint64_t hash(const State& of) {
-  XXH3_state_t state;
-  XXH3_INITSTATE(&state);
-  XXH3_64bits_reset(&state);
-  add_struct(state, of.clock);
-  add_tables(state, of.tables());
-  return XXH3_64bits_digest(&state);
+std::uint64_t hash(const State& state) {
+  XXH3_state_t sum;
+  XXH3_INITSTATE(&sum);
+  XXH3_64bits_reset(&sum);
+  add_struct(sum, state.clock);
+  add_tables(sum, state.tables());
+  return XXH3_64bits_digest(&sum);
 }
 
 std::uint64_t hash(const World& world) {

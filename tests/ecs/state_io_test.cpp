@@ -41,7 +41,8 @@ std::vector<std::byte> bytes_of(const World& world) {
 }
 
 Result<State> state_from(const std::vector<std::byte>& bytes, const std::string& origin) {
-  return from_bytes(bytes, test::small_world(1).model, origin);
+  static const Model model = test::small_world(1).model;
+  return from_bytes(bytes, model, origin);
 }
 
 void expect_refused(const std::vector<std::byte>& bytes, const std::string& because) {

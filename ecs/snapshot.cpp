@@ -6,17 +6,15 @@ void Snapshot::reserve(const Model& model, const State& state) {
   tools.reserve(state.tools.capacity());
   regions.reserve(state.regions.capacity());
   region_fields.reserve(state.regions.capacity());
-  anchors.reserve(model.anchors.size());
+  anchors.reserve(model.anchors.capacity());
 }
 
-void capture(const State& state, Snapshot& snapshot) {
+void capture(const Model& model, const State& state, Snapshot& snapshot) {
   snapshot.clock = state.clock;
   snapshot.tools.copy_rows(state.tools);
   snapshot.regions.copy_rows(state.regions);
-  snapshot.region_fields.clear();
-  TORSION_ASSERT(snapshot.region_fields.append(state.regions.size()).has_value());
-  snapshot.anchors.clear();
-  TORSION_ASSERT(snapshot.anchors.append(snapshot.anchors.capacity()).has_value());
+  snapshot.region_fields.assign_zeros(state.regions.size());
+  snapshot.anchors.assign_zeros(model.anchors.size());
 }
 
 }  // namespace torsion

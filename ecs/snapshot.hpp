@@ -14,12 +14,12 @@ struct Snapshot {
   Table<RegionField, AnchorTurns> region_fields;  // (regions)
   Table<AnchorMotion> anchors;                    // (Model::anchors)
 
-  /// Takes memory for whatever a step can leave.
+  /// Takes memory for whatever a step of the scene can leave, with any models of its bodies.
   void reserve(const Model& model, const State& state);
 };
 
 /// Copies what it has of `state`, and zeroes the rest. Allocates nothing. @pre snapshot.reserve was
-/// called with that state
-void capture(const State& state, Snapshot& snapshot);
+/// called with that model and state, or others of the same scene
+void capture(const Model& model, const State& state, Snapshot& snapshot);
 
 }  // namespace torsion

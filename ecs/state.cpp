@@ -6,7 +6,7 @@ namespace {
 template <class AnyTable>
 void fill_with_zeros(AnyTable& table, std::uint32_t rows) {
   table.reserve(rows);
-  TORSION_ASSERT(table.append(rows).has_value());
+  table.assign_zeros(rows);
 }
 
 }  // namespace

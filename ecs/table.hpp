@@ -61,6 +61,13 @@ class Table {
     return rows;
   }
 
+  /// Makes it so many rows, all zero. @pre count <= capacity()
+  void assign_zeros(std::uint32_t count) {
+    TORSION_ASSERT(count <= capacity_);
+    size_ = count;
+    zero({0, count});
+  }
+
   /// Removes one row; the rows behind it move up, so order is kept.
   void erase(std::uint32_t row) {
     TORSION_ASSERT(row < size_);

@@ -95,8 +95,8 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
   simulation.united_nodes = std::move(prepared.value().united_nodes);
   World& world = simulation.world;
   simulation.scratch->reserve(world.model, world.state);
-  simulation.snapshot_tables =
-      std::make_unique<const SnapshotTables>(make_snapshot_tables(world.state));
+  simulation.snapshot_tables = std::make_unique<const SnapshotTables>(
+      make_snapshot_tables(world.state, simulation.scratch->mdr));
   return simulation;
 }
 

@@ -6,20 +6,13 @@
 
 namespace torsion {
 
-SnapshotTables make_snapshot_tables(const State& state) {
-  SnapshotTables tables;
-  if (!state.mdr_layers.empty()) {
-    tables.mdr = make_mdr_tables();
-  }
-  if (!state.patch_cells.empty()) {
-    tables.rings = make_ring_profiles();
-  }
-  return tables;
+SnapshotTables make_snapshot_tables(const State& state, const MdrTables& mdr) {
+  return {mdr, state.patch_cells.empty() ? RingProfiles{} : make_ring_profiles()};
 }
 
 void take_snapshot(const Model& model, const State& state, const SnapshotTables& tables,
                    Snapshot& snapshot) {
-  capture(state, snapshot);
+  capture(model, state, snapshot);
   region_fields(model, state, tables, snapshot);
   skeleton_motions(model, state, snapshot);
   anchor_motions(model, state, snapshot);

@@ -74,6 +74,26 @@ TEST(LiveSessionTest, SwitchesModelsWhileHeldAndItsRecordingGivesTheSameBits) {
   EXPECT_EQ(hash(again.simulation.world), hash(session.shown().simulation.world));
 }
 
+// The frames' memory is taken for the first models: it has room for what any others leave.
+TEST(LiveSessionTest, DrawsTheAnchorsOfABodyModelThatItIsSwitchedTo) {
+  constexpr bool kPrivileges = false;
+  LiveSession session(test::ball_session(), test::ball_options());
+  ASSERT_EQ(session.shown().simulation.world.model.anchors.size(), 0U);
+  session.start(kPrivileges);
+  session.hold(0, {{0.0, test::kTouching - 1e-3, 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)});
+  std::vector<BodyPick> picks = session.shown().picks;
+  picks[0].body = BodyModel::kSkeleton;
+  ASSERT_TRUE(session.choose(picks, false));
+  ASSERT_TRUE(comes_true(session, [&] { return session.frame().generation == 1; }));
+  EXPECT_EQ(session.frame().snapshot.anchors.size(),
+            session.shown().simulation.world.model.anchors.size());
+  EXPECT_TRUE(comes_true(session, [&] {
+    const auto anchors = session.frame().snapshot.anchors.column<AnchorMotion>();
+    return std::ranges::any_of(
+        anchors, [](const AnchorMotion& anchor) { return anchor.displacement != glm::dvec3(0.0); });
+  }));
+}
+
 TEST(LiveSessionTest, ARestartBeginsAnewAndSoDoesItsRecording) {
   constexpr bool kPrivileges = false;
   LiveSession session(test::ball_session(), test::ball_options());

@@ -35,7 +35,7 @@ void skeleton_with_one_region(benchmark::State& state) {
   press(world);
   Snapshot snapshot;
   snapshot.reserve(world.model, world.state);
-  capture(world.state, snapshot);
+  capture(world.model, world.state, snapshot);
   for (auto _ : state) {
     skeleton_motions(world.model, world.state, snapshot);
     benchmark::ClobberMemory();
@@ -75,7 +75,7 @@ struct Frame {
     press(world);
     frame = prepare_frame(scene, world.model, world.state);
     snapshot.reserve(world.model, world.state);
-    capture(world.state, snapshot);
+    capture(world.model, world.state, snapshot);
     skeleton_motions(world.model, world.state, snapshot);
   }
   SceneDescription scene;
@@ -112,7 +112,7 @@ void surface_field_of_ten_regions(benchmark::State& state) {
     drawn.world.state.regions.at<RegionFriction>(region) =
         drawn.world.state.regions.at<RegionFriction>(0);
   }
-  capture(drawn.world.state, drawn.snapshot);
+  capture(drawn.world.model, drawn.world.state, drawn.snapshot);
   for (auto _ : state) {
     surface_field(drawn.world.model, drawn.snapshot, drawn.frame);
     benchmark::ClobberMemory();
@@ -133,7 +133,7 @@ void surface_field_of_half_space(benchmark::State& state) {
                        .radius = 0.005,
                        .depth = 0.0005});
   }
-  capture(world.state, drawn.snapshot);
+  capture(world.model, world.state, drawn.snapshot);
   for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
     RegionField& field = drawn.snapshot.region_fields.at<RegionField>(region);
     field.radius = world.state.regions.at<RegionGeometry>(region).radius;

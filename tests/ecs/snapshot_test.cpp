@@ -21,7 +21,7 @@ TEST(SnapshotTest, HoldsWhatTheWorldHeldAtCapture) {
   const World as_it_was = test::small_world(1);
   Snapshot snapshot;
   snapshot.reserve(world.model, world.state);
-  capture(world.state, snapshot);
+  capture(world.model, world.state, snapshot);
   world.state.tools.at<ToolPose>(0).now.position = glm::dvec3(1.0);
   world.state.regions.erase(0);
   world.state.clock.step += 1;
@@ -39,17 +39,34 @@ TEST(SnapshotTest, HoldsWhatTheWorldHeldAtCapture) {
   EXPECT_EQ(seen.anchors.size(), before.model.anchors.size());
 }
 
+// What only a picture needs is of one step: of another one nothing is left of it.
+TEST(SnapshotTest, CaptureZeroesWhatIsFoundForPictures) {
+  const World world = test::small_world(3);
+  Snapshot snapshot;
+  snapshot.reserve(world.model, world.state);
+  capture(world.model, world.state, snapshot);
+  ASSERT_GT(snapshot.region_fields.size(), 0U);
+  ASSERT_GT(snapshot.anchors.size(), 0U);
+  snapshot.region_fields.at<RegionField>(0).radius = 1.0;
+  snapshot.region_fields.at<AnchorTurns>(0).support = 1.0;
+  snapshot.anchors.at<AnchorMotion>(0).displacement.x = 1.0;
+  capture(world.model, world.state, snapshot);
+  EXPECT_EQ(snapshot.region_fields.at<RegionField>(0).radius, 0.0);
+  EXPECT_EQ(snapshot.region_fields.at<AnchorTurns>(0).support, 0.0);
+  EXPECT_EQ(snapshot.anchors.at<AnchorMotion>(0).displacement.x, 0.0);
+}
+
 TEST(SnapshotTest, RegionsMayComeAndGoBetweenCapturesWithoutAllocating) {
   World world = test::small_world(2);
   Snapshot snapshot;
   snapshot.reserve(world.model, world.state);
   const test::AllocationGuard guard;
-  capture(world.state, snapshot);
+  capture(world.model, world.state, snapshot);
   world.state.regions.append(2);
-  capture(world.state, snapshot);
+  capture(world.model, world.state, snapshot);
   EXPECT_EQ(snapshot.regions.size(), 4U);
   world.state.regions.clear();
-  capture(world.state, snapshot);
+  capture(world.model, world.state, snapshot);
   EXPECT_EQ(snapshot.regions.size(), 0U);
   EXPECT_EQ(guard.allocations(), 0U);
 }

@@ -28,7 +28,7 @@ struct Drawn {
 
   /// Draws what the world holds now.
   void draw() {
-    capture(world.state, snapshot);
+    capture(world.model, world.state, snapshot);
     skeleton_motions(world.model, world.state, snapshot);
     surface_field(world.model, snapshot, frame);
     positions.resize(frame.body_vertices.size());

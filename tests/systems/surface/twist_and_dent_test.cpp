@@ -47,7 +47,7 @@ TEST(RegionTwistTest, ADeepContactTurnsTheRestSurfaceByAllOfTheAngle) {
   RegionFriction& friction = drawn.world.state.regions.at<RegionFriction>(region);
   friction.stick_turn = 0.4;
   friction.stick_radius = 0.02;
-  capture(drawn.world.state, drawn.snapshot);
+  capture(drawn.world.model, drawn.world.state, drawn.snapshot);
   const RegionTwist twist = region_twist(drawn.world.model, drawn.snapshot, region);
   EXPECT_NEAR(twist.angle({0.0, 0.05, 0.01}), 0.4, 1e-12);
   EXPECT_NEAR(twist.angle({0.0, 0.04, 0.01}), 0.4 * 0.9, 1e-12);
@@ -169,7 +169,7 @@ TEST(RegionTwistTest, SharesOfTheAxisBlendWithoutAJump) {
   double before = 0.0;
   for (int i = 0; i <= 100; ++i) {
     drawn.world.state.regions.at<RegionMotion>(region).axis_share = i / 100.0;
-    capture(drawn.world.state, drawn.snapshot);
+    capture(drawn.world.model, drawn.world.state, drawn.snapshot);
     const RegionTwist twist = region_twist(drawn.world.model, drawn.snapshot, region);
     const double angle = twist.angle({0.03, 0.05, 0.02});
     if (i > 0) {
@@ -189,7 +189,7 @@ TEST(RegionTwistTest, ARegionWithoutAFieldTurnsNothing) {
   friction.stick_radius = 0.01;
   drawn.world.state.regions.at<RegionMotion>(region).axis = kUp;
   drawn.world.state.regions.at<RegionMotion>(region).axis_share = 1.0;
-  capture(drawn.world.state, drawn.snapshot);
+  capture(drawn.world.model, drawn.world.state, drawn.snapshot);
   const RegionTwist twist = region_twist(drawn.world.model, drawn.snapshot, region);
   EXPECT_EQ(twist.angle({0.002, 0.05, 0.0}), 0.0);
   EXPECT_NEAR(glm::length(glm::vec3(twist.axis.direction)), 1.0F, 1e-6F);

@@ -107,7 +107,7 @@ class LargeTurnTest : public ::testing::Test {
     RegionFriction& friction = world.state.regions.at<RegionFriction>(0);
     friction.force = {-force.x, force.z};
     friction.couple = -couple;
-    capture(world.state, snapshot_);
+    capture(world.model, world.state, snapshot_);
     RegionField& field = snapshot_.region_fields.at<RegionField>(0);
     field.radius = kContact;  // a bonded disc: Reissner and Sagoci, 1944
     field.turn[kFieldDiscs - 1] =

@@ -228,9 +228,17 @@ void step_and_tell(LiveLoop& loop, double late_us) {
   loop.steps_left -= 1;
 }
 
+void fill_snapshot(const LiveLoop& loop, const Simulation& simulation, Snapshot& snapshot) {
+  if (loop.wants_pictures) {
+    take_snapshot(simulation, snapshot);
+  } else {
+    capture(simulation.world.model, simulation.world.state, snapshot);
+  }
+}
+
 void publish_frame(LiveLoop& loop) {
   LiveFrame& frame = loop.frames.back();
-  take_snapshot(*loop.simulation, frame.snapshot);
+  fill_snapshot(loop, *loop.simulation, frame.snapshot);
   frame.statistics = loop.statistics;
   frame.cells.clear();
   if (loop.wants_cells.load(std::memory_order_relaxed)) {
@@ -241,6 +249,18 @@ void publish_frame(LiveLoop& loop) {
   frame.slowness = loop.slowness;
   frame.paused = loop.paused;
   loop.frames.publish();
+}
+
+/// What a picture needs may take a tenth of a millisecond: it is found for the frames that are
+/// drawn, and in between often enough that the one which is taken next is not old.
+void publish_if_due(LiveLoop& loop) {
+  constexpr Nanoseconds kInterval = 8'000'000;
+  if (loop.frames.taken() || loop.ticks >= loop.next_frame) {
+    publish_frame(loop);
+    loop.next_frame =
+        loop.ticks + static_cast<std::uint64_t>(std::max<Nanoseconds>(
+                         kInterval / std::max<Nanoseconds>(loop.schedule.period, 1), 1));
+  }
 }
 
 }  // namespace
@@ -257,10 +277,10 @@ void reserve(LiveLoop& loop, Session& session, Simulation& simulation) {
   loop.rows.reserve(loop.wants_rows ? rows : 1);
   loop.inputs.reserve(loop.wants_inputs ? rows : 1);
   loop.commands.reserve(kCommands);
-  loop.frames.prepare([&world, &simulation](LiveFrame& frame) {
+  loop.frames.prepare([&](LiveFrame& frame) {
     frame.snapshot.reserve(world.model, world.state);
     frame.cells.reserve(kMostCellMarks);
-    take_snapshot(simulation, frame.snapshot);
+    fill_snapshot(loop, simulation, frame.snapshot);
   });
 }
 
@@ -278,7 +298,7 @@ void live_tick(LiveLoop& loop, double late_us) {
     step_and_tell(loop, late_us);
   }
   loop.ticks += 1;
-  publish_frame(loop);
+  publish_if_due(loop);
 }
 
 void run_live(LiveLoop& loop) {

@@ -111,18 +111,20 @@ struct LiveLoop {
   StepSchedule schedule;
   std::uint64_t steps_left = UINT64_MAX;
   std::uint64_t ticks = 0;
+  std::uint64_t next_frame = 0;  // tick in which one is due, whether the last was taken or not
   std::uint32_t slowness = 1;
   bool paused = false;
   std::uint32_t single_steps = 0;
   bool wants_privileges = true;  // SCHED_FIFO and locked memory; tests do without
   bool wants_rows = false;       // whether anybody takes `rows`
+  bool wants_pictures = false;   // whether anybody draws `frames`: else they have only the state
   bool wants_inputs = false;     // whether anybody takes `inputs`
   RunStatistics statistics;
 
   Ring<LiveCommand> commands;      // to the physics thread
   Ring<LiveRow> rows;              // from it: every row
   Ring<InputEntry> inputs;         // from it: everything that went in
-  TripleBuffer<LiveFrame> frames;  // from it: the newest state
+  TripleBuffer<LiveFrame> frames;  // from it: the state, once the last was taken, or after 8 ms
   RealtimeMode mode;               // valid once `ready`
   std::atomic<bool> wants_cells = false;
   std::atomic<bool> ready = false;

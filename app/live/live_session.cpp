@@ -57,6 +57,7 @@ LiveSession::LiveSession(Session session, PrepareOptions options, std::filesyste
   generations_.push_back(std::move(first));
   const World& world = generations_.front()->simulation.world;
   loop_.wants_rows = true;
+  loop_.wants_pictures = true;
   loop_.wants_inputs = true;
   reserve(loop_, session_, generations_.front()->simulation);
   for (std::uint32_t tool = 0; tool < world.model.tools.size(); ++tool) {

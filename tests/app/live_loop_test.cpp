@@ -112,12 +112,14 @@ TEST(LiveLoopTest, ATickTakesNothingFromTheHeap) {
   LiveLoop loop;
   loop.wants_rows = true;
   loop.wants_inputs = true;
+  loop.wants_pictures = true;
   reserve(loop, session, session.simulation);
   loop.tools[0] = {PoseFrom::kHandle, PoseFrom::kScript, &slot, coupling(), {}, {}, {}, {}, 0};
   for (int i = 0; i < 200; ++i) {
     hold_at(slot, static_cast<std::uint64_t>(i) + 1, kTouching - 1e-5 * i, 1e-3 * i);
     const AllocationGuard guard;
     live_tick(loop, 0.0);
+    loop.frames.refresh();
     EXPECT_EQ(guard.allocations(), 0U);
     EXPECT_EQ(guard.releases(), 0U);
   }
@@ -206,6 +208,48 @@ TEST(LiveLoopTest, ASwitchOfModelsGoesOnWhereTheToolIs) {
   EXPECT_LT(farthest, 0.05 * (kTouching - before.position.y));
   EXPECT_EQ(world.state.clock.faults_ever, 0U);
   EXPECT_GT(world.state.tools.at<ToolWrench>(0).total.force.y, 0.1);
+}
+
+/// The step of the frame that is taken after so many ticks of which none was.
+std::uint64_t step_of_next_frame(LiveLoop& loop, int ticks) {
+  for (int tick = 0; tick < ticks; ++tick) {
+    live_tick(loop, 0.0);
+  }
+  loop.frames.refresh();
+  return loop.frames.front().snapshot.clock.step;
+}
+
+TEST(LiveLoopTest, AFrameIsMadeOnceTheLastWasTakenAndEvery8MillisecondsBesides) {
+  Session session = ball_session();
+  LiveLoop loop;
+  loop.wants_pictures = true;
+  reserve(loop, session, session.simulation);
+  EXPECT_EQ(step_of_next_frame(loop, 1), 1U);
+  EXPECT_EQ(step_of_next_frame(loop, 1), 2U);
+  EXPECT_EQ(step_of_next_frame(loop, 6), 3U);   // not in each of the ticks after it
+  EXPECT_EQ(step_of_next_frame(loop, 9), 17U);  // of step 9 is the first, 8 ms later another
+}
+
+TEST(LiveLoopTest, WhatOnlyAPictureNeedsIsFoundForWhoDraws) {
+  for (const bool draws : {false, true}) {
+    Session session = ball_session();
+    HandleSlot slot;
+    LiveLoop loop;
+    loop.wants_pictures = draws;
+    reserve(loop, session, session.simulation);
+    loop.tools[0] = {PoseFrom::kHandle, PoseFrom::kScript, &slot, coupling(), {}, {}, {}, {}, 0};
+    for (int i = 0; i < 200; ++i) {
+      hold_at(slot, static_cast<std::uint64_t>(i) + 1, kTouching - 1e-5 * i, 1e-3 * i);
+      live_tick(loop, 0.0);
+    }
+    loop.frames.refresh();
+    live_tick(loop, 0.0);
+    loop.frames.refresh();
+    const Snapshot& snapshot = loop.frames.front().snapshot;
+    ASSERT_EQ(snapshot.regions.size(), 1U);
+    ASSERT_EQ(snapshot.region_fields.size(), 1U);
+    EXPECT_EQ(snapshot.region_fields.at<RegionField>(0).radius > 0.0, draws);
+  }
 }
 
 TEST(LiveLoopTest, ThreeThreadsShareNothingButBoxesAndTheRecordingGivesTheSameBits) {

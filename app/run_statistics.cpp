@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "systems/contact/law.hpp"
-
 namespace torsion {
 namespace {
 
@@ -82,8 +80,8 @@ void RunStatistics::add_step(const World& world, double step_us) {
     peak_torque = std::max(peak_torque, glm::length(wrench.total.torque));
   }
   for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
-    if (law_of(world.model, world.state.regions.at<RegionIdentity>(region).body).model ==
-        ContactModel::kPatch) {
+    const std::uint32_t body = world.state.regions.at<RegionIdentity>(region).body;
+    if (world.model.bodies.at<BodyModels>(body).contact == ContactModel::kPatch) {
       patch.add(world.state.regions.at<PatchState>(region));
     }
   }

@@ -9,11 +9,6 @@
 #include "systems/contact/support/body_law.hpp"
 
 namespace torsion {
-
-#define TORSION_LAW(name, text) extern const ContactLaw k##name##Law;
-TORSION_CONTACT_MODELS(TORSION_LAW)
-#undef TORSION_LAW
-
 namespace {
 
 #define TORSION_LAW(name, text) &k##name##Law,
@@ -27,12 +22,8 @@ constexpr std::array<const BodyLaw*, 3> kBodyLaws{&kNoBodyLaw, &kSkeletonLaw, &k
 }  // namespace
 
 const ContactLaw& contact_law(ContactModel model) {
-  for (const ContactLaw* const law : kContactLaws) {
-    if (law->model == model) {
-      return *law;
-    }
-  }
-  TORSION_ASSERT(false);
+  TORSION_ASSERT(model != ContactModel::kAuto);
+  return *kContactLaws[static_cast<std::size_t>(model) - 1];  // the list makes the enum, too
 }
 
 std::span<const ContactLaw* const> contact_laws() {

@@ -7,6 +7,7 @@
 
 #include "ecs/model_names.hpp"
 #include "ecs/world.hpp"
+#include "systems/contact/law.hpp"
 
 namespace torsion {
 namespace {
@@ -29,9 +30,8 @@ std::vector<ModelPair> model_pairs(const ReferenceCase& reference_case, bool qui
     }
     for (std::size_t b = 1; b < kBodyModelNames.size(); ++b) {
       const auto body = static_cast<BodyModel>(b);
-      // The bed of winkler has the body's depth in it already.
       if (body != BodyModel::kNone &&
-          (!reference_case.finite_body || contact == ContactModel::kWinkler)) {
+          (!reference_case.finite_body || contact_law(contact).is_of_whole_body)) {
         continue;
       }
       for (const std::uint32_t side : sides) {

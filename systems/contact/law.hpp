@@ -36,6 +36,10 @@ struct ContactLaw {
   bool is_bounded = true;
   /// It needs RegionMotion on bodies without friction, too.
   bool needs_motion = true;
+  /// It has the compliance of the whole body in its own: a body model would count that twice.
+  bool is_of_whole_body = false;
+  /// Cells along a side of the grid where the user leaves that open and no tolerance asks for more.
+  std::uint32_t grid_side = 16;
 
   // Its systems: before and after region_motion.
   std::span<const System<StepContext>> place = {};
@@ -68,6 +72,11 @@ struct ContactLaw {
   /// `ended` goes, with or without a join.
   void (*end)(State& state, std::uint32_t ended, std::uint32_t heir) = nullptr;
 };
+
+// kPaperLaw and so on, each defined in its own room.
+#define TORSION_LAW(name, text) extern const ContactLaw k##name##Law;
+TORSION_CONTACT_MODELS(TORSION_LAW)
+#undef TORSION_LAW
 
 /// @pre model is not kAuto
 const ContactLaw& contact_law(ContactModel model);

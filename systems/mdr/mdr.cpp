@@ -334,6 +334,7 @@ const ContactLaw kMdrLaw{
     .model = ContactModel::kMdr,
     .moves_own_support = true,
     .answers_from = 10.0,  // only when tools that pinch a body sway it
+    .grid_side = 12,
     .place = kMdrPlace,
     .solve = kMdrSolve,
     .follow = follow_overlap,

@@ -7,8 +7,6 @@ namespace torsion {
 // The contact model `mdr`: each region is a round, or nearly round, contact of an elastic
 // half-space (docs/models.md).
 
-extern const ContactLaw kMdrLaw;
-
 /// Normal force, friction and couple of every region of a body with this model. Writes MdrLayer,
 /// MdrState, CellTraction, RegionCarrier, RegionNormal, RegionFriction and, from the contact's
 /// ellipse, RegionGeometry.

@@ -12,6 +12,7 @@
 #include "ecs/model_names.hpp"
 #include "systems/contact/contact_axes.hpp"
 #include "systems/contact/group_points.hpp"
+#include "systems/contact/law.hpp"
 #include "systems/geometry/distance.hpp"
 #include "systems/geometry/surface_piece.hpp"
 #include "systems/math/frames.hpp"
@@ -346,9 +347,9 @@ ModelChoice choose_models(const BodyModels& scene, const PrepareOptions& options
   }
   choice.body_is_auto = choice.models.body == BodyModel::kAuto;
   if (choice.body_is_auto) {
-    if (choice.models.contact == ContactModel::kWinkler) {
+    if (contact_law(choice.models.contact).is_of_whole_body) {
       choice.models.body = BodyModel::kNone;
-      choice.body_why = "auto: the bed of winkler is as deep as the body";
+      choice.body_why = "auto: the contact model has the whole body's compliance in its own";
     } else {
       std::tie(choice.models.body, choice.body_why) = auto_body(contact, scene.tolerance);
     }
@@ -357,22 +358,19 @@ ModelChoice choose_models(const BodyModels& scene, const PrepareOptions& options
 }
 
 std::uint32_t choose_grid_side(std::span<const ModelChoice> choices) {
-  constexpr std::uint32_t kSideOfCells = 16;
   // Sides whose errors are at most 2 %, 0.7 % and below.
   constexpr std::uint32_t kPatchSides[] = {12, 16, 20};
   constexpr std::uint32_t kLongSide = 20;  // steps stay within a millisecond
   std::uint32_t side = 8;
   for (const ModelChoice& choice : choices) {
     const BodyModels& models = choice.models;
-    if (models.contact == ContactModel::kPaper || models.contact == ContactModel::kWinkler) {
-      side = std::max(side, kSideOfCells);
-    } else if (models.contact == ContactModel::kPatch) {
+    if (models.contact == ContactModel::kPatch) {
       side = std::max(
           side,
           kPatchSides[(models.tolerance < 0.02 ? 1U : 0U) + (models.tolerance < 0.007 ? 1U : 0U)]);
       side = choice.long_contact ? std::max(side, kLongSide) : side;
     } else {
-      side = std::max(side, kPatchSides[0]);
+      side = std::max(side, contact_law(models.contact).grid_side);
     }
   }
   return side;

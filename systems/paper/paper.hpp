@@ -7,8 +7,6 @@ namespace torsion {
 // The contact model `paper`: equations (1)-(14) of Luo & Xiao (IROS 2007), read as docs/models.md
 // says.
 
-extern const ContactLaw kPaperLaw;
-
 /// Nonlinear point force law f = k1 x + k3 x^3 of the region's equivalent point contact, x the
 /// overlap's mean depth.
 struct PaperNormalLaw {

@@ -315,7 +315,8 @@ void solve_region(StepContext& context, std::uint32_t region, const SweepLimits&
 }
 
 bool is_patch(const Model& model, const State& state, std::uint32_t region) {
-  return law_of(model, state.regions.at<RegionIdentity>(region).body).model == ContactModel::kPatch;
+  const std::uint32_t body = state.regions.at<RegionIdentity>(region).body;
+  return model.bodies.at<BodyModels>(body).contact == ContactModel::kPatch;
 }
 
 SweepLimits sweep_limits(const Model& model, const State& state) {

@@ -123,10 +123,10 @@ constexpr System<StepContext> kWinklerSolve[] = {
 
 }  // namespace
 
-extern const ContactLaw kWinklerLaw;
 const ContactLaw kWinklerLaw{
     .model = ContactModel::kWinkler,
     .answers_from = std::numeric_limits<double>::infinity(),
+    .is_of_whole_body = true,
     .solve = kWinklerSolve,
     .follow = follow_overlap,
     .find_cells = find_overlap,

@@ -24,7 +24,8 @@ void main_beams(StepContext& context) {
     const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
     const std::uint32_t block = block_of(identity);
     context.scratch.beams[block] = BeamSpring{};
-    if (model.bodies.at<BodyModels>(identity.body).body == BodyModel::kSkeleton) {
+    const BodyModels& models = model.bodies.at<BodyModels>(identity.body);
+    if (models.contact == ContactModel::kPaper && models.body == BodyModel::kSkeleton) {
       const MainBeam beam =
           main_beam(model, identity.body, state.regions.at<RegionGeometry>(region).rest_point);
       context.scratch.beams[block] = beam_spring(beam, model.bodies.at<Elasticity>(identity.body));

@@ -18,8 +18,8 @@ extern const BodyLaw kSkeletonLaw;
 /// anchors gives its length and no stiffness.
 BeamSpring beam_spring(const MainBeam& beam, const Elasticity& elasticity);
 
-/// The beam to every region of a body whose body model is kSkeleton, to where p_eq was at rest.
-/// Writes ContactScratch::beams.
+/// The beam to every region whose force it is in series with, one of contact model paper on a body
+/// whose body model is kSkeleton, to where p_eq was at rest. Writes ContactScratch::beams.
 void main_beams(StepContext& context);
 
 }  // namespace torsion

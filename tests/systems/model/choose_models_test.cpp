@@ -146,5 +146,19 @@ TEST(ChooseModelsTest, ALongContactGetsMoreCells) {
   EXPECT_EQ(side_for({0.02, 0.02, 0.004}), 20U);
 }
 
+// Its bed is as deep as the body: with a body model that would give way twice.
+TEST(ChooseModelsTest, WinklerGetsNoBodyModelUnlessOneIsAskedFor) {
+  const ExpectedContact by_hand;
+  BodyModels scene;
+  scene.contact = ContactModel::kPatch;
+  EXPECT_EQ(choose_models(scene, {}, by_hand, 0.5).models.body, BodyModel::kCompliance);
+  scene.contact = ContactModel::kWinkler;
+  const ModelChoice choice = choose_models(scene, {}, by_hand, 0.5);
+  EXPECT_EQ(choice.models.body, BodyModel::kNone);
+  EXPECT_EQ(choose_grid_side(std::vector<ModelChoice>{choice}), 16U);
+  scene.body = BodyModel::kSkeleton;
+  EXPECT_EQ(choose_models(scene, {}, by_hand, 0.5).models.body, BodyModel::kSkeleton);
+}
+
 }  // namespace
 }  // namespace torsion

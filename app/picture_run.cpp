@@ -56,8 +56,8 @@ double largest_pressure(const World& world) {
 
 }  // namespace
 
-Result<PictureScales> find_scales(Session& session, std::uint64_t steps, std::uint64_t stride,
-                                  Progress& progress) {
+PictureScales find_scales(Session& session, std::uint64_t steps, std::uint64_t stride,
+                          Progress& progress) {
   World& world = session.simulation.world;
   const State start = world.state;
   FrameWorld frame = prepare_frame(session.scene, world.model, world.state);
@@ -79,8 +79,8 @@ Result<PictureScales> find_scales(Session& session, std::uint64_t steps, std::ui
     }
   }
   world.state = start;
-  return PictureScales{rounded_angle(scales.twist), round_up(scales.pressure),
-                       round_up(scales.force), round_up(scales.torque)};
+  return {rounded_angle(scales.twist), round_up(scales.pressure), round_up(scales.force),
+          round_up(scales.torque)};
 }
 
 Result<Camera> choose_camera(const Session& session, const FrameWorld& frame,

@@ -23,10 +23,10 @@ struct PictureScales {
 };
 
 /// Runs `steps` steps to find what the scales must hold, looking every `stride` steps, and leaves
-/// the world as it was. Ends each scale at 1, 2 or 5 times a power of ten (twist: at a round number
-/// of degrees). Fails only if that world cannot be taken back.
-Result<PictureScales> find_scales(Session& session, std::uint64_t steps, std::uint64_t stride,
-                                  Progress& progress);
+/// the state as it was. Ends each scale at 1, 2 or 5 times a power of ten (twist: at a round number
+/// of degrees).
+PictureScales find_scales(Session& session, std::uint64_t steps, std::uint64_t stride,
+                          Progress& progress);
 
 /// The camera of that node; the file's first where `node` is empty; else one that shows everything.
 Result<Camera> choose_camera(const Session& session, const FrameWorld& frame,

@@ -137,8 +137,7 @@ Result<Done> draw_all(Session& session, const RenderOptions& options, double sec
 }
 
 /// The scales of the whole animation also for one moment, so that single pictures compare.
-Result<PictureScales> scales_of_run(Session& session, const RenderOptions& options,
-                                    double seconds) {
+PictureScales scales_of_run(Session& session, const RenderOptions& options, double seconds) {
   Progress progress("finding the scales", options.quiet);
   const double end = one_picture(options) ? std::max(options.at, session.scene.duration) : seconds;
   return find_scales(session, steps_in(session, end) + 1, kScaleStride, progress);
@@ -161,11 +160,7 @@ int render(const RenderOptions& options) {
     return fail(sink.error().text);
   }
   const double seconds = options.seconds < 0.0 ? session.scene.duration : options.seconds;
-  const Result<PictureScales> scales = scales_of_run(session, options, seconds);
-  if (!scales) {
-    return fail(scales.error().text);
-  }
-  run.value().set_scales(scales.value());
+  run.value().set_scales(scales_of_run(session, options, seconds));
   const Result<Done> done = draw_all(session, options, seconds, run.value(), *sink.value());
   if (!done) {
     return fail(done.error().text);

@@ -13,8 +13,9 @@
 
 namespace torsion {
 
-/// Memory of the systems of one step, room by room. Reserved at load; nothing in it outlives a
-/// step, so that a saved world replays without it.
+/// What the systems of one step need besides model and state, room by room. Reserved at load; but
+/// for the times that the schedule has taken nothing in it outlives a step, so that a saved state
+/// replays without it.
 struct Scratch {
   ContactScratch contact;
   PaperScratch paper;

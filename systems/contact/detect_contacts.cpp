@@ -21,7 +21,6 @@ constexpr double kSmallestStep =
 /// One tool over one body while it is searched.
 struct ContactSearch {
   const Model& model;
-  const State& state;
   ContactScratch& scratch;
   Range body_parts;
   OwnedRows tool;
@@ -240,11 +239,7 @@ void detect_contacts(StepContext& context) {
     for (std::uint32_t body = 0; body < model.bodies.size(); ++body) {
       const auto first = static_cast<std::uint32_t>(scratch.points.size());
       ContactSearch search{
-          model,
-          state,
-          scratch,
-          model.bodies.at<OwnedRows>(body).parts,
-          model.tools.at<OwnedRows>(tool),
+          model, scratch, model.bodies.at<OwnedRows>(body).parts, model.tools.at<OwnedRows>(tool),
           relative(model.bodies.at<Pose>(body), state.tools.at<ToolPose>(tool).now)};
       find_points(search);
       const Range points{first, static_cast<std::uint32_t>(scratch.points.size()) - first};

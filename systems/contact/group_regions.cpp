@@ -20,12 +20,6 @@ namespace {
 constexpr auto kTakesOver = static_cast<std::uint32_t>(RegionEvent::kTakesOver);
 constexpr auto kBodyFollows = static_cast<std::uint32_t>(RegionEvent::kBodyFollows);
 
-/// The contact points of one pair, by cluster.
-struct PairPoints {
-  std::span<const ContactPoint> points;
-  std::uint32_t clusters;
-};
-
 /// A region's cells under contact points.
 struct RegionCells {
   RegionCells(const Model& model, const State& state, std::uint32_t region)
@@ -146,7 +140,7 @@ void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t c
   clock.regions_formed += 1;
   std::ranges::fill(state.cells.rows<CellGeometry>(cells), CellGeometry{});
   std::ranges::fill(state.cells.rows<CellTraction>(cells), CellTraction{});
-  const std::uint32_t block = cells.first / cells.count;
+  const std::uint32_t block = block_of(state.regions.at<RegionIdentity>(row));
   if (!state.footings.empty()) {
     state.footings.at<Footing>(block) = Footing{};
   }

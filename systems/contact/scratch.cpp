@@ -1,6 +1,17 @@
 #include "systems/contact/scratch.hpp"
 
+#include "systems/math/wide_lanes.hpp"
+
 namespace torsion {
+
+void lay_columns(std::size_t cells, std::span<std::span<double>* const> columns,
+                 Column<double>& memory) {
+  const std::size_t stride = whole_lanes(cells);
+  memory.reserve(static_cast<std::uint32_t>(columns.size() * stride));
+  for (std::size_t column = 0; column < columns.size(); ++column) {
+    *columns[column] = {memory.data() + column * stride, cells};
+  }
+}
 
 void ContactScratch::reserve(const Model& model, const State& state) {
   const std::uint32_t samples = model.samples.size();
@@ -23,20 +34,16 @@ void ContactScratch::reserve(const Model& model, const State& state) {
   ended_regions.reserve(state.regions.capacity());
   region_points.assign(state.regions.capacity(), RegionPoints{});
   const std::size_t cells = std::size_t{side} * side;
-  column_memory.reserve(26, cells);
+  std::vector<std::span<double>*> columns{
+      &cell_columns.tool_x,       &cell_columns.tool_y,      &cell_columns.depth,
+      &cell_columns.depth_change, &cell_columns.coverage,    &cell_columns.bearing,
+      &cell_columns.rim_share,    &cell_columns.rim_bearing, &cell_columns.gradient_square,
+      &left_cells.tool_x,         &left_cells.tool_y,        &left_cells.gradient_square};
   for (DistanceColumns* found : {&cell_columns.points, &left_cells.points}) {
-    for (std::span<double>* each : {&found->x, &found->y, &found->z, &found->value,
-                                    &found->gradient_x, &found->gradient_y, &found->gradient_z}) {
-      *each = column_memory.take();
-    }
+    columns.insert(columns.end(), {&found->x, &found->y, &found->z, &found->value,
+                                   &found->gradient_x, &found->gradient_y, &found->gradient_z});
   }
-  for (std::span<double>* each :
-       {&cell_columns.tool_x, &cell_columns.tool_y, &cell_columns.depth, &cell_columns.depth_change,
-        &cell_columns.coverage, &cell_columns.bearing, &cell_columns.rim_share,
-        &cell_columns.rim_bearing, &left_cells.tool_x, &left_cells.tool_y,
-        &cell_columns.gradient_square, &left_cells.gradient_square}) {
-    *each = column_memory.take();
-  }
+  lay_columns(cells, columns, column_memory);
   cell_memory.assign(cells, 0);
   left_cells.cells = cell_memory;
   near_parts.assign(model.parts.size(), 0);

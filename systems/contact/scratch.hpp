@@ -85,31 +85,11 @@ struct BeamSpring {
   double stiffness = 0.0;  // N/m, along the beam; 0: there is none
 };
 
-/// Columns of cells in one piece of memory. Each is followed by zeros up to a multiple of 8, so
-/// that loops may take eight cells at a time.
-class CellColumnMemory {
- public:
-  /// Load time only.
-  /// @param cells  of one column
-  void reserve(std::size_t columns, std::size_t cells) {
-    cells_ = cells;
-    taken_ = 0;
-    memory_.reserve(static_cast<std::uint32_t>(columns * stride()));
-    columns_ = columns;
-  }
-  [[nodiscard]] std::size_t stride() const { return (cells_ + 7) / 8 * 8; }
-  /// The next of the columns.
-  std::span<double> take() {
-    TORSION_ASSERT(taken_ < columns_);
-    return {memory_.data() + stride() * taken_++, cells_};
-  }
-
- private:
-  Column<double> memory_;
-  std::size_t columns_ = 0;
-  std::size_t cells_ = 0;
-  std::size_t taken_ = 0;
-};
+/// Lays columns of one region's cells in one piece of memory, each followed by zeros up to whole
+/// lanes (math/wide_lanes.hpp). Load time only.
+/// @param cells  of one column
+void lay_columns(std::size_t cells, std::span<std::span<double>* const> columns,
+                 Column<double>& memory);
 
 /// Memory that the systems of one step share about contacts. Reserved at load; nothing in it
 /// outlives a step, so that a saved state replays without it.
@@ -141,7 +121,7 @@ struct ContactScratch {
   // main_beams, for paper_normal_forces
   std::vector<BeamSpring> beams;  // (regions) by block of cells
 
-  CellColumnMemory column_memory;          // what the columns above are in
+  Column<double> column_memory;            // what the columns above are in
   std::vector<std::uint32_t> cell_memory;  // what the cells of left_cells are in
 
   /// Takes all memory that a step can need.

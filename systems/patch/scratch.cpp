@@ -1,5 +1,9 @@
 #include "systems/patch/scratch.hpp"
 
+#include <array>
+
+#include "systems/math/wide_lanes.hpp"
+
 namespace torsion {
 
 void PatchScratch::reserve(const Model& model, const State& state) {
@@ -8,18 +12,16 @@ void PatchScratch::reserve(const Model& model, const State& state) {
   }
   const std::uint32_t side = model.settings.grid_side;
   const std::size_t cells = std::size_t{side} * side;
-  column_memory.reserve(22, cells);
-  for (std::span<double>* each :
-       {&columns.depth,    &columns.friction,   &columns.target_x,   &columns.target_y,
-        &columns.pressure, &columns.traction_x, &columns.traction_y, &columns.depression,
-        &columns.moved_x,  &columns.moved_y,    &columns.slips,      &places.x,
-        &places.y,         &places.height,      &places.share,       &places.softness,
-        &places.root,      &places.from_x,      &places.from_y,      &support.x,
-        &support.y,        &support.z}) {
-    *each = column_memory.take();
-  }
+  const std::array all{
+      &columns.depth,    &columns.friction,   &columns.target_x,   &columns.target_y,
+      &columns.pressure, &columns.traction_x, &columns.traction_y, &columns.depression,
+      &columns.moved_x,  &columns.moved_y,    &columns.slips,      &places.x,
+      &places.y,         &places.height,      &places.share,       &places.softness,
+      &places.root,      &places.from_x,      &places.from_y,      &support.x,
+      &support.y,        &support.z};
+  lay_columns(cells, all, column_memory);
   if (!state.footings.empty()) {
-    support_terms.assign(kSupportTerms * column_memory.stride(), 0.0);
+    support_terms.assign(kSupportTerms * whole_lanes(cells), 0.0);
     disc_stiffness = make_disc_stiffness();
   }
   work.reserve(side);

@@ -28,7 +28,7 @@ struct PatchScratch {
   HeldBefore held_before;                      // (cells of one region) while its grid moves
   std::vector<CellTraction> tractions_before;  // likewise
 
-  CellColumnMemory column_memory;  // what the columns above are in
+  Column<double> column_memory;  // what the columns above are in
 
   /// Takes all memory that a step can need; none where no body has this model.
   void reserve(const Model& model, const State& state);

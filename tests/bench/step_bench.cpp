@@ -174,6 +174,29 @@ void longest_step(benchmark::State& state, const std::string& name) {
   state.counters["longest_us"] = 1e6 * times.back();
 }
 
+/// What who draws asks for beside the step: of a scene in full contact, with the models that `auto`
+/// takes.
+void snapshot_of_scene(benchmark::State& state, const std::string& name) {
+  Result<Session> opened = open_session(test::shipped_scene(name), PrepareOptions{}, true);
+  if (!opened) {
+    state.SkipWithError(opened.error().text.c_str());
+    return;
+  }
+  Session session = std::move(opened).value();
+  const World& world = session.simulation.world;
+  while (world.state.clock.time < 2.0) {
+    step_scripted(session);
+  }
+  Snapshot snapshot;
+  snapshot.reserve(world.model, world.state);
+  for (auto _ : state) {
+    const auto start = SteadyClock::now();
+    take_snapshot(session.simulation, snapshot);
+    state.SetIterationTime(seconds_since(start));
+  }
+  state.counters["regions"] = world.state.regions.size();
+}
+
 /// ball_on_cube with the cube as a mesh of about 6 n^2 vertices.
 void step_of_mesh(benchmark::State& state) {
   LoadedScene loaded = load_gltf(test::shipped_scene("ball_on_cube"));
@@ -343,6 +366,12 @@ BENCHMARK_CAPTURE(step_of_model, patch_many_regions, "many_regions", ContactMode
 BENCHMARK_CAPTURE(step_of_model, patch_many_regions_compliance, "many_regions",
                   ContactModel::kPatch, "patch_forces", BodyModel::kCompliance)
     ->Arg(12)
+    ->Iterations(5000)
+    ->Apply(in_turns);
+BENCHMARK_CAPTURE(snapshot_of_scene, ball_on_cube_soft, "ball_on_cube_soft")
+    ->Iterations(5000)
+    ->Apply(in_turns);
+BENCHMARK_CAPTURE(snapshot_of_scene, many_regions, "many_regions")
     ->Iterations(5000)
     ->Apply(in_turns);
 // 6 (2 n)^2 vertices: 1 k, 10 k, 100 k, 1 M.

@@ -47,7 +47,7 @@ double largest_twist(const FrameWorld& frame) {
 double largest_pressure(const World& world) {
   double largest = 0.0;
   for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
-    const double area = world.state.regions.at<RegionGeometry>(region).area;
+    const double area = world.state.regions.at<Contact>(region).area;
     const double force = world.state.regions.at<RegionNormal>(region).force;
     largest = std::max(largest, area > 0.0 ? force / area : 0.0);
   }

@@ -33,7 +33,7 @@ struct Clock {
 // Parallel columns of each table. What a column means is said at its struct in ecs/components.hpp.
 using RegionTable =
     Table<RegionIdentity, RegionFrame, RegionCarrier, RegionSupport, RegionReaction, SupportField,
-          TractionFrame, RegionGeometry, RegionMotion, RegionNormal, RegionFriction, PatchState,
+          TractionFrame, Overlap, Contact, RegionMotion, RegionNormal, RegionFriction, PatchState,
           PatchEnergy, LayerGrid, SmoothContact, MdrState, RegionWrench>;
 using CellTable = Table<CellGeometry, CellTraction>;
 using PatchCellTable = Table<PatchMovedX, PatchMovedY, PatchDepression, PatchHeldX, PatchHeldY,

@@ -159,7 +159,7 @@ void contact_spots(const Snapshot& snapshot, std::uint32_t bodies,
   for (std::uint32_t body = 0; body < bodies; ++body) {
     const auto first = static_cast<std::uint32_t>(spots.size());
     for (std::uint32_t region = 0; region < identities.size(); ++region) {
-      const double radius = snapshot.regions.at<RegionGeometry>(region).radius;
+      const double radius = snapshot.regions.at<Contact>(region).radius;
       const bool drawn = identities[region].body == body && radius > 0.0;
       if (drawn && spots.size() - first < kMaxRegionsPerBody) {
         const glm::dvec3& origin = snapshot.regions.at<RegionFrame>(region).origin;

@@ -48,19 +48,18 @@ void draw_region(const Pencil& pencil, const LiveFrame& frame, const World& worl
   const RegionTable& regions = frame.snapshot.regions;
   const Pose& body = world.model.bodies.at<Pose>(regions.at<RegionIdentity>(region).body);
   const RegionFrame& axes = regions.at<RegionFrame>(region);
-  const RegionGeometry& geometry = regions.at<RegionGeometry>(region);
+  const Contact& contact = regions.at<Contact>(region);
   const auto on_ring = [&](double angle) {
-    return in_world(
-        body, geometry.equivalent_point + geometry.radius * (std::cos(angle) * axes.tangent_x +
-                                                             std::sin(angle) * axes.tangent_y));
+    return in_world(body,
+                    contact.equivalent_point + contact.radius * (std::cos(angle) * axes.tangent_x +
+                                                                 std::sin(angle) * axes.tangent_y));
   };
   for (int i = 0; i < kSides; ++i) {
     const double step = 2.0 * std::numbers::pi / kSides;
     pencil.line(on_ring(i * step), on_ring((i + 1) * step), kRegion);
   }
-  const glm::dvec3 center = in_world(body, geometry.equivalent_point);
-  pencil.line(center,
-              in_world(body, geometry.equivalent_point + 1.5 * geometry.radius * axes.normal),
+  const glm::dvec3 center = in_world(body, contact.equivalent_point);
+  pencil.line(center, in_world(body, contact.equivalent_point + 1.5 * contact.radius * axes.normal),
               kRegion);
   pencil.line(center, on_ring(regions.at<RegionMotion>(region).turn), kRegion);
 }

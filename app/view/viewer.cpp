@@ -31,7 +31,7 @@ constexpr double kLeastTwistScale = 5.0 * std::numbers::pi / 180.0;  // rad
 /// Ends of the colour scales that hold everything so far.
 void widen_scales(const Snapshot& snapshot, DrawOptions& draw, double& twist, double& pressure) {
   for (std::uint32_t region = 0; region < snapshot.regions.size(); ++region) {
-    const double area = snapshot.regions.at<RegionGeometry>(region).area;
+    const double area = snapshot.regions.at<Contact>(region).area;
     twist = std::max(twist, std::abs(snapshot.regions.at<RegionMotion>(region).turn));
     if (area > 0.0) {
       pressure = std::max(pressure, snapshot.regions.at<RegionNormal>(region).force / area);

@@ -72,8 +72,7 @@ void Viewer::turn_axis(std::uint32_t tool, glm::dvec3& pivot, glm::dvec3& axis) 
     const Pose& body =
         world.model.bodies.at<Pose>(snapshot.regions.at<RegionIdentity>(*region).body);
     axis = body.rotation * snapshot.regions.at<RegionFrame>(*region).normal;
-    pivot = body.position +
-            body.rotation * snapshot.regions.at<RegionGeometry>(*region).equivalent_point;
+    pivot = body.position + body.rotation * snapshot.regions.at<Contact>(*region).equivalent_point;
     return;
   }
   axis = glm::dvec3(0.0, 1.0, 0.0);

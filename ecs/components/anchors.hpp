@@ -55,13 +55,16 @@ struct Footing {
   // Forces at the ports that are a unit wrench about `center`, spread as a rigid disc would.
   std::array<std::array<glm::dvec3, kFootingPorts>, 6> unit_forces{};
   std::array<double, 36> own{};  // 6 x 6: motion at `center` by that unit wrench, what yields of it
+  // 3 x 3, m/N, body: how the body's bend beside its half-space moves it by a force, for contact
+  // models without cells. `patch` has the bend in its own tables (patch/influences.hpp).
+  std::array<double, 9> bend{};
 };
 
 inline constexpr std::uint32_t kSupportColumn = 16;  // terms of one axis, with one more of zero
 
 /// What becomes of a region's tractions through its footing's ports: the three axes' terms,
 /// body axes, by the tractions' moments with their terms, m/N. Column by column; in a column and
-/// from one column to the next kSupportColumn an axis. By: patch_forces; compliance (find_bend).
+/// from one column to the next kSupportColumn an axis. Written by: patch_forces.
 struct FootingResponse {
   std::uint64_t serial = 0;  // of the footing for which it was found
   std::array<double, std::size_t{9} * kSupportColumn * kSupportColumn> terms{};

@@ -21,7 +21,7 @@ struct CellGeometry {
   double bearing = 0.0;
 };
 
-/// Written by: carry_tractions and the friction forces of the contact model.
+/// Written by: the contact model.
 struct CellTraction {
   glm::dvec2 traction{0.0};    // Pa, grid, on the tool, per covered area
   double pressure = 0.0;       // Pa
@@ -52,8 +52,7 @@ struct PatchValue {
   double value = 0.0;
 };
 
-// The body's surface under the cell. Written by: patch_forces and, when the grid moves,
-// region_grids.
+// The body's surface under the cell. Written by: patch_forces.
 using PatchMovedX = PatchValue<struct MovedX>;  // m, grid: displacement of the local half-space
 using PatchMovedY = PatchValue<struct MovedY>;  // m
 using PatchDepression = PatchValue<struct Depression>;  // m: into the body
@@ -61,7 +60,7 @@ using PatchHeldX = PatchValue<struct HeldX>;  // m, grid: where friction holds o
 using PatchHeldY = PatchValue<struct HeldY>;  // m
 using PatchKnown = PatchValue<struct Known>;  // 1, or 0: where it is held is where it has moved to
 
-// What the last step changed, from which the next one starts. Written by: as above.
+// What the last step changed, from which the next one starts. Written by: patch_forces.
 using PatchChangeX = PatchValue<struct ChangeX>;  // Pa, grid: of the traction, on the body
 using PatchChangeY = PatchValue<struct ChangeY>;  // Pa
 using PatchChangePressure = PatchValue<struct ChangePressure>;      // Pa

@@ -29,7 +29,7 @@ inline std::uint32_t block_of(const RegionIdentity& region) {
 }
 
 /// The grid's placement. Its x and y axes keep their direction as well as the turning normal lets
-/// them. Written by: group_regions and region_grids.
+/// them. Written by: region_grids.
 struct RegionFrame {
   glm::dvec3 origin{0.0};               // m, body: on the rest surface, centre of the grid
   glm::dvec3 tangent_x{1.0, 0.0, 0.0};  // body, unit
@@ -47,8 +47,7 @@ struct RegionCarrier {
 };
 
 /// How the whole body's deformation has moved the material under the region, as a rigid body.
-/// Written by: compliance and, when a region begins, splits off or takes over, group_regions and
-/// region_grids; zero with other body models.
+/// Written by: compliance; zero with other body models.
 struct RegionSupport {
   glm::dvec3 about{0.0};             // m, body: the point that has gone by `translation`
   glm::dvec3 translation{0.0};       // m, body
@@ -63,9 +62,8 @@ struct RegionSupport {
 /// How the body's other regions answer to a change of this one's load, where the body gives way by
 /// much: by it they move this one, as a rigid body, by minus `motion` times the change. Without it
 /// each of two tools that pinch a soft body would feel it move away by far, and the other's answer
-/// a step later. Written by: compliance and, when a region splits off or takes over, region_grids
-/// and group_regions; zero where the body gives way by little. With contact model mdr `wrench` is
-/// what the region's own support counts on, whether others answer or not, and mdr writes it, too.
+/// a step later. Written by: compliance; zero where the body gives way by little. With contact
+/// model mdr `wrench` is what the region's own support counts on, whether others answer or not.
 struct RegionReaction {
   std::array<double, 36> motion{};  // 6 x 6, body axes, about RegionSupport::about
   std::array<double, 6> wrench{};   // on the material, about it, that the others have answered to
@@ -87,21 +85,37 @@ struct SupportField {
 
 /// Where the tractions are: the grid as it was when they were last carried over to it, moved since
 /// with the material where that sticks; half_size 0 before the first time. Written by:
-/// group_regions and carry_tractions.
+/// carry_tractions.
 struct TractionFrame {
   RegionFrame frame;
 };
 
-/// Written by: region_grids.
-struct RegionGeometry {
+/// Where the tool lies in the body's rest shape. Written by: region_grids.
+struct Overlap {
+  glm::dvec3 center{0.0};       // m, body: its centroid, on the tool's surface
+  glm::dvec3 rest_center{0.0};  // m, body: above that on the body's rest surface
+  double area = 0.0;            // m^2
+  double radius = 0.0;          // m: sqrt(area / pi)
+  double mean_depth = 0.0;      // m: x of the paper, over the area
+  double largest_depth = 0.0;   // m
+  glm::dvec3 mean_normal{0.0};  // body, unit: of the rest surface, over the area
+};
+
+/// What of the overlap carries load, as the contact model finds it: a ball's contact on an elastic
+/// half-space has half the area of its overlap. Without force it is the overlap. Written by: the
+/// contact model.
+struct Contact {
   glm::dvec3 equivalent_point{0.0};  // m, body: p_eq, the pressure centre, on the tool's surface
   glm::dvec3 rest_point{0.0};        // m, body: where p_eq was on the body's rest surface
   double area = 0.0;                 // m^2
-  double radius = 0.0;               // m: a = sqrt(area / pi)
-  double mean_depth = 0.0;           // m: x, the overlap's mean over the area
-  double largest_depth = 0.0;        // m
-  glm::dvec3 mean_normal{0.0};       // body, unit: of the rest surface, mean over the area
+  double radius = 0.0;               // m: a, the contact radius
+  double depth = 0.0;                // m: of the tool under the rest surface, as the model has it
 };
+
+/// The contact that is all of the overlap.
+inline Contact contact_of(const Overlap& overlap) {
+  return {overlap.center, overlap.rest_center, overlap.area, overlap.radius, overlap.mean_depth};
+}
 
 /// Motion of the tool over the body at the region. Written by: region_motion.
 struct RegionMotion {
@@ -117,13 +131,13 @@ struct RegionMotion {
   double lever = 0.0;  // m: l of the paper, distance to the fixed point along the axis, at least a
 };
 
-/// Written by: the contact model (paper_normal_forces, mdr_forces or patch_forces).
+/// Written by: the contact model.
 struct RegionNormal {
   double force = 0.0;      // N: F_n without rotation, along the outward normal on the tool
   double stiffness = 0.0;  // N/m: dF/dx
 };
 
-/// Written by: the contact model (paper_friction_forces, mdr_forces or patch_forces).
+/// Written by: the contact model.
 struct RegionFriction {
   glm::dvec2 force{0.0};       // N, grid, on the tool
   double couple = 0.0;         // N m, about the normal through p_eq, on the tool
@@ -133,8 +147,7 @@ struct RegionFriction {
   double stick_share = 0.0;    // of the area that sticks: there the body moves with the tool
 };
 
-/// How the contact model `patch` stands in a region. Written by: patch_forces and, when the grid
-/// moves or a region splits off, group_regions and region_grids.
+/// How the contact model `patch` stands in a region. Written by: patch_forces.
 struct PatchState {
   glm::dvec2 slide{0.0};       // m, grid: motion of the last step, as in RegionMotion
   double spin = 0.0;           // rad, likewise
@@ -151,8 +164,7 @@ struct PatchState {
 };
 
 /// What a region with contact model `patch` holds of the work done on it, and the forces of the
-/// last step that its work is reckoned by. Written by: patch_forces and, when a region splits off
-/// or takes over, region_grids and group_regions.
+/// last step that its work is reckoned by. Written by: patch_forces.
 struct PatchEnergy {
   double held = 0.0;       // J, with what the body as a whole holds of its load
   double owed = 0.0;       // J: lacking work that is still to be charged
@@ -168,7 +180,7 @@ struct PatchEnergy {
 };
 
 /// Where smooth exact shapes lie deepest in each other in a region with contact model `mdr`.
-/// Written by: mdr_contacts.
+/// Written by: region_grids.
 struct SmoothContact {
   double share = 0.0;        // 1: known from the shapes; 0: not, what the cells show counts
   double depth = 0.0;        // m, along the common normal

@@ -46,16 +46,15 @@ RestOverlap rest_overlap(const StepContext& context, std::uint32_t region) {
   }
   // Between samples it may be deeper, as cells show it; but where the body as a whole has moved,
   // theirs is the depth under the moved surface.
-  const double of_cells = state.regions.at<RegionGeometry>(region).largest_depth;
+  const double of_cells = state.regions.at<Overlap>(region).largest_depth;
   overlap.depth = std::max(overlap.depth, body_law_of(model, identity.body).moves_as_a_whole
                                               ? std::min(of_cells, kDeeper * overlap.depth)
                                               : of_cells);
   // Samples lie within the overlap; it ends between them and their neighbours, which are at most as
   // far away as what makes two points one region.
   const double threshold = model.bodies.at<BodyModels>(identity.body).region_threshold;
-  const RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
   const double by_samples = overlap.depth > 0.0 ? 0.5 * glm::length(highest - lowest) : 0.0;
-  overlap.radius = std::max(by_samples, geometry.radius) + threshold;
+  overlap.radius = std::max(by_samples, state.regions.at<Contact>(region).radius) + threshold;
   return overlap;
 }
 

@@ -65,29 +65,29 @@ void add_up(const CellColumns& columns, double cell_area, std::size_t count,
 
 }  // namespace
 
-RegionGeometry summarize_cells(const Grid& grid) {
+Overlap summarize_cells(const Grid& grid) {
   GeometryLanes lanes;
   add_up(grid.scratch.cell_columns, cell_area(grid.frame, grid.side), grid.cells.size(), lanes);
-  RegionGeometry geometry;
-  geometry.equivalent_point = grid.frame.origin;
-  geometry.rest_point = grid.frame.origin;
-  geometry.mean_normal = grid.frame.normal;
-  geometry.area = sum_of(lanes.area);
-  geometry.largest_depth = *std::ranges::max_element(lanes.depth);
-  if (geometry.area <= 0.0) {
-    return geometry;
+  Overlap overlap;
+  overlap.center = grid.frame.origin;
+  overlap.rest_center = grid.frame.origin;
+  overlap.mean_normal = grid.frame.normal;
+  overlap.area = sum_of(lanes.area);
+  overlap.largest_depth = *std::ranges::max_element(lanes.depth);
+  if (overlap.area <= 0.0) {
+    return overlap;
   }
   const glm::dvec3 first_moment(sum_of(lanes.x), sum_of(lanes.y), sum_of(lanes.z));
-  geometry.equivalent_point = grid_to_body(grid.frame, first_moment / geometry.area);
-  geometry.mean_depth = sum_of(lanes.volume) / geometry.area;
-  geometry.rest_point = geometry.equivalent_point + grid.frame.normal * geometry.mean_depth;
-  geometry.radius = std::sqrt(geometry.area / std::numbers::pi);
+  overlap.center = grid_to_body(grid.frame, first_moment / overlap.area);
+  overlap.mean_depth = sum_of(lanes.volume) / overlap.area;
+  overlap.rest_center = overlap.center + grid.frame.normal * overlap.mean_depth;
+  overlap.radius = std::sqrt(overlap.area / std::numbers::pi);
   const glm::dvec3 normal(sum_of(lanes.normal_x), sum_of(lanes.normal_y), sum_of(lanes.normal_z));
-  if (glm::length(normal) > 0.1 * geometry.area) {
-    geometry.mean_normal = glm::normalize(tangent_to_body(grid.frame, glm::dvec2(normal)) +
-                                          grid.frame.normal * normal.z);
+  if (glm::length(normal) > 0.1 * overlap.area) {
+    overlap.mean_normal = glm::normalize(tangent_to_body(grid.frame, glm::dvec2(normal)) +
+                                         grid.frame.normal * normal.z);
   }
-  return geometry;
+  return overlap;
 }
 
 }  // namespace torsion

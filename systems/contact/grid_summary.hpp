@@ -4,7 +4,7 @@
 
 namespace torsion {
 
-/// Area, depths, pressure centre and mean normal from the cells.
-RegionGeometry summarize_cells(const Grid& grid);
+/// Area, depths, centroid and mean normal from the cells.
+Overlap summarize_cells(const Grid& grid);
 
 }  // namespace torsion

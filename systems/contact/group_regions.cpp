@@ -208,7 +208,7 @@ void match_by_distance(const Model& model, const State& state, ContactScratch& s
     std::uint32_t cluster = kNoRow;
     for (const ContactPoint& point : points) {
       const double distance =
-          glm::distance(point.position, state.regions.at<RegionGeometry>(region).equivalent_point);
+          glm::distance(point.position, state.regions.at<Contact>(region).equivalent_point);
       if (scratch.owners[point.cluster].region == kNoRow && distance < nearest) {
         nearest = distance;
         cluster = point.cluster;

@@ -208,8 +208,8 @@ class ClusterBoxes {
     const RegionFrame& frame = state.regions.at<RegionFrame>(region);
     const glm::dvec3 middle = frame.origin + state.regions.at<RegionCarrier>(region).translation +
                               state.regions.at<RegionSupport>(region).translation;
-    const double reach = 2.0 * (glm::length(frame.half_size) +
-                                state.regions.at<RegionGeometry>(region).largest_depth);
+    const double reach =
+        2.0 * (glm::length(frame.half_size) + state.regions.at<Overlap>(region).largest_depth);
     return static_cast<std::size_t>(
         std::count_if(boxes_.begin(), boxes_.begin() + count_, [&](const Bounds& box) {
           return boxes_meet(box, {middle, middle}, reach);

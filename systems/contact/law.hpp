@@ -26,8 +26,8 @@ struct ContactLaw {
   /// finds in its own equations what that does to a body that moves as a whole. Others know a
   /// contact as a whole: a force, and a couple about its middle.
   bool by_cells = false;
-  /// It moves RegionSupport by its own load in the step in which that is found
-  /// (support/own_answer.hpp).
+  /// It reckons with how the body gives way to its load in the step in which that is found
+  /// (support/own_answer.hpp): writes ContactScratch::support_answers.
   bool moves_own_support = false;
   /// On a body that moves as a whole: so many times a contact's own compliance the body has to give
   /// way for other regions to answer within a step (support/body_law.hpp).
@@ -51,6 +51,9 @@ struct ContactLaw {
   /// Finds its cells (find_cells in grid_cells.hpp), and lays it anew where they ask for that.
   void (*find_cells)(StepContext& context, std::uint32_t region,
                      const RegionPoints& contact) = nullptr;
+  /// What it knows of the overlap besides the cells, once all regions have theirs: it may move
+  /// Overlap, and RegionFrame's normal with it. Null: nothing.
+  void (*refine)(StepContext& context, std::uint32_t region) = nullptr;
   /// Half the sides, at least `least`, m, of a grid that suits it; null: any will do.
   glm::dvec2 (*half_size)(const glm::dvec2& least) = nullptr;
   /// Columns at the grid's left that take no part; null: none.

@@ -144,7 +144,7 @@ ContactPoint deepest_of_cluster(const Grid& grid, const RegionPoints& contact) {
 
 void look_along_normal(const Grid& grid, const RegionPoints& contact) {
   constexpr double kLittle = 0.1;  // of the depth
-  const RegionGeometry seen = summarize_cells(grid);
+  const Overlap seen = summarize_cells(grid);
   const double sine = glm::length(glm::cross(grid.frame.normal, seen.mean_normal));
   const double reach = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
   if (sine * reach <= kLittle * seen.largest_depth) {
@@ -192,7 +192,7 @@ void follow_overlap(StepContext& context, std::uint32_t region, const RegionPoin
   }
   include_points(grid, contact, box);
   approach(grid, box, moves);
-  turn_normal_to(grid.frame, context.state.regions.at<RegionGeometry>(region).mean_normal);
+  turn_normal_to(grid.frame, context.state.regions.at<Overlap>(region).mean_normal);
 }
 
 void find_overlap(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
@@ -216,12 +216,15 @@ void region_grids(StepContext& context) {
   for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
     const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
     law_of(model, identity.body).find_cells(context, region, contact_of(context, identity));
-    state.regions.at<RegionGeometry>(region) = summarize_cells(grid_of(context, region));
+    state.regions.at<Overlap>(region) = summarize_cells(grid_of(context, region));
   }
   for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
     const ContactLaw& law = law_of(model, state.regions.at<RegionIdentity>(region).body);
     if (law.share_out != nullptr) {
       law.share_out(context, region);
+    }
+    if (law.refine != nullptr) {
+      law.refine(context, region);
     }
   }
 }

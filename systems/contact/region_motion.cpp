@@ -39,19 +39,19 @@ AxisInBody axis_in_body(const Model& model, const State& state, const RegionIden
 
 /// Where the axis meets the plane through p_eq, and how much of it counts as going through the
 /// region.
-void aim_axis(const AxisInBody& axis, const RegionFrame& frame, const RegionGeometry& geometry,
+void aim_axis(const AxisInBody& axis, const RegionFrame& frame, const Overlap& overlap,
               RegionMotion& motion) {
-  const glm::dvec3 center = body_to_grid(frame, geometry.equivalent_point);
+  const glm::dvec3 center = body_to_grid(frame, overlap.center);
   motion.pivot = glm::dvec2(center);
   motion.axis_share = 0.0;
   const double slope = glm::dot(axis.along, frame.normal);
-  if (std::abs(slope) < kGrazing || geometry.radius <= 0.0) {
+  if (std::abs(slope) < kGrazing || overlap.radius <= 0.0) {
     return;
   }
-  const double along = glm::dot(geometry.equivalent_point - axis.center, frame.normal) / slope;
+  const double along = glm::dot(overlap.center - axis.center, frame.normal) / slope;
   const glm::dvec2 meets(body_to_grid(frame, axis.center + axis.along * along));
   const double miss = glm::length(meets - motion.pivot);
-  motion.axis_share = smooth_step((geometry.radius - miss) / (kBlendBand * geometry.radius));
+  motion.axis_share = smooth_step((overlap.radius - miss) / (kBlendBand * overlap.radius));
   motion.pivot += motion.axis_share * (meets - motion.pivot);
 }
 
@@ -79,12 +79,12 @@ void region_motion(StepContext& context) {
   for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
     const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
     const RegionFrame& frame = state.regions.at<RegionFrame>(region);
-    const RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+    const Overlap& overlap = state.regions.at<Overlap>(region);
     RegionMotion& motion = state.regions.at<RegionMotion>(region);
     const AxisInBody axis = axis_in_body(model, state, identity);
     motion.axis = axis.along;
-    aim_axis(axis, frame, geometry, motion);
-    const glm::dvec3 height(0.0, 0.0, body_to_grid(frame, geometry.equivalent_point).z);
+    aim_axis(axis, frame, overlap, motion);
+    const glm::dvec3 height(0.0, 0.0, body_to_grid(frame, overlap.center).z);
     const glm::dvec3 pivot = grid_to_body(frame, glm::dvec3(motion.pivot, 0.0) + height);
     const MotionOverBody over = motion_over_body(model, state, region);
     motion.slide = glm::dvec2(body_to_grid_direction(frame, shift_after(over, pivot)));
@@ -94,9 +94,8 @@ void region_motion(StepContext& context) {
     motion.rotation += turn_of(over);
     motion.largest_rotation = std::max(motion.largest_rotation, glm::length(motion.rotation));
     const bool has_axis = glm::dot(axis.along, axis.along) > 0.0;
-    motion.lever =
-        lever_to_fixed(model.bodies.at<FixedRegion>(identity.body), geometry.equivalent_point,
-                       has_axis ? axis.along : frame.normal, geometry.radius);
+    motion.lever = lever_to_fixed(model.bodies.at<FixedRegion>(identity.body), overlap.center,
+                                  has_axis ? axis.along : frame.normal, overlap.radius);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "systems/contact/fault.hpp"
 #include "systems/contact/force_bound.hpp"
+#include "systems/contact/law.hpp"
 #include "systems/contact/region_motion.hpp"
 #include "systems/contact/scratch.hpp"
 #include "systems/math/finite.hpp"
@@ -30,7 +31,21 @@ Wrench operator*(const Wrench& a, double share) {
   return {a.force * share, a.torque * share};
 }
 
-Wrench computed_wrench(const Model& model, const State& state, std::uint32_t region) {
+/// Where the body as a whole has the material under a region now.
+RegionSupport support_now(const StepContext& context, std::uint32_t region) {
+  const RegionIdentity& identity = context.state.regions.at<RegionIdentity>(region);
+  RegionSupport support = context.state.regions.at<RegionSupport>(region);
+  if (law_of(context.model, identity.body).moves_own_support) {
+    const SupportAnswer& answer = context.scratch.support_answers[block_of(identity)];
+    support.translation += answer.translation;
+    support.rotation += answer.rotation;
+  }
+  return support;
+}
+
+Wrench computed_wrench(const StepContext& context, std::uint32_t region) {
+  const Model& model = context.model;
+  const State& state = context.state;
   const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const RegionFriction& friction = state.regions.at<RegionFriction>(region);
@@ -38,9 +53,9 @@ Wrench computed_wrench(const Model& model, const State& state, std::uint32_t reg
   glm::dvec3 force = frame.normal * state.regions.at<RegionNormal>(region).force +
                      tangent_to_body(frame, friction.force);
   glm::dvec3 couple = frame.normal * friction.couple;
-  glm::dvec3 point = state.regions.at<RegionGeometry>(region).equivalent_point;
+  glm::dvec3 point = state.regions.at<Contact>(region).equivalent_point;
   // The contact was found in the axes of the material under it, which has gone with the body.
-  const RegionSupport& support = state.regions.at<RegionSupport>(region);
+  const RegionSupport support = support_now(context, region);
   const double turn = glm::length(support.rotation);
   if (turn > 0.0) {
     const glm::dquat rotation = glm::angleAxis(turn, support.rotation / turn);
@@ -59,11 +74,11 @@ Wrench computed_wrench(const Model& model, const State& state, std::uint32_t reg
 /// when the run began or because samples had missed it. By Hertz' law, F ~ d^(3/2).
 double share_by_motion(const Model& model, const State& state, std::uint32_t region) {
   constexpr double kMore = 1.2;  // times the way: depths are told by cells
-  const RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
-  const glm::dvec3 shift =
-      shift_at(motion_over_body(model, state, region), geometry.equivalent_point);
+  const glm::dvec3 shift = shift_at(motion_over_body(model, state, region),
+                                    state.regions.at<Contact>(region).equivalent_point);
   const double way = -glm::dot(shift, state.regions.at<RegionFrame>(region).normal);
-  const double share = kMore * way / std::max(geometry.largest_depth, 1e-300);
+  const double share =
+      kMore * way / std::max(state.regions.at<Overlap>(region).largest_depth, 1e-300);
   return share < 1.0 ? std::pow(std::max(share, 0.0), 1.5) : 1.0;
 }
 
@@ -147,7 +162,7 @@ void region_wrenches(StepContext& context) {
     RegionWrench& wrench = state.regions.at<RegionWrench>(region);
     const bool begins = wrench.event_now == static_cast<std::uint32_t>(RegionEvent::kBegins);
     const Wrench before = wrench.on_tool;
-    fade_event(wrench, computed_wrench(model, state, region),
+    fade_event(wrench, computed_wrench(context, region),
                state.regions.at<PatchState>(region).along_last,
                begins ? share_by_motion(model, state, region) : 0.0, dt / kEventFade);
     const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);

@@ -48,6 +48,7 @@ void ContactScratch::reserve(const Model& model, const State& state) {
   left_cells.cells = cell_memory;
   near_parts.assign(model.parts.size(), 0);
   beams.assign(state.regions.capacity(), BeamSpring{});
+  support_answers.assign(state.regions.capacity(), SupportAnswer{});
 }
 
 }  // namespace torsion

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -85,6 +86,18 @@ struct BeamSpring {
   double stiffness = 0.0;  // N/m, along the beam; 0: there is none
 };
 
+/// How the body as a whole has given way within the step to what a contact model has found in it:
+/// of those that reckon with it (ContactLaw::moves_own_support). The body model takes it over into
+/// RegionSupport and RegionReaction.
+struct SupportAnswer {
+  glm::dvec3 translation{0.0};  // m, body, of RegionSupport::about
+  glm::dvec3 rotation{0.0};     // rad, body
+  // Of it, what the contact has not reckoned with and feels in the next step:
+  glm::dvec3 translation_left{0.0};  // m, body
+  glm::dvec3 rotation_left{0.0};     // rad, body
+  std::array<double, 6> wrench{};    // on the material, about the footing's centre, for which it is
+};
+
 /// Lays columns of one region's cells in one piece of memory, each followed by zeros up to whole
 /// lanes (math/wide_lanes.hpp). Load time only.
 /// @param cells  of one column
@@ -120,6 +133,9 @@ struct ContactScratch {
 
   // main_beams, for paper_normal_forces
   std::vector<BeamSpring> beams;  // (regions) by block of cells
+
+  // the contact model, for region_wrenches and compliance
+  std::vector<SupportAnswer> support_answers;  // (regions) by block of cells
 
   Column<double> column_memory;            // what the columns above are in
   std::vector<std::uint32_t> cell_memory;  // what the cells of left_cells are in

@@ -46,7 +46,7 @@ StuckStiffness stuck_stiffness(const Model& model, const State& state, std::uint
   stiffness.along_normal = 4.0 * g * radius / (1.0 - nu) * share;
   stiffness.about_normal = 16.0 / 3.0 * g * cube * bonded_turn_share(axes, nu);
   stiffness.about_tangents = glm::dvec2(8.0 / 3.0 * g * cube / (1.0 - nu));
-  const double depth = state.regions.at<RegionGeometry>(region).largest_depth;
+  const double depth = state.regions.at<Overlap>(region).largest_depth;
   if (depth > 0.0) {
     const double moved = 0.6 * state.regions.at<RegionNormal>(region).force / depth;
     stiffness.about_tangents =

@@ -19,17 +19,17 @@ constexpr double kWidestFreeTurn = 0.2;    // rad
 /// Of one region that sticks, about the tool's mass centre.
 Matrix6 contact_stiffness(const Model& model, const State& state, std::uint32_t region,
                           const glm::dvec3& center) {
-  const RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+  const Contact& contact = state.regions.at<Contact>(region);
   const Pose& body = model.bodies.at<Pose>(state.regions.at<RegionIdentity>(region).body);
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
-  const StuckStiffness stuck = stuck_stiffness(model, state, region, geometry.radius);
+  const StuckStiffness stuck = stuck_stiffness(model, state, region, contact.radius);
   const Eigen::Vector3d axis = eigen(body.rotation * frame.normal);
   const Eigen::Vector3d x = eigen(body.rotation * frame.tangent_x);
   const Eigen::Vector3d y = eigen(body.rotation * frame.tangent_y);
   const Eigen::Matrix3d normal = axis * axis.transpose();
   const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - normal;
   const double along = state.regions.at<RegionNormal>(region).stiffness;
-  return spring_about(to_outer(body, geometry.equivalent_point) - center,
+  return spring_about(to_outer(body, contact.equivalent_point) - center,
                       along * normal + stuck.along_tangents * across,
                       stuck.about_normal * normal + stuck.about_tangents.x * (x * x.transpose()) +
                           stuck.about_tangents.y * (y * y.transpose()));

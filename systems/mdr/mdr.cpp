@@ -104,19 +104,19 @@ void move_friction(const MdrContact& contact, double slipped, double& kinetic_sh
 /// The contact's middle on the body's rest surface, m, body.
 glm::dvec3 middle_of(const State& state, std::uint32_t region, const RoundContact& round) {
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
-  const double height = body_to_grid(frame, state.regions.at<RegionGeometry>(region).rest_point).z;
+  const double height = body_to_grid(frame, state.regions.at<Overlap>(region).rest_center).z;
   return grid_to_body(frame, {round.center, height});
 }
 
 /// Where the contact is, for the systems after this one.
-void set_geometry(State& state, std::uint32_t region, const RoundContact& round) {
+void set_contact(State& state, std::uint32_t region, const RoundContact& round) {
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
-  RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
-  geometry.rest_point = middle_of(state, region, round);
-  geometry.equivalent_point = geometry.rest_point - frame.normal * round.depth;
-  geometry.radius = round.radius;
-  geometry.area = pi * round.radius * round.radius;
-  geometry.mean_depth = round.depth;
+  Contact& contact = state.regions.at<Contact>(region);
+  contact.rest_point = middle_of(state, region, round);
+  contact.equivalent_point = contact.rest_point - frame.normal * round.depth;
+  contact.radius = round.radius;
+  contact.area = pi * round.radius * round.radius;
+  contact.depth = round.depth;
 }
 
 /// A region's springs, as often as they are tried in a step.
@@ -145,6 +145,7 @@ struct Outcome {
   RoundContact round;
   MdrContact contact;
   MdrForces forces;
+  SupportAnswer answer;
 };
 
 /// Stiffnesses of springs that all stick and of the contact along its normal, with turns times the
@@ -237,10 +238,8 @@ ContactLoads settle(const Balance& balance, const OwnAnswer& body, const glm::dv
 }
 
 /// The contact and its springs in this step, with the body's answer to them where it is known.
-Outcome find_outcome(const Model& model, State& state, std::uint32_t region,
+Outcome find_outcome(const Model& model, const State& state, std::uint32_t region,
                      const Springs& springs) {
-  RegionSupport& support = state.regions.at<RegionSupport>(region);
-  support.translation_step = support.rotation_step = glm::dvec3(0.0);  // region_motion has it
   Outcome outcome;
   outcome.round = round_contact(model, state, region);
   if (outcome.round.force <= 0.0) {
@@ -261,9 +260,13 @@ Outcome find_outcome(const Model& model, State& state, std::uint32_t region,
       settle(balance, body, -glm::dvec3(friction.force, friction.couple), outcome);
   const RegionMotion& motion = state.regions.at<RegionMotion>(region);
   const glm::dvec2 slide = slide_at(motion, outcome.round.center) - outcome.contact.slide;
-  move_by_own_answer(model, state, region, body, more,
-                     ContactLoads(slide, motion.spin - outcome.contact.spin, 0.0));
+  outcome.answer = support_answer(model, state, region, body, more,
+                                  ContactLoads(slide, motion.spin - outcome.contact.spin, 0.0));
   return outcome;
+}
+
+std::span<MdrLayer> layers_of(State& state, std::uint32_t block) {
+  return state.mdr_layers.rows<MdrLayer>({block * kMdrLayers, kMdrLayers});
 }
 
 void move_region(StepContext& context, const MdrTables& tables, std::uint32_t region) {
@@ -273,13 +276,14 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
   MdrState& own = state.regions.at<MdrState>(region);
   RegionNormal& normal = state.regions.at<RegionNormal>(region);
   RegionFriction& tangential = state.regions.at<RegionFriction>(region);
-  const auto layers =
-      state.mdr_layers.rows<MdrLayer>({block_of(identity) * kMdrLayers, kMdrLayers});
+  const std::span<MdrLayer> layers = layers_of(state, block_of(identity));
   Springs springs{tables, {own.flat_share, own.elongation}, own.radius, {}, layers};
   std::ranges::copy(layers, springs.before.begin());
   const Outcome outcome = find_outcome(model, state, region, springs);
+  context.scratch.support_answers[block_of(identity)] = outcome.answer;
   const RoundContact& round = outcome.round;
   const MdrForces& forces = outcome.forces;
+  state.regions.at<Contact>(region) = contact_of(state.regions.at<Overlap>(region));
   normal = RegionNormal{};
   tangential = RegionFriction{};
   if (round.force <= 0.0) {
@@ -300,12 +304,8 @@ void move_region(StepContext& context, const MdrTables& tables, std::uint32_t re
   tangential.stick_share = forces.stick_radius * forces.stick_radius;
   tangential.stick_radius = forces.stick_radius * round.radius;
   tangential.stick_turn = layers.back().turn;
-  set_geometry(state, region, round);
+  set_contact(state, region, round);
   set_cells(model, state, region, round, forces.stick_radius);
-}
-
-std::span<MdrLayer> layers_of(State& state, std::uint32_t block) {
-  return state.mdr_layers.rows<MdrLayer>({block * kMdrLayers, kMdrLayers});
 }
 
 void forget_layers(const Model& /*model*/, State& state, std::uint32_t block) {
@@ -318,10 +318,6 @@ void turn_layers(State& state, std::uint32_t region, const glm::dmat2& back) {
   }
 }
 
-constexpr System<StepContext> kMdrPlace[] = {
-    {"mdr_contacts", "where smooth shapes lie deepest in each other",
-     "a body with contact model mdr", any_with<ContactModel::kMdr>, mdr_contacts},
-};
 constexpr System<StepContext> kMdrSolve[] = {
     {"mdr_forces", "round contacts of an elastic half-space: force, friction and torque",
      "a body with contact model mdr", any_with<ContactModel::kMdr>, mdr_forces},
@@ -335,10 +331,10 @@ const ContactLaw kMdrLaw{
     .moves_own_support = true,
     .answers_from = 10.0,  // only when tools that pinch a body sway it
     .grid_side = 12,
-    .place = kMdrPlace,
     .solve = kMdrSolve,
     .follow = follow_overlap,
     .find_cells = find_overlap,
+    .refine = refine_overlap,
     .turn = turn_layers,
     .begin = forget_layers,
 };

@@ -9,7 +9,7 @@ namespace torsion {
 
 /// Normal force, friction and couple of every region of a body with this model. Writes MdrLayer,
 /// MdrState, CellTraction, RegionCarrier, RegionNormal, RegionFriction and, from the contact's
-/// ellipse, RegionGeometry.
+/// ellipse, Contact.
 void mdr_forces(StepContext& context);
 
 }  // namespace torsion

@@ -60,17 +60,17 @@ RoundContact contact_of_shapes(const SmoothContact& smooth, const Elasticity& el
 RoundContact contact_of_cells(const Model& model, const State& state, std::uint32_t region,
                               const Elasticity& elasticity) {
   const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
-  const RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+  const Overlap& overlap = state.regions.at<Overlap>(region);
   const ContactShape shape =
       fit_contact_shape(state.regions.at<RegionFrame>(region), model.settings.grid_side,
                         state.cells.rows<CellGeometry>(identity.cells));
   RoundContact contact;
-  if (shape.depth <= 0.0 || geometry.area <= 0.0) {
+  if (shape.depth <= 0.0 || overlap.area <= 0.0) {
     return contact;
   }
   contact.center = shape.apex;
   contact.depth = shape.depth;
-  const double overlap = std::sqrt(geometry.area / pi);
+  const double radius_of_area = std::sqrt(overlap.area / pi);
   // No paraboloid so flat that its contact would reach beyond the overlap.
   const double least_1 = shape.depth / (shape.extent_1 * shape.extent_1);
   const double least_2 = shape.depth / (shape.extent_2 * shape.extent_2);
@@ -79,7 +79,7 @@ RoundContact contact_of_cells(const Model& model, const State& state, std::uint3
   const EllipticContact ellipse = elliptic_contact(shape.depth, bend_1, bend_2);
   const double along = std::min(ellipse.major, bend_1 < bend_2 ? shape.extent_1 : shape.extent_2);
   const double across = std::min(ellipse.minor, bend_1 < bend_2 ? shape.extent_2 : shape.extent_1);
-  contact.radius = std::min(std::sqrt(along * across), overlap);
+  contact.radius = std::min(std::sqrt(along * across), radius_of_area);
   // How much of each axis' curvature is the shapes' own.
   const double round_share = 0.5 * (shape.curvature_1 / bend_1 + shape.curvature_2 / bend_2);
   const double axes = std::clamp(across / along, 0.01, 1.0);
@@ -124,10 +124,10 @@ RoundContact round_contact(const Model& model, const State& state, std::uint32_t
   // A body model in series has the body's thickness itself.
   const bool in_series = body_law_of(model, identity.body).moves_as_a_whole;
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
-  const double thickness =
-      in_series ? 0.0
-                : layer_thickness(model, identity.body, frame.normal,
-                                  state.regions.at<RegionGeometry>(region).rest_point);
+  const double thickness = in_series
+                               ? 0.0
+                               : layer_thickness(model, identity.body, frame.normal,
+                                                 state.regions.at<Overlap>(region).rest_center);
   if (thickness > 0.0) {
     contact.force *= layer_force_share(contact.radius / thickness, elasticity.poisson_ratio);
   }

@@ -217,12 +217,12 @@ double beyond_paraboloid(const PlacedPart& tool, const PlacedPart& body, const C
 
 /// What is known of a region's contact from its shapes.
 /// @param at  out: the deepest place, when share > 0
-SmoothContact find_contact(const Grid& grid, const RegionGeometry& geometry,
+SmoothContact find_contact(const Grid& grid, const Overlap& overlap,
                            std::optional<CommonNormal>& at) {
   const Model& model = grid.model;
   const Pose in_tool = grid_in_tool(grid);
   const Pose in_body = grid_in_body(grid.frame);
-  const glm::dvec3 start = body_to_grid(grid.frame, geometry.equivalent_point);
+  const glm::dvec3 start = body_to_grid(grid.frame, overlap.center);
   const Nearest of_tool =
       nearest_part(model, model.tools.at<OwnedRows>(grid.identity.tool).parts, in_tool, start);
   const Nearest of_body =
@@ -249,11 +249,11 @@ SmoothContact find_contact(const Grid& grid, const RegionGeometry& geometry,
   // Along a cylinder the way to the deepest place is anything, too: what it leads to is another
   // place where the normals are opposite, if the cells lie deeper.
   const double deepest =
-      rising(at->depth, kOther * geometry.largest_depth, kDeepest * geometry.largest_depth);
+      rising(at->depth, kOther * overlap.largest_depth, kDeepest * overlap.largest_depth);
   contact.depth = at->depth;
   if (contact.depth <= 0.0) {
     // They do not touch, or just.
-    contact.share = geometry.largest_depth < kJust * size ? 1.0 : 0.0;
+    contact.share = overlap.largest_depth < kJust * size ? 1.0 : 0.0;
     return contact;
   }
   const glm::dmat2 inverse = glm::inverse(at->curvature);
@@ -277,39 +277,33 @@ SmoothContact find_contact(const Grid& grid, const RegionGeometry& geometry,
   return contact;
 }
 
-/// The frame's normal, and the geometry's points and depth, go to what the shapes say as far as it
+/// The frame's normal, and the overlap's points and depth, go to what the shapes say as far as it
 /// is known.
 /// @return the deepest place on the body, m, grid
 glm::dvec2 move_region_to(const CommonNormal& at, double share, RegionFrame& frame,
-                          RegionGeometry& geometry) {
+                          Overlap& overlap) {
   const glm::dvec3 body_point = grid_to_body(frame, at.on_body);
   const glm::dvec3 tool_point = grid_to_body(frame, at.on_tool);
   const glm::dvec3 normal = grid_to_body(frame, at.normal) - frame.origin;
   turn_normal_to(frame, glm::normalize(glm::mix(frame.normal, normal, share)));
-  geometry.mean_normal = frame.normal;
-  geometry.largest_depth = std::lerp(geometry.largest_depth, at.depth, share);
-  geometry.equivalent_point = glm::mix(geometry.equivalent_point, tool_point, share);
-  geometry.rest_point = glm::mix(geometry.rest_point, body_point, share);
+  overlap.mean_normal = frame.normal;
+  overlap.largest_depth = std::lerp(overlap.largest_depth, at.depth, share);
+  overlap.center = glm::mix(overlap.center, tool_point, share);
+  overlap.rest_center = glm::mix(overlap.rest_center, body_point, share);
   return glm::dvec2(body_to_grid(frame, body_point));
 }
 
 }  // namespace
 
-void mdr_contacts(StepContext& context) {
-  const Model& model = context.model;
+void refine_overlap(StepContext& context, std::uint32_t region) {
   State& state = context.state;
-  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
-    const Grid grid = grid_of(context, region);
-    if (model.bodies.at<BodyModels>(grid.identity.body).contact != ContactModel::kMdr) {
-      continue;
-    }
-    RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
-    SmoothContact& contact = state.regions.at<SmoothContact>(region);
-    std::optional<CommonNormal> at;
-    contact = geometry.area > 0.0 ? find_contact(grid, geometry, at) : SmoothContact{};
-    if (contact.share > 0.0 && contact.depth > 0.0) {
-      contact.place = move_region_to(*at, contact.share, grid.frame, geometry);
-    }
+  const Grid grid = grid_of(context, region);
+  Overlap& overlap = state.regions.at<Overlap>(region);
+  SmoothContact& contact = state.regions.at<SmoothContact>(region);
+  std::optional<CommonNormal> at;
+  contact = overlap.area > 0.0 ? find_contact(grid, overlap, at) : SmoothContact{};
+  if (contact.share > 0.0 && contact.depth > 0.0) {
+    contact.place = move_region_to(*at, contact.share, grid.frame, overlap);
   }
 }
 

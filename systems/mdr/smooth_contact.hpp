@@ -11,9 +11,8 @@
 
 namespace torsion {
 
-/// Finds SmoothContact of every region of a body with contact model `mdr`. Where it is known it
-/// also turns RegionFrame to the common normal and moves RegionGeometry's points and its largest
-/// depth to the deepest place.
-void mdr_contacts(StepContext& context);
+/// Finds a region's SmoothContact. Where it is known it also turns RegionFrame to the common normal
+/// and moves Overlap's points and its largest depth to the deepest place. For ContactLaw::refine.
+void refine_overlap(StepContext& context, std::uint32_t region);
 
 }  // namespace torsion

@@ -33,7 +33,7 @@ bool has_siblings(const State& state, std::uint32_t region) {
 
 BrushState brush_of(const Model& model, const State& state, std::uint32_t region) {
   const std::uint32_t body = state.regions.at<RegionIdentity>(region).body;
-  const RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+  const Contact& contact = state.regions.at<Contact>(region);
   const RegionMotion& motion = state.regions.at<RegionMotion>(region);
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const Elasticity& elasticity = model.bodies.at<Elasticity>(body);
@@ -42,20 +42,20 @@ BrushState brush_of(const Model& model, const State& state, std::uint32_t region
   brush.friction = model.bodies.at<Friction>(body);
   brush.falls = brush.friction.static_friction != brush.friction.dynamic_friction;
   brush.shear_modulus = elasticity.shear_modulus();
-  brush.pressure = geometry.area > 0.0 ? normal_force / geometry.area : 0.0;
+  brush.pressure = contact.area > 0.0 ? normal_force / contact.area : 0.0;
   const double stiffness =
-      8.0 * brush.shear_modulus * geometry.radius / (2.0 - elasticity.poisson_ratio);
-  brush.translation_stiffness = geometry.area > 0.0 ? stiffness / geometry.area : 0.0;
+      8.0 * brush.shear_modulus * contact.radius / (2.0 - elasticity.poisson_ratio);
+  brush.translation_stiffness = contact.area > 0.0 ? stiffness / contact.area : 0.0;
   brush.inverse_slip_displacement = inverse_of(
       stiffness > 0.0 ? brush.friction.dynamic_friction * normal_force / stiffness : 0.0);
   brush.inverse_limit = inverse_of(brush.pressure * brush.friction.static_friction);
   brush.several = has_siblings(state, region);
   brush.pivot = motion.pivot;
-  brush.center = glm::dvec2(body_to_grid(frame, geometry.equivalent_point));
+  brush.center = glm::dvec2(body_to_grid(frame, contact.equivalent_point));
   brush.slide = motion.slide;
   brush.spin = motion.spin;
   brush.kinetic_share = state.regions.at<RegionFriction>(region).kinetic_share;
-  set_levers(model.bodies.at<FixedRegion>(body), frame, motion, geometry.radius, brush);
+  set_levers(model.bodies.at<FixedRegion>(body), frame, motion, contact.radius, brush);
   return brush;
 }
 
@@ -140,9 +140,8 @@ double next_kinetic_share(const BrushState& brush, const BrushSums& sums, double
 
 /// r_m and phi_m of (6), (11)-(13): inside r_m the surface turns with the tool by phi_m; outside,
 /// the limit traction stands for a turn that falls as 1/r.
-void set_stick_radius(const BrushState& brush, const BrushSums& sums,
-                      const RegionGeometry& geometry, const RegionMotion& motion,
-                      RegionFriction& friction) {
+void set_stick_radius(const BrushState& brush, const BrushSums& sums, const Contact& contact,
+                      const RegionMotion& motion, RegionFriction& friction) {
   const double kinetic = friction.kinetic_share;
   const double limit = brush.pressure * ((1.0 - kinetic) * brush.friction.static_friction +
                                          kinetic * brush.friction.dynamic_friction);
@@ -153,14 +152,13 @@ void set_stick_radius(const BrushState& brush, const BrushSums& sums,
     // region's sliding left in them little is left.
     friction.stick_turn = -sums.stuck_couple / sums.stuck_stiffness;
     const double twist = std::abs(friction.stick_turn);
-    friction.stick_radius =
-        twist * geometry.radius > limit_arc ? limit_arc / twist : geometry.radius;
+    friction.stick_radius = twist * contact.radius > limit_arc ? limit_arc / twist : contact.radius;
     return;
   }
-  const double largest = 2.0 / 3.0 * limit * geometry.area * geometry.radius;
+  const double largest = 2.0 / 3.0 * limit * contact.area * contact.radius;
   const double used = largest > 0.0 ? std::clamp(-friction.couple / largest, -1.0, 1.0) : 0.0;
-  friction.stick_radius = geometry.radius;
-  friction.stick_turn = geometry.radius > 0.0 ? used * limit_arc / geometry.radius : 0.0;
+  friction.stick_radius = contact.radius;
+  friction.stick_turn = contact.radius > 0.0 ? used * limit_arc / contact.radius : 0.0;
 }
 
 }  // namespace
@@ -182,7 +180,7 @@ void paper_friction_forces(StepContext& context) {
     friction.couple = motion.axis_share * sums.couple;
     friction.stick_share = sums.area > 0.0 ? sums.stuck_area / sums.area : 0.0;
     friction.kinetic_share = next_kinetic_share(brush, sums, motion.axis_share);
-    set_stick_radius(brush, sums, state.regions.at<RegionGeometry>(region), motion, friction);
+    set_stick_radius(brush, sums, state.regions.at<Contact>(region), motion, friction);
   }
 }
 

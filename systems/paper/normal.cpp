@@ -44,13 +44,14 @@ void paper_normal_forces(StepContext& context) {
     if (model.bodies.at<BodyModels>(body).contact != ContactModel::kPaper) {
       continue;
     }
-    const RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+    const Overlap& overlap = state.regions.at<Overlap>(region);
     const Elasticity& elasticity = model.bodies.at<Elasticity>(body);
     const BeamSpring& beam = context.scratch.beams[block_of(identity)];
     const double deepest = deepest_allowed(model.bodies.at<Bounds>(body), beam);
-    const double depth = std::min(geometry.mean_depth, deepest);
-    const PaperNormalLaw law = paper_normal_law(elasticity.contact_modulus(), geometry.radius,
-                                                beam.stiffness, beam.length);
+    const double depth = std::min(overlap.mean_depth, deepest);
+    const PaperNormalLaw law =
+        paper_normal_law(elasticity.contact_modulus(), overlap.radius, beam.stiffness, beam.length);
+    state.regions.at<Contact>(region) = contact_of(overlap);
     RegionNormal& normal = state.regions.at<RegionNormal>(region);
     normal.force = law.linear * depth + law.cubic * depth * depth * depth;
     normal.stiffness = law.linear + 3.0 * law.cubic * depth * depth;

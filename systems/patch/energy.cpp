@@ -117,11 +117,11 @@ Drag drag_of(const StuckStiffness& stiffness, const RegionFrame& frame, double r
 void charge(const Model& model, State& state, std::uint32_t region, const glm::dvec3& shift,
             const glm::dvec3& turn, double lacking) {
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
-  RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+  Contact& contact = state.regions.at<Contact>(region);
   RegionNormal& normal = state.regions.at<RegionNormal>(region);
   RegionFriction& friction = state.regions.at<RegionFriction>(region);
-  const StuckStiffness stiffness = stuck_stiffness(model, state, region, geometry.radius);
-  const Drag drag = drag_of(stiffness, frame, geometry.radius, shift, turn);
+  const StuckStiffness stiffness = stuck_stiffness(model, state, region, contact.radius);
+  const Drag drag = drag_of(stiffness, frame, contact.radius, shift, turn);
   if (drag.work <= 0.0) {
     return;
   }
@@ -133,7 +133,7 @@ void charge(const Model& model, State& state, std::uint32_t region, const glm::d
   const glm::dvec2 couple = share * stiffness.about_tangents * drag.roll;
   normal.force = std::max(normal.force + share * stiffness.along_normal * drag.deepened, 0.0);
   if (normal.force > 0.0) {
-    geometry.equivalent_point +=
+    contact.equivalent_point +=
         tangent_to_body(frame, glm::dvec2(couple.y, -couple.x) / normal.force);
   }
 }
@@ -150,10 +150,10 @@ void note_forces(const State& state, std::uint32_t region, PatchEnergy& energy) 
   const RegionNormal& normal = state.regions.at<RegionNormal>(region);
   const RegionFriction& friction = state.regions.at<RegionFriction>(region);
   const RegionSupport& support = state.regions.at<RegionSupport>(region);
-  energy.depth = state.regions.at<RegionGeometry>(region).largest_depth;
+  energy.depth = state.regions.at<Overlap>(region).largest_depth;
   energy.force = frame.normal * normal.force + tangent_to_body(frame, friction.force);
   energy.couple = frame.normal * friction.couple;
-  energy.point = state.regions.at<RegionGeometry>(region).equivalent_point;
+  energy.point = state.regions.at<Contact>(region).equivalent_point;
   energy.translation_by_others = translation_by_others(support, energy.point);
   energy.rotation_by_others = support.rotation_by_others;
 }
@@ -195,7 +195,7 @@ double work_between(const PatchEnergy& before, const PatchEnergy& after,
 void take_back(const Model& model, State& state, std::uint32_t region, double lifted, double taken,
                PatchEnergy& energy) {
   RegionNormal& normal = state.regions.at<RegionNormal>(region);
-  const double radius = state.regions.at<RegionGeometry>(region).radius;
+  const double radius = state.regions.at<Contact>(region).radius;
   const double change =
       kMostCharge * stuck_stiffness(model, state, region, radius).along_normal * std::abs(lifted);
   const double share =
@@ -251,10 +251,10 @@ void split_energy(State& state, std::uint32_t from, std::uint32_t region, double
     energy.owed = part * before.owed;
     energy.lent = part * before.lent;
     energy.taken = part * before.taken;
-    energy.depth = state.regions.at<RegionGeometry>(each).largest_depth;
+    energy.depth = state.regions.at<Overlap>(each).largest_depth;
     energy.force = part * before.force;
     energy.couple = part * before.couple;
-    energy.point = state.regions.at<RegionGeometry>(each).equivalent_point;
+    energy.point = state.regions.at<Overlap>(each).center;
     energy.translation_by_others = translation_by_others(support, energy.point);
     energy.rotation_by_others = support.rotation_by_others;
   }

@@ -88,7 +88,7 @@ void include_lobes(const Grid& grid, std::uint32_t region, const RegionPoints& c
   const double force = state.regions.at<RegionNormal>(region).force;
   const double modulus = model.bodies.at<Elasticity>(grid.identity.body).contact_modulus();
   const glm::dvec2 center(
-      body_to_grid(grid.frame, state.regions.at<RegionGeometry>(region).equivalent_point));
+      body_to_grid(grid.frame, state.regions.at<Contact>(region).equivalent_point));
   const RegionSupport& support = state.regions.at<RegionSupport>(region);
   const CellFinder finder = finder_of(grid);
   for (const ContactPoint& point : points_of(grid.scratch, contact)) {
@@ -281,7 +281,7 @@ void foresee_carrier(const Model& model, State& state, std::uint32_t region) {
   const MotionOverBody motion = motion_over_body(model, state, region);
   // As a rigid body about the contact's middle, so that it does not matter where the grid has its
   // origin.
-  const glm::dvec3 middle = state.regions.at<RegionGeometry>(region).equivalent_point;
+  const glm::dvec3 middle = state.regions.at<Contact>(region).equivalent_point;
   const glm::dvec3 shift = shift_at(motion, middle);
   const double turn = share * glm::dot(turn_of(motion), frame.normal);
   RegionCarrier& carrier = state.regions.at<RegionCarrier>(region);
@@ -309,7 +309,7 @@ void lay_around_loaded(StepContext& context, std::uint32_t region, const RegionP
   if (fit.box.end.x == 0 || !(fit.cut || fit.too_small || fit.other_shape || fit.axes.is_askew())) {
     return;
   }
-  const double depth = context.state.regions.at<RegionGeometry>(region).largest_depth;
+  const double depth = context.state.regions.at<Overlap>(region).largest_depth;
   CellMove move;
   if (fit.axes.is_askew() || fit.other_shape || !shift_frame(grid, fit.box, move)) {
     const RegionFrame before = grid.frame;
@@ -342,7 +342,7 @@ void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints
   }
   lay_around_loaded(context, region, contact);
   turn_normal_to(state.regions.at<RegionFrame>(region),
-                 state.regions.at<RegionGeometry>(region).mean_normal);
+                 state.regions.at<Overlap>(region).mean_normal);
 }
 
 void find_patch_cells(StepContext& context, std::uint32_t region, const RegionPoints& contact) {

@@ -71,7 +71,7 @@ void join_patch(StepContext& context, std::uint32_t ended, std::uint32_t heir) {
     shift_origin(grid, layout.shift);
     grid.frame.half_size = layout.half_size;
     move_cells(grid, context.patch, move_between(before, grid.frame, grid.side),
-               state.regions.at<RegionGeometry>(heir).largest_depth, 0.0);
+               state.regions.at<Overlap>(heir).largest_depth, 0.0);
   }
   add_cells(grid, move_between(other.frame, grid.frame, grid.side),
             state.cells.rows<CellTraction>(other.identity.cells));

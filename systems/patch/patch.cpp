@@ -44,7 +44,7 @@ constexpr double kRolls = 2e-3;
 /// The motion of this step along that of the last one, as a share of it: 1 in steady motion, -1
 /// where it turns back.
 double share_of_last(const Patch& patch, double deepened) {
-  const double radius = patch.state.regions.at<RegionGeometry>(patch.region).radius;
+  const double radius = patch.state.regions.at<Overlap>(patch.region).radius;
   const PatchState& last = patch.own;
   const double spin = last.spin * radius;
   const double square =
@@ -65,10 +65,10 @@ ForeseenShares foreseen_shares(const Patch& patch) {
 
 /// Whether the contact rolls in this step (kRolls).
 bool rolls(const Patch& patch) {
-  const RegionGeometry& geometry = patch.state.regions.at<RegionGeometry>(patch.region);
+  const Overlap& overlap = patch.state.regions.at<Overlap>(patch.region);
   const glm::dvec3 turn = turn_of(motion_over_body(patch.model, patch.state, patch.region));
   const glm::dvec3 tilt = turn - patch.frame.normal * glm::dot(turn, patch.frame.normal);
-  return glm::length(tilt) * geometry.radius > kRolls * geometry.mean_depth;
+  return glm::length(tilt) * overlap.radius > kRolls * overlap.mean_depth;
 }
 
 /// As a step solves whose pressures have far to go.
@@ -164,23 +164,24 @@ void summarize(const Patch& patch, const PatchSums& sums) {
   RegionFriction& friction = state.regions.at<RegionFriction>(patch.region);
   RegionNormal& normal = state.regions.at<RegionNormal>(patch.region);
   RegionCarrier& carrier = state.regions.at<RegionCarrier>(patch.region);
+  Contact& contact = state.regions.at<Contact>(patch.region);
   friction = RegionFriction{};
   normal = RegionNormal{};
+  contact = contact_of(state.regions.at<Overlap>(patch.region));
   if (sums.force <= 0.0) {
     carrier = RegionCarrier{};
     return;
   }
-  RegionGeometry& geometry = state.regions.at<RegionGeometry>(patch.region);
   const std::uint32_t body = state.regions.at<RegionIdentity>(patch.region).body;
   const glm::dvec3 center(sums.center, sums.height);
   const double cell = cell_area(patch.frame, patch.side);
-  geometry.equivalent_point = grid_to_body(patch.frame, center);
-  geometry.area = sums.loaded_cells * cell;
-  geometry.radius = contact_radius(patch, sums);
-  geometry.mean_depth = sums.depth;
-  geometry.rest_point = geometry.equivalent_point + patch.frame.normal * geometry.mean_depth;
+  contact.equivalent_point = grid_to_body(patch.frame, center);
+  contact.area = sums.loaded_cells * cell;
+  contact.radius = contact_radius(patch, sums);
+  contact.depth = sums.depth;
+  contact.rest_point = contact.equivalent_point + patch.frame.normal * contact.depth;
   normal.force = sums.force;
-  normal.stiffness = 2.0 * model.bodies.at<Elasticity>(body).contact_modulus() * geometry.radius;
+  normal.stiffness = 2.0 * model.bodies.at<Elasticity>(body).contact_modulus() * contact.radius;
   friction.force = sums.friction;
   friction.couple = sums.couple - (center.x * sums.friction.y - center.y * sums.friction.x);
   friction.stick_share = sums.stuck_cells / sums.loaded_cells;

@@ -9,7 +9,7 @@ namespace torsion {
 
 /// Pressures, tractions, forces and couple of every region of a body with this model. Writes
 /// CellTraction, all PatchValue, PatchState, PatchEnergy, RegionCarrier, RegionNormal,
-/// RegionFriction and, from the pressures, RegionGeometry.
+/// RegionFriction and Contact.
 void patch_forces(StepContext& context);
 
 }  // namespace torsion

@@ -68,7 +68,7 @@ void lay_around_rest(StepContext& context, std::uint32_t region) {
   const RegionPoints& contact = context.scratch.region_points[block_of(grid.identity)];
   lay_around_loaded(context, region, contact);
   find_cells(grid, contact);
-  context.state.regions.at<RegionGeometry>(region) = summarize_cells(grid);
+  context.state.regions.at<Overlap>(region) = summarize_cells(grid);
   // They are held where they will have moved to without the other region's tractions.
   std::ranges::fill(patch_rows(context.state, grid.identity.cells).surface.known, 0.0);
 }
@@ -105,7 +105,8 @@ void copy_patch(State& state, std::uint32_t from, std::uint32_t region) {
   copy_cells(state, cells, state.regions.at<RegionIdentity>(region).cells);
   copy_component<RegionFrame>(state, from, region);
   copy_component<RegionCarrier>(state, from, region);
-  copy_component<RegionGeometry>(state, from, region);
+  copy_component<Overlap>(state, from, region);
+  copy_component<Contact>(state, from, region);
   copy_component<RegionMotion>(state, from, region);
   copy_component<RegionFriction>(state, from, region);
   copy_component<PatchState>(state, from, region);

@@ -307,7 +307,7 @@ void add_support(const PatchSupport& support, const PatchField& tractions,
 
 SupportPolynomials known_support(const State& state, std::uint32_t region) {
   const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
-  const Footing& footing = state.footings.at<Footing>(identity.cells.first / identity.cells.count);
+  const Footing& footing = state.footings.at<Footing>(block_of(identity));
   const RegionSupport& known = state.regions.at<RegionSupport>(region);
   const glm::dvec3 rotation = known.rotation - known.rotation_by_others;
   const std::array<glm::dvec3, 3> terms{known.translation - known.translation_by_others +

@@ -65,7 +65,7 @@ void move_anchors(const PortCompliance& body, const Footing& footing, const Port
 double mean_turn(const State& state, std::uint32_t region, double radius) {
   constexpr int kPlaces = 8;  // a polynomial of the fourth degree has no more than five waves
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
-  const glm::dvec3& center = state.regions.at<RegionGeometry>(region).rest_point;
+  const glm::dvec3& center = state.regions.at<Contact>(region).rest_point;
   double sum = 0.0;
   for (int place = 0; place < kPlaces; ++place) {
     const double angle = 2.0 * std::numbers::pi * place / kPlaces;
@@ -83,7 +83,7 @@ void find_support_turn(const Model& model, const State& state, std::uint32_t reg
   const RegionSupport& support = state.regions.at<RegionSupport>(region);
   turns.support = glm::dot(support.rotation - support.rotation_step,
                            state.regions.at<RegionFrame>(region).normal);
-  const double radius = state.regions.at<RegionGeometry>(region).radius;
+  const double radius = state.regions.at<Contact>(region).radius;
   if (radius > 0.0 && law_of(model, state.regions.at<RegionIdentity>(region).body).by_cells) {
     const double outer = mean_turn(state, region, radius);
     const double inner = mean_turn(state, region, 0.5 * radius);

@@ -50,15 +50,16 @@ void fill_slots(const Snapshot& snapshot, BodyField& field) {
     if (identity.body != field.body || field.slots.size() == kMaxRegionsPerBody) {
       continue;
     }
-    const RegionGeometry& geometry = snapshot.regions.at<RegionGeometry>(region);
+    const Contact& contact = snapshot.regions.at<Contact>(region);
     glm::dvec3 moved =
-        field.has_weights ? interpolate(field.weights, geometry.rest_point) : glm::dvec3(0.0);
+        field.has_weights ? interpolate(field.weights, contact.rest_point) : glm::dvec3(0.0);
     for (const Slot& before : field.slots) {
-      moved += before.dent.displacement(geometry.rest_point);
+      moved += before.dent.displacement(contact.rest_point);
     }
     const RegionDent dent = region_dent(field.model, snapshot, region, moved);
-    field.slots.push_back({region_twist(field.model, snapshot, region), dent, BodyTurn{}, region,
-                           identity.tool, dent.radius > 0.0 ? geometry.largest_depth : 0.0});
+    field.slots.push_back(
+        {region_twist(field.model, snapshot, region), dent, BodyTurn{}, region, identity.tool,
+         dent.radius > 0.0 ? snapshot.regions.at<Overlap>(region).largest_depth : 0.0});
   }
 }
 

@@ -155,7 +155,7 @@ void fill_field(const Model& model, const State& state, const SnapshotTables& ta
   const std::uint32_t side = model.settings.grid_side;
   const glm::dvec2 cell = 2.0 * frame.half_size / static_cast<double>(side);
   const Source source{frame, side, cell.x * cell.y, state.cells.rows<CellTraction>(identity.cells)};
-  field.radius = state.regions.at<RegionGeometry>(region).radius;
+  field.radius = state.regions.at<Contact>(region).radius;
   if (field.radius <= 0.0) {
     return;
   }

@@ -84,8 +84,7 @@ void skeleton_motions(const Model& model, const State& state, Snapshot& snapshot
       if (identities[region].body != body) {
         continue;
       }
-      const MainBeam beam =
-          main_beam(model, body, state.regions.at<RegionGeometry>(region).rest_point);
+      const MainBeam beam = main_beam(model, body, state.regions.at<Contact>(region).rest_point);
       const TipLoad load = tip_load(beam, state.regions.at<RegionFrame>(region),
                                     state.regions.at<RegionNormal>(region),
                                     state.regions.at<RegionFriction>(region));

@@ -218,11 +218,11 @@ double RegionTwist::angle(const glm::dvec3& rest) const {
 RegionTwist region_twist(const Model& model, const Snapshot& snapshot, std::uint32_t region) {
   const RegionIdentity& identity = snapshot.regions.at<RegionIdentity>(region);
   const RegionFrame& frame = snapshot.regions.at<RegionFrame>(region);
-  const RegionGeometry& geometry = snapshot.regions.at<RegionGeometry>(region);
+  const Contact& contact = snapshot.regions.at<Contact>(region);
   const RegionMotion& motion = snapshot.regions.at<RegionMotion>(region);
   const RegionFriction& friction = snapshot.regions.at<RegionFriction>(region);
   const FixedRegion& fixed = model.bodies.at<FixedRegion>(identity.body);
-  const glm::dvec3 contact = geometry.rest_point;
+  const glm::dvec3 place = contact.rest_point;
 
   RegionTwist twist;
   twist.discs = turned_discs(snapshot, region);
@@ -233,16 +233,16 @@ RegionTwist region_twist(const Model& model, const Snapshot& snapshot, std::uint
   }
   if (is_half_space(model.bodies.at<BodyModels>(identity.body).contact)) {
     // So new that there is no field yet: it has hardly turned anything.
-    twist.axis.point = glm::vec4(glm::vec3(contact), 0.0F);
+    twist.axis.point = glm::vec4(glm::vec3(place), 0.0F);
     twist.axis.direction = glm::vec4(glm::vec3(frame.normal), 0.0F);
     return twist;
   }
   twist.through = motion.axis_share;
   // What the tractions stand for, of which some a slide has left: no more than the tool has turned.
   twist.stick_turn = std::clamp(friction.stick_turn, -motion.largest_turn, motion.largest_turn);
-  twist.stick_radius = std::max(friction.stick_radius, 1e-3 * geometry.radius);
-  twist.through_height = height_share(fixed, contact, frame.normal, geometry.radius);
-  const double height = body_to_grid(frame, geometry.equivalent_point).z;
+  twist.stick_radius = std::max(friction.stick_radius, 1e-3 * contact.radius);
+  twist.through_height = height_share(fixed, place, frame.normal, contact.radius);
+  const double height = body_to_grid(frame, contact.equivalent_point).z;
   const glm::dvec3 pivot = grid_to_body(frame, glm::dvec3(motion.pivot, height));
   twist.point = pivot;
   twist.direction = frame.normal;
@@ -262,10 +262,10 @@ RegionTwist region_twist(const Model& model, const Snapshot& snapshot, std::uint
     const double known = smooth_step(tool.axis_turn / kFirstTurn);
     // A beam that is softer than the contact would turn farther than the tool that turns it.
     twist.past_turn = past * known *
-                      std::clamp(turn_past_region(model, identity.body, contact, axis, center,
+                      std::clamp(turn_past_region(model, identity.body, place, axis, center,
                                                   -glm::dot(torque, axis)),
                                  -motion.largest_rotation, motion.largest_rotation);
-    twist.past_height = height_share(fixed, contact, axis, geometry.radius);
+    twist.past_height = height_share(fixed, place, axis, contact.radius);
     twist.point = pivot * motion.axis_share + center * past;
     const glm::dvec3 blended = frame.normal * motion.axis_share + axis * past;
     twist.direction = blended / glm::length(blended);
@@ -305,33 +305,33 @@ RegionDent region_dent(const Model& model, const Snapshot& snapshot, std::uint32
                        const glm::dvec3& moved) {
   const RegionIdentity& identity = snapshot.regions.at<RegionIdentity>(region);
   const RegionFrame& frame = snapshot.regions.at<RegionFrame>(region);
-  const RegionGeometry& geometry = snapshot.regions.at<RegionGeometry>(region);
+  const Contact& contact = snapshot.regions.at<Contact>(region);
+  const double depth = snapshot.regions.at<Overlap>(region).largest_depth;
   const RegionFriction& friction = snapshot.regions.at<RegionFriction>(region);
   const Elasticity& elasticity = model.bodies.at<Elasticity>(identity.body);
   RegionDent dent;
-  if (geometry.radius <= 0.0 || geometry.largest_depth <= 0.0) {
+  if (contact.radius <= 0.0 || depth <= 0.0) {
     return dent;
   }
   // A paraboloid overlaps by half its depth in the mean and carries pressure on half the overlap's
   // area (Hertz); a flat end overlaps by its full depth everywhere and carries pressure on all of
   // it.
-  const double fullness = std::clamp(geometry.mean_depth / geometry.largest_depth, 0.5, 1.0);
+  const double fullness = std::clamp(contact.depth / depth, 0.5, 1.0);
   dent.flatness = 2.0 * fullness - 1.0;
-  dent.radius = geometry.radius * std::sqrt(fullness);
-  dent.center = geometry.rest_point;
+  dent.radius = contact.radius * std::sqrt(fullness);
+  dent.center = contact.rest_point;
   dent.normal = frame.normal;
-  dent.depth = std::max(geometry.largest_depth + glm::dot(moved, frame.normal), 0.0);
+  dent.depth = std::max(depth + glm::dot(moved, frame.normal), 0.0);
   // Tangential compliance of a disc (2 - nu) / (8 G a); the force on the body is minus that on the
   // tool.
   const double compliance =
-      (2.0 - elasticity.poisson_ratio) / (8.0 * elasticity.shear_modulus() * geometry.radius);
+      (2.0 - elasticity.poisson_ratio) / (8.0 * elasticity.shear_modulus() * contact.radius);
   dent.drag = tangent_to_body(frame, friction.force) * -compliance;
   dent.pressure =
-      geometry.area > 0.0 ? snapshot.regions.at<RegionNormal>(region).force / geometry.area : 0.0;
+      contact.area > 0.0 ? snapshot.regions.at<RegionNormal>(region).force / contact.area : 0.0;
   const bool in_series = body_law_of(model, identity.body).moves_as_a_whole;
-  dent.pressed = pressed_surface(model, snapshot, region,
-                                 in_series ? 1.0 : dent.depth / geometry.largest_depth);
-  dent.full_overlap = 0.1 * geometry.largest_depth;
+  dent.pressed = pressed_surface(model, snapshot, region, in_series ? 1.0 : dent.depth / depth);
+  dent.full_overlap = 0.1 * depth;
   return dent;
 }
 

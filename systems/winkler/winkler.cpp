@@ -90,15 +90,16 @@ void solve_region(const Model& model, State& state, std::uint32_t region) {
   const BedSums sums = press_bed(model, state, region);
   RegionNormal& normal = state.regions.at<RegionNormal>(region);
   RegionFriction& friction = state.regions.at<RegionFriction>(region);
+  Contact& contact = state.regions.at<Contact>(region);
+  contact = contact_of(state.regions.at<Overlap>(region));
   normal = RegionNormal{};
   friction = RegionFriction{};
   if (sums.force <= 0.0) {
     return;
   }
   const glm::dvec3 center = sums.center / sums.force;
-  RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
-  geometry.equivalent_point = grid_to_body(frame, center);
-  geometry.rest_point = geometry.equivalent_point + frame.normal * geometry.mean_depth;
+  contact.equivalent_point = grid_to_body(frame, center);
+  contact.rest_point = contact.equivalent_point + frame.normal * contact.depth;
   const std::uint32_t body = state.regions.at<RegionIdentity>(region).body;
   normal = {sums.force, bed_stiffness(model, body) * sums.area};
   friction.force = sums.friction;

@@ -68,7 +68,7 @@ void RunDigest::add(const World& world) {
     row_.insert(row_.end(),
                 {static_cast<double>(identity.order), static_cast<double>(identity.body),
                  static_cast<double>(identity.tool)});
-    add_vector(world.state.regions.at<RegionGeometry>(region).equivalent_point);
+    add_vector(world.state.regions.at<Contact>(region).equivalent_point);
     add_vector(wrench.on_tool.force);
     add_vector(wrench.on_tool.torque);
   }

@@ -85,7 +85,7 @@ TEST(StickySceneTest, ItsFirstTwistIsNearBoundaryElements) {
     if (turn < 1e-3) {
       continue;
     }
-    const double depth = world.state.regions.at<RegionGeometry>(0).largest_depth;
+    const double depth = world.state.regions.at<Overlap>(0).largest_depth;
     const reference::SneddonSphere sphere =
         reference::sneddon_sphere_at_depth(0.03, elasticity.contact_modulus(), depth);
     const double pressure = 1.5 * sphere.force / (std::numbers::pi * sphere.radius * sphere.radius);

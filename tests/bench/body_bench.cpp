@@ -136,7 +136,7 @@ void surface_field_of_half_space(benchmark::State& state) {
   capture(world.model, world.state, drawn.snapshot);
   for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
     RegionField& field = drawn.snapshot.region_fields.at<RegionField>(region);
-    field.radius = world.state.regions.at<RegionGeometry>(region).radius;
+    field.radius = world.state.regions.at<Contact>(region).radius;
     field.spread = 0.1 * field.radius;
     std::ranges::fill(field.turn, 0.01);
     for (std::uint32_t block = 0; block < kFieldBlocks * kFieldBlocks; ++block) {

@@ -127,7 +127,7 @@ TEST(FrameViewTest, ContactSpotsAreThoseOfEachBodyInOrder) {
   for (std::uint32_t region = 0; region < 3; ++region) {
     snapshot.regions.append();
     snapshot.regions.at<RegionIdentity>(region).body = bodies[region];
-    snapshot.regions.at<RegionGeometry>(region).radius = 0.01 * (region + 1);
+    snapshot.regions.at<Contact>(region).radius = 0.01 * (region + 1);
   }
   std::vector<shared::ContactSpot> spots;
   std::vector<Range> ranges;

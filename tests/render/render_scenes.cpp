@@ -196,7 +196,7 @@ TwistedCube twisted_cube(double turn, std::uint32_t squares) {
                                                   glm::dvec3(0.0, -0.03 * turn, 0.0)};
   scene.snapshot.regions.append();
   scene.snapshot.regions.at<RegionFrame>(0).origin = glm::dvec3(contact);
-  scene.snapshot.regions.at<RegionGeometry>(0).radius = 0.007;
+  scene.snapshot.regions.at<Contact>(0).radius = 0.007;
   scene.camera = camera_at(glm::dvec3(0.12, 0.14, 0.18), glm::dvec3(0.0, 0.012, 0.0), 0.55);
   return scene;
 }

@@ -173,14 +173,15 @@ std::uint32_t add_region(World& world, const RegionOnBody& region) {
   RegionFrame& frame = world.state.regions.at<RegionFrame>(row);
   frame =
       RegionFrame{region.point, axes.first, axes.second, region.normal, glm::dvec2(region.radius)};
-  RegionGeometry& geometry = world.state.regions.at<RegionGeometry>(row);
-  geometry = RegionGeometry{};
-  geometry.equivalent_point = region.point - 0.5 * region.depth * region.normal;
-  geometry.rest_point = region.point;
-  geometry.radius = region.radius;
-  geometry.area = pi * region.radius * region.radius;
-  geometry.mean_depth = 0.5 * region.depth;
-  geometry.largest_depth = region.depth;
+  Overlap& overlap = world.state.regions.at<Overlap>(row);
+  overlap = Overlap{};
+  overlap.center = region.point - 0.5 * region.depth * region.normal;
+  overlap.rest_center = region.point;
+  overlap.radius = region.radius;
+  overlap.area = pi * region.radius * region.radius;
+  overlap.mean_depth = 0.5 * region.depth;
+  overlap.largest_depth = region.depth;
+  world.state.regions.at<Contact>(row) = contact_of(overlap);
   world.state.regions.at<RegionNormal>(row).force = -glm::dot(region.force_on_body, region.normal);
   world.state.regions.at<RegionFriction>(row).force = -glm::dvec2(
       glm::dot(region.force_on_body, axes.first), glm::dot(region.force_on_body, axes.second));

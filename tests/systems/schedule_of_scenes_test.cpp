@@ -32,7 +32,7 @@ bool runs(Hand& hand, std::string_view name) {
 
 TEST(ScheduleOfScenesTest, TheWholeSceneRunsEverySystemButThoseOfOtherContactModels) {
   Hand hand(test::ball_on_cube());
-  EXPECT_EQ(names_on(hand).size(), step_systems().size() - 5);
+  EXPECT_EQ(names_on(hand).size(), step_systems().size() - 4);
   EXPECT_TRUE(runs(hand, "paper_friction_forces"));
   EXPECT_TRUE(runs(hand, "main_beams"));
   EXPECT_FALSE(runs(hand, "mdr_forces"));

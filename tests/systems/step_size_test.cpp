@@ -96,8 +96,8 @@ struct Curve {
 double softness_of(const World& world, double poisson) {
   const glm::dvec3& moved = world.state.regions.at<RegionSupport>(0).translation;
   const glm::dvec2& force = world.state.regions.at<RegionFriction>(0).force;
-  const double stiffness = 8.0 * test::kBallShearModulus *
-                           world.state.regions.at<RegionGeometry>(0).radius / (2.0 - poisson);
+  const double stiffness =
+      8.0 * test::kBallShearModulus * world.state.regions.at<Contact>(0).radius / (2.0 - poisson);
   return stiffness * std::hypot(moved.x, moved.z) / glm::length(force);
 }
 

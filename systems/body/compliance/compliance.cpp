@@ -9,6 +9,7 @@
 #include "systems/body/compliance/region_supports.hpp"
 #include "systems/contact/fault.hpp"
 #include "systems/contact/law.hpp"
+#include "systems/contact/scratch.hpp"
 #include "systems/math/dense_solve.hpp"
 #include "systems/math/matrix6.hpp"
 
@@ -308,8 +309,21 @@ void add_sway(const CompliantBody& body, const Eigen::Map<RowMatrix>& upper, New
   }
 }
 
+/// Where a region's equations have reckoned with the body's answer to its own load (own_answer.hpp).
+void take_own_answer(const SupportAnswer& answer, RegionSupport& support,
+                     RegionReaction& reaction) {
+  support.translation += answer.translation;
+  support.rotation += answer.rotation;
+  support.translation_step = answer.translation_left;
+  support.rotation_step = answer.rotation_left;
+  Eigen::Map<Vector6>(reaction.wrench.data()) += Eigen::Map<const Vector6>(answer.wrench.data());
+  reaction.active = 0;
+}
+
 /// Where a region's equations have reckoned with the others' answer, that has moved it by now.
-void take_answers(const Model& model, State& state, std::uint32_t row) {
+void take_answers(StepContext& context, std::uint32_t row) {
+  const Model& model = context.model;
+  State& state = context.state;
   for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
     RegionReaction& reaction = state.regions.at<RegionReaction>(region);
     RegionSupport& support = state.regions.at<RegionSupport>(region);
@@ -318,8 +332,8 @@ void take_answers(const Model& model, State& state, std::uint32_t row) {
       continue;
     }
     if (law_of(model, row).moves_own_support) {
-      reaction.active = 0;
-      continue;  // it has moved its support by that already (own_answer.hpp)
+      take_own_answer(context.scratch.support_answers[block_of(identity)], support, reaction);
+      continue;
     }
     support.translation_step = glm::dvec3(0.0);
     support.rotation_step = glm::dvec3(0.0);
@@ -343,7 +357,7 @@ void take_answers(const Model& model, State& state, std::uint32_t row) {
 }
 
 void deform_body(StepContext& context, std::uint32_t row) {
-  take_answers(context.model, context.state, row);
+  take_answers(context, row);
   CompliantBody body{context.model, context.state, row, ports_of(context.model, row)};
   find_stands(body);
   find_couplings(body);

@@ -43,29 +43,10 @@ struct RelativeCompliance {
   }
 };
 
-/// How a contact model without cells is moved by the body's bend beside its half-space: as one, by
-/// forces alone, m/N: the terms and moments of degree 0 of the footing's response, which has no
-/// other use there. `patch` has the bend in its own tables (patch/influences.hpp).
-Eigen::Matrix3d motion_by_bend(const CompliantBody& body, const Stand& stand) {
-  Eigen::Matrix3d motion = Eigen::Matrix3d::Zero();
-  if (!stand.solved) {
-    const FootingResponse& bend = body.state.footings.at<FootingResponse>(stand.block);
-    for (Eigen::Index column = 0; column < 3; ++column) {
-      for (Eigen::Index row = 0; row < 3; ++row) {
-        motion(row, column) = bend.terms[static_cast<std::size_t>(
-            (3 * column * kSupportColumn + row) * kSupportColumn)];
-      }
-    }
-  }
-  return motion;
-}
-
-/// Finds it.
-void find_bend(const CompliantBody& body, const Stand& stand, const Footing& footing) {
-  FootingResponse& bend = body.state.footings.at<FootingResponse>(stand.block);
-  bend = FootingResponse{};
+/// Footing::bend.
+Eigen::Matrix3d motion_by_bend(const CompliantBody& body, const Footing& footing) {
   if (!may_bend(body.model, body.row)) {
-    return;
+    return Eigen::Matrix3d::Zero();
   }
   RegionFrame axes;
   axes.tangent_x = footing.tangent_x;
@@ -73,7 +54,7 @@ void find_bend(const CompliantBody& body, const Stand& stand, const Footing& foo
   axes.normal = footing.normal;
   const SurfaceBend found = find_surface_bend(body.model, body.row, footing, axes, footing.radius);
   if (found.reach == 0.0) {
-    return;
+    return Eigen::Matrix3d::Zero();
   }
   const Elasticity& elasticity = body.model.bodies.at<Elasticity>(body.row);
   const CurvedResponse response = curved_response(found.curvature, elasticity.poisson_ratio);
@@ -86,24 +67,17 @@ void find_bend(const CompliantBody& body, const Stand& stand, const Footing& foo
   turn << eigen(axes.tangent_x), eigen(axes.tangent_y), eigen(axes.normal);
   Eigen::Matrix3d motion;
   motion << mean[1], mean[2], 0.0, mean[2], mean[3], 0.0, 0.0, 0.0, mean[0];
-  motion = (turn * motion * turn.transpose()).eval();
-  for (Eigen::Index column = 0; column < 3; ++column) {
-    for (Eigen::Index row = 0; row < 3; ++row) {
-      bend.terms[static_cast<std::size_t>((3 * column * kSupportColumn + row) * kSupportColumn)] =
-          motion(row, column);
-    }
-  }
+  return turn * motion * turn.transpose();
 }
 
 /// What a region's own wrench does to it: the part that yields goes to Newton's matrix. Where the
 /// rest of the body stiffens the half-space (a layer) Newton's method would overshoot as soon as
 /// the contact slips, and plain iteration converges.
 void find_own_motion(const CompliantBody& body, const Stand& stand, Footing& footing) {
-  if (!stand.solved) {
-    find_bend(body, stand, footing);
-  }
   Matrix6 motion = motion_between(body.ports, footing, footing);
-  motion.topLeftCorner<3, 3>() += motion_by_bend(body, stand);
+  Eigen::Map<Eigen::Matrix3d> bend(footing.bend.data());
+  bend = stand.solved ? Eigen::Matrix3d(Eigen::Matrix3d::Zero()) : motion_by_bend(body, footing);
+  motion.topLeftCorner<3, 3>() += bend;
   const RelativeCompliance relative(body, stand, motion);
   const double least = relative.system.values[0];
   footing.share = std::min(1.0, kStiffest / std::min(least, -1e-300));
@@ -165,7 +139,8 @@ void move_by_own_load(const CompliantBody& body, Stand& stand) {
   }
   stand.motion = rigid_motion(footing, displacements);
   field = bending(footing, displacements, stand.motion);
-  stand.motion.head<3>() += motion_by_bend(body, stand) * stand.load.wrench.head<3>();
+  stand.motion.head<3>() +=
+      Eigen::Map<const Eigen::Matrix3d>(footing.bend.data()) * stand.load.wrench.head<3>();
 }
 
 }  // namespace

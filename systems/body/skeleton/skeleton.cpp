@@ -27,7 +27,7 @@ void main_beams(StepContext& context) {
     const BodyModels& models = model.bodies.at<BodyModels>(identity.body);
     if (models.contact == ContactModel::kPaper && models.body == BodyModel::kSkeleton) {
       const MainBeam beam =
-          main_beam(model, identity.body, state.regions.at<RegionGeometry>(region).rest_point);
+          main_beam(model, identity.body, state.regions.at<Overlap>(region).rest_center);
       context.scratch.beams[block] = beam_spring(beam, model.bodies.at<Elasticity>(identity.body));
     }
   }

@@ -51,13 +51,13 @@ bool by_cells(const Model& model, const State& state, std::uint32_t region) {
 /// A disc at the region's place.
 ContactEllipse disc_of(const State& state, std::uint32_t region) {
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
-  const RegionGeometry& geometry = state.regions.at<RegionGeometry>(region);
+  const Contact& contact = state.regions.at<Contact>(region);
   const glm::dvec2 extent = overlap_extent(state, region);
   const double least = 1e-3 * std::max(extent.x, extent.y);
   ContactEllipse disc;
-  disc.center = geometry.rest_point;
+  disc.center = contact.rest_point;
   disc.normal = frame.normal;
-  disc.radius = std::max(geometry.radius, least);
+  disc.radius = std::max(contact.radius, least);
   disc.axis_1 = frame.tangent_x * disc.radius;
   disc.axis_2 = frame.tangent_y * disc.radius;
   return disc;

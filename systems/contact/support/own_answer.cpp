@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <glm/geometric.hpp>
 
-#include "systems/contact/scratch.hpp"
 #include "systems/contact/support/body_law.hpp"
 #include "systems/math/matrix6.hpp"
 
@@ -81,24 +80,24 @@ OwnAnswer own_answer(const Model& model, const State& state, std::uint32_t regio
   return answer;
 }
 
-void move_by_own_answer(const Model& model, State& state, std::uint32_t region,
-                        const OwnAnswer& answer, const ContactLoads& more,
-                        const ContactLoads& reckoned) {
+SupportAnswer support_answer(const Model& model, const State& state, std::uint32_t region,
+                             const OwnAnswer& answer, const ContactLoads& more,
+                             const ContactLoads& reckoned) {
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const Footing& footing = *footing_under(model, state, region);
+  const glm::dvec3& about = state.regions.at<RegionSupport>(region).about;
   const Eigen::Vector4d loads(more.x, more.y, more.z, more.w);
   const Vector6 motion = answer.motions * loads;
-  RegionSupport& support = state.regions.at<RegionSupport>(region);
-  const glm::dvec3 rotation(motion[3], motion[4], motion[5]);
-  support.translation += glm::dvec3(motion[0], motion[1], motion[2]) +
-                         glm::cross(rotation, support.about - footing.center);
-  support.rotation += rotation;
+  SupportAnswer found;
+  found.rotation = {motion[3], motion[4], motion[5]};
+  found.translation = glm::dvec3(motion[0], motion[1], motion[2]) +
+                      glm::cross(found.rotation, about - footing.center);
   const ContactLoads left = answer.compliance * more - reckoned;
-  support.rotation_step = left.z * frame.normal;
-  support.translation_step = left.x * frame.tangent_x + left.y * frame.tangent_y +
-                             glm::cross(support.rotation_step, support.about - answer.point);
-  auto& wrench = state.regions.at<RegionReaction>(region).wrench;
-  Eigen::Map<Vector6>(wrench.data()) += answer.wrenches * loads;
+  found.rotation_left = left.z * frame.normal;
+  found.translation_left = left.x * frame.tangent_x + left.y * frame.tangent_y +
+                           glm::cross(found.rotation_left, about - answer.point);
+  Eigen::Map<Vector6>(found.wrench.data()) = answer.wrenches * loads;
+  return found;
 }
 
 }  // namespace torsion

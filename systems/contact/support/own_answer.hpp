@@ -9,6 +9,7 @@
 #include <glm/vec4.hpp>
 
 #include "ecs/state.hpp"
+#include "systems/contact/scratch.hpp"
 
 namespace torsion {
 
@@ -29,11 +30,10 @@ struct OwnAnswer {
 OwnAnswer own_answer(const Model& model, const State& state, std::uint32_t region,
                      const glm::dvec3& point);
 
-/// The body has given way to so much more: moves the region's support, which is in this step still
-/// to move it by what of that the contact has not reckoned with.
+/// What becomes of the region's support when the body has given way to so much more.
 /// @param reckoned  motion of the material that the contact has taken
-void move_by_own_answer(const Model& model, State& state, std::uint32_t region,
-                        const OwnAnswer& answer, const ContactLoads& more,
-                        const ContactLoads& reckoned);
+SupportAnswer support_answer(const Model& model, const State& state, std::uint32_t region,
+                             const OwnAnswer& answer, const ContactLoads& more,
+                             const ContactLoads& reckoned);
 
 }  // namespace torsion

@@ -42,21 +42,21 @@ TEST(BodyEdgesTest, ARodAcrossABlockPressesOnItsTopFromEdgeToEdge) {
   hand.move({0.0, -depth - 1e-4, 0.0}, kUp, 0.0, 100);
   hand.move({0.0, 0.0, 0.0}, kUp, 0.0, 20);  // what faded in at birth is over
   ASSERT_EQ(hand.world().state.regions.size(), 1U);
-  const RegionGeometry& geometry = hand.world().state.regions.at<RegionGeometry>(0);
+  const Overlap& overlap = hand.world().state.regions.at<Overlap>(0);
   const double half_strip = std::sqrt(2.0 * kRodRadius * depth - depth * depth);
   const double area = 4.0 * kHalfWidth * half_strip;
   // The ends of the strip lie between cells of 4 mm; across, 16 cells resolve it to 0.5 %.
-  EXPECT_NEAR(geometry.area / area, 1.0, 0.02);
+  EXPECT_NEAR(overlap.area / area, 1.0, 0.02);
   // The mean over the chord of a circle: (segment's area) / chord.
   const double angle = std::acos(1.0 - depth / kRodRadius);
   const double segment = kRodRadius * kRodRadius * (angle - 0.5 * std::sin(2.0 * angle));
-  EXPECT_NEAR(geometry.mean_depth / (segment / (2.0 * half_strip)), 1.0, 0.02);
-  EXPECT_NEAR(geometry.largest_depth / depth, 1.0, 0.02);
-  EXPECT_NEAR(glm::distance(geometry.mean_normal, kUp), 0.0, 1e-9);
-  EXPECT_NEAR(glm::length(glm::dvec2(geometry.rest_point.x, geometry.rest_point.z)), 0.0, 1e-4);
+  EXPECT_NEAR(overlap.mean_depth / (segment / (2.0 * half_strip)), 1.0, 0.02);
+  EXPECT_NEAR(overlap.largest_depth / depth, 1.0, 0.02);
+  EXPECT_NEAR(glm::distance(overlap.mean_normal, kUp), 0.0, 1e-9);
+  EXPECT_NEAR(glm::length(glm::dvec2(overlap.rest_center.x, overlap.rest_center.z)), 0.0, 1e-4);
   const double stiffness =
       paper_normal_law(4e6, std::sqrt(area / 3.14159265358979), 0.0, 0.0).linear;
-  EXPECT_NEAR(hand.wrench().force.y / (stiffness * geometry.mean_depth), 1.0, 0.02);
+  EXPECT_NEAR(hand.wrench().force.y / (stiffness * overlap.mean_depth), 1.0, 0.02);
 }
 
 TEST(BodyEdgesTest, ForceFollowsThePressWithoutJumps) {

@@ -114,8 +114,8 @@ TEST(FaultsTest, AThousandSlowTurnsStayWithinFriction) {
     largest = std::max(largest, std::abs(hand.wrench().torque.y));
   }
   EXPECT_EQ(hand.clock().faults_ever, 0U);
-  const RegionGeometry& geometry = hand.world().state.regions.at<RegionGeometry>(0);
-  EXPECT_LT(largest, 1.02 * 2.0 / 3.0 * 0.75 * hand.wrench().force.y * geometry.radius);
+  const Contact& contact = hand.world().state.regions.at<Contact>(0);
+  EXPECT_LT(largest, 1.02 * 2.0 / 3.0 * 0.75 * hand.wrench().force.y * contact.radius);
   // phi counts turns; a quaternion could not.
   EXPECT_NEAR(hand.world().state.regions.at<RegionMotion>(0).turn, 0.2 + 6299.9, 1e-3);
 }

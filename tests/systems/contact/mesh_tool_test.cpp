@@ -128,18 +128,18 @@ TEST(MeshToolTest, BothLegsOfAUPressAsFlatPunches) {
       paper_normal_law(scene.bodies[0].elasticity.contact_modulus(), radius, 0.0, 0.0);
   double sides = 0.0;
   for (std::uint32_t region = 0; region < 2; ++region) {
-    const RegionGeometry& geometry = hand.world().state.regions.at<RegionGeometry>(region);
+    const Overlap& overlap = hand.world().state.regions.at<Overlap>(region);
     // The field rounds edges by about a fine cell, 60 mm / 29 / 4 = 0.5 mm; the two of a sole of
     // 15 mm may shift by half of it each: 3.5 % of its width and as much of its length.
-    EXPECT_NEAR(geometry.area / area, 1.0, 0.07);
-    EXPECT_NEAR(geometry.mean_depth / depth, 1.0, 0.05);
-    EXPECT_NEAR(std::abs(geometry.rest_point.x), half_width - 0.5 * leg, 5e-4);
-    EXPECT_NEAR(geometry.rest_point.y, 0.0, 0.05 * depth);
-    EXPECT_NEAR(geometry.rest_point.z, 0.0, 5e-4);
+    EXPECT_NEAR(overlap.area / area, 1.0, 0.07);
+    EXPECT_NEAR(overlap.mean_depth / depth, 1.0, 0.05);
+    EXPECT_NEAR(std::abs(overlap.rest_center.x), half_width - 0.5 * leg, 5e-4);
+    EXPECT_NEAR(overlap.rest_center.y, 0.0, 0.05 * depth);
+    EXPECT_NEAR(overlap.rest_center.z, 0.0, 5e-4);
     // Force goes as the root of the area and as the depth.
     EXPECT_NEAR(hand.world().state.regions.at<RegionNormal>(region).force / (law.linear * depth),
                 1.0, 0.07);
-    sides += geometry.rest_point.x;
+    sides += overlap.rest_center.x;
   }
   EXPECT_NEAR(sides, 0.0, 5e-4);  // one on either side
   EXPECT_NEAR(hand.wrench().torque.z, 0.0, 0.01 * hand.wrench().force.y * half_width);
@@ -153,18 +153,18 @@ TEST(MeshToolTest, ATorusOnItsSideTouchesInOneRing) {
   hand.step_to({{glm::dvec3(0.0, tube + 1e-4, 0.0), kUpright}});
   hand.move({0.0, -depth - 1e-4, 0.0}, kUp, 0.0, 50);
   ASSERT_EQ(hand.world().state.regions.size(), 1U);
-  const RegionGeometry& geometry = hand.world().state.regions.at<RegionGeometry>(0);
+  const Overlap& overlap = hand.world().state.regions.at<Overlap>(0);
   // All where the circle of the tube is lower than y = 0; the hole in the middle is none of it.
   const double half_strip = std::sqrt(2.0 * tube * depth - depth * depth);
   const double area = 4.0 * std::numbers::pi * ring * half_strip;
   // Cells of 6 mm, cut along straight lines by the slope at their centres, over a strip of 11 mm
   // whose slope doubles from its cells' centres to their far sides: a fifth too much.
-  EXPECT_NEAR(geometry.area / area, 1.0, 0.25);
-  EXPECT_NEAR(geometry.largest_depth, depth, 0.05 * depth);
+  EXPECT_NEAR(overlap.area / area, 1.0, 0.25);
+  EXPECT_NEAR(overlap.largest_depth, depth, 0.05 * depth);
   // Two thirds of the depth is the mean over the chord of a circle.
-  EXPECT_NEAR(geometry.mean_depth / (2.0 / 3.0 * depth), 1.0, 0.25);
+  EXPECT_NEAR(overlap.mean_depth / (2.0 / 3.0 * depth), 1.0, 0.25);
   // A ring has its middle in the middle, however thin it is.
-  EXPECT_NEAR(glm::length(glm::dvec2(geometry.rest_point.x, geometry.rest_point.z)), 0.0,
+  EXPECT_NEAR(glm::length(glm::dvec2(overlap.rest_center.x, overlap.rest_center.z)), 0.0,
               0.001 * ring);
 }
 

@@ -58,7 +58,7 @@ TEST(RegionsTest, TenFeetThatTouchOneAfterAnotherKeepTheirOrder) {
   ASSERT_EQ(hand.world().state.regions.size(), 10U);
   for (std::uint32_t i = 0; i < 10; ++i) {
     EXPECT_EQ(hand.world().state.regions.at<RegionIdentity>(i).order, i);
-    const glm::dvec3& point = hand.world().state.regions.at<RegionGeometry>(i).equivalent_point;
+    const glm::dvec3& point = hand.world().state.regions.at<Contact>(i).equivalent_point;
     EXPECT_NEAR(point.x, places[i].x, 1e-4);
     EXPECT_NEAR(point.z, places[i].z, 1e-4);
   }
@@ -77,7 +77,7 @@ TEST(RegionsTest, AFootIsSeenWhenItTouchesNotWhenASampleDoes) {
   hand.move({0.0, -2e-6, 0.0}, kUp, 0.0, 1);
   // One micrometre deep: sixty times less than the height of the ball between two samples.
   ASSERT_EQ(hand.world().state.regions.size(), 1U);
-  EXPECT_NEAR(hand.world().state.regions.at<RegionGeometry>(0).largest_depth, 1e-6, 0.1e-6);
+  EXPECT_NEAR(hand.world().state.regions.at<Overlap>(0).largest_depth, 1e-6, 0.1e-6);
 }
 
 TEST(RegionsTest, ARegionThatEndedIsNotTheNextOneThere) {

@@ -29,13 +29,13 @@ double small_turn(const Hand& hand) {
   const PaperShaft shaft{world.state.regions.at<RegionNormal>(0).force,
                          world.model.bodies.at<Friction>(0).dynamic_friction,
                          world.model.bodies.at<Elasticity>(0).shear_modulus(),
-                         world.state.regions.at<RegionGeometry>(0).radius,
+                         world.state.regions.at<Contact>(0).radius,
                          world.state.regions.at<RegionMotion>(0).lever};
   return 0.2 * shaft.yield_turn();
 }
 
 double radius_of(const Hand& hand) {
-  return hand.world().state.regions.at<RegionGeometry>(0).radius;
+  return hand.world().state.regions.at<Contact>(0).radius;
 }
 
 TEST(CarryTractionsTest, ShrinkingContactLosesTheTractionOfTheAreaItLeaves) {

@@ -36,23 +36,23 @@ PaperShaft shaft_of(const Hand& hand) {
   return {world.state.regions.at<RegionNormal>(0).force,
           world.model.bodies.at<Friction>(0).dynamic_friction,
           world.model.bodies.at<Elasticity>(0).shear_modulus(),
-          world.state.regions.at<RegionGeometry>(0).radius,
+          world.state.regions.at<Contact>(0).radius,
           world.state.regions.at<RegionMotion>(0).lever};
 }
 
 TEST(PaperTorqueTest, RegionOfThePressedBallIsTheOverlapDisc) {
   const Hand hand = pressed_ball();
   ASSERT_EQ(hand.world().state.regions.size(), 1U);
-  const RegionGeometry& geometry = hand.world().state.regions.at<RegionGeometry>(0);
+  const Contact& contact = hand.world().state.regions.at<Contact>(0);
   // The sphere cuts the plane in a disc of a^2 = 2 R d - d^2; the grid's cells, 0.14 a wide,
   // resolve its area to about half of their square over a^2.
   const double exact = std::sqrt(2.0 * 0.05 * kPressDepth - kPressDepth * kPressDepth);
-  EXPECT_NEAR(geometry.radius, exact, 0.005 * exact);
+  EXPECT_NEAR(contact.radius, exact, 0.005 * exact);
   // Volume of the spherical cap, pi d^2 (3 R - d) / 3, over the disc's area.
   const double mean_depth =
       kPressDepth * kPressDepth * (3.0 * 0.05 - kPressDepth) / (3.0 * exact * exact);
-  EXPECT_NEAR(geometry.mean_depth, mean_depth, 0.005 * mean_depth);
-  EXPECT_NEAR(geometry.largest_depth, kPressDepth, 0.01 * kPressDepth);
+  EXPECT_NEAR(contact.depth, mean_depth, 0.005 * mean_depth);
+  EXPECT_NEAR(hand.world().state.regions.at<Overlap>(0).largest_depth, kPressDepth, 0.01 * kPressDepth);
 }
 
 TEST(PaperTorqueTest, CellsInContactAreAboutTwoHundred) {

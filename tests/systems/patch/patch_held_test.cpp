@@ -54,7 +54,7 @@ double worst_difference(const Hand& hand) {
   for (std::size_t cell = 0; cell < tractions.size(); ++cell) {
     worst = std::max(worst, std::abs(columns[7][cell] - held[cell].value));
   }
-  return worst / world.state.regions.at<RegionGeometry>(0).largest_depth;
+  return worst / world.state.regions.at<Overlap>(0).largest_depth;
 }
 
 /// A tool of one part over the cube's top face, pressed `depth` deep.

@@ -184,7 +184,7 @@ TEST(SurfaceFieldTest, FieldIsContinuousAcrossTheRegionsRim) {
     const float pressure = drawn.frame.body_vertices.at<VertexDisplacement>(v).displacement.w;
     const float before = drawn.frame.body_vertices.at<VertexDisplacement>(v - 1).displacement.w;
     const double mean = drawn.world.state.regions.at<RegionNormal>(0).force /
-                        drawn.world.state.regions.at<RegionGeometry>(0).area;
+                        drawn.world.state.regions.at<Contact>(0).area;
     EXPECT_NEAR(static_cast<double>(pressure - before), 0.0, 0.02 * mean);
   }
 }

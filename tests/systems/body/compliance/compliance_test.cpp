@@ -68,7 +68,7 @@ TEST(ComplianceTest, TwistOfAColumnAndOfItsContactAdd) {
   constexpr double kTurn = 1e-3;
   hand.move(glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), kTurn, 100);
   hand.move(glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0), 0.0, 20);
-  const double a = hand.world().state.regions.at<RegionGeometry>(0).radius;
+  const double a = hand.world().state.regions.at<Contact>(0).radius;
   const double disc = 16.0 / 3.0 * kSoftShearModulus * a * a * a;
   const double length = 2.0 * half.y - 0.35 * side;
   const double bar = 0.140577 * kSoftShearModulus * std::pow(side, 4) / length;

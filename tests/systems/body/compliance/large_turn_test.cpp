@@ -98,11 +98,8 @@ class LargeTurnTest : public ::testing::Test {
     grid.normal = kUp;
     grid.tangent_x = {1.0, 0.0, 0.0};
     grid.tangent_y = {0.0, 0.0, -1.0};
-    RegionGeometry& geometry = world.state.regions.at<RegionGeometry>(0);
-    geometry.rest_point = grid.origin;
-    geometry.equivalent_point = grid.origin;
-    geometry.radius = kContact;
-    geometry.largest_depth = 0.0;  // nothing is dented
+    world.state.regions.at<Overlap>(0) = Overlap{};  // nothing is dented
+    world.state.regions.at<Contact>(0) = {grid.origin, grid.origin, 0.0, kContact, 0.0};
     world.state.regions.at<RegionNormal>(0).force = -force.y;
     RegionFriction& friction = world.state.regions.at<RegionFriction>(0);
     friction.force = {-force.x, force.z};

@@ -155,7 +155,7 @@ TEST_P(PatchComplianceTest, AddsInAStepWhatTheStepBeforeAdded) {
     // There and back, so that it stays on the body.
     for (const double sign : {1.0, -1.0}) {
       const double bend = largest_bend(hand, sign * way, sign * turn, kSteps);
-      const double radius = hand.world().state.regions.at<RegionGeometry>(0).radius;
+      const double radius = hand.world().state.regions.at<Contact>(0).radius;
       const double step = (glm::length(way) + std::abs(turn) * radius) / kSteps;
       EXPECT_LT(bend, 2.0 * modulus * radius * step) << leg << " " << sign;
     }

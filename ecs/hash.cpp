@@ -61,4 +61,22 @@ std::uint64_t hash(const World& world) {
   return XXH3_64bits(both, sizeof(both));
 }
 
+ColumnHashes hash_columns(const State& state) {
+  ColumnHashes hashes{};
+  std::size_t column = 0;
+  const auto add = [&](std::span<const std::byte> bytes, std::size_t /*row_size*/) {
+    hashes[column++] = XXH3_64bits(bytes.data(), bytes.size());
+  };
+  std::apply([&add](const auto&... table) { (table.each_column(add), ...); }, state.tables());
+  return hashes;
+}
+
+ColumnSet differing(const ColumnHashes& a, const ColumnHashes& b) {
+  ColumnSet set;
+  for (std::size_t column = 0; column < kStateColumns; ++column) {
+    set.bits |= std::uint64_t{a[column] != b[column]} << column;
+  }
+  return set;
+}
+
 }  // namespace torsion

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
+#include "ecs/column_set.hpp"
 #include "ecs/world.hpp"
 
 namespace torsion {
@@ -12,5 +14,10 @@ namespace torsion {
 [[nodiscard]] std::uint64_t hash(const State& state);
 /// Of both.
 [[nodiscard]] std::uint64_t hash(const World& world);
+
+/// One for each column of the state's tables. Allocates nothing.
+using ColumnHashes = std::array<std::uint64_t, kStateColumns>;
+[[nodiscard]] ColumnHashes hash_columns(const State& state);
+[[nodiscard]] ColumnSet differing(const ColumnHashes& a, const ColumnHashes& b);
 
 }  // namespace torsion

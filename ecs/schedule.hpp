@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "ecs/column_set.hpp"
+
 namespace torsion {
 
 /// One system of a schedule. `run` is a free function over the tables that Context reaches.
@@ -15,6 +17,11 @@ struct System {
   std::string_view needs;                    // what a scene must have for it, in words
   bool (*needed)(const Context&) = nullptr;  // nullptr: always
   void (*run)(Context&) = nullptr;
+  ColumnSet writes = {};   // columns of State of which it finds what they hold in this step
+  ColumnSet carries = {};  // columns whose last step's values it brings over to this one's rows
+
+  /// All that it may change.
+  [[nodiscard]] constexpr ColumnSet declared() const { return writes | carries; }
 };
 
 /// Runs systems in the order given, and times each. What no entity needs is
@@ -45,12 +52,18 @@ class Schedule {
 
   /// One step: every system that is on, in order. Allocates nothing.
   void run(Context& context) {
+    run_each([&context](const System<Context>& system) { system.run(context); });
+  }
+
+  /// The same, each by run_system(system).
+  template <class RunSystem>
+  void run_each(const RunSystem& run_system) {
     auto start = std::chrono::steady_clock::now();
     for (Row& row : rows_) {
       if (!row.on) {
         continue;
       }
-      row.system.run(context);
+      run_system(row.system);
       const auto end = std::chrono::steady_clock::now();
       const double elapsed = std::chrono::duration<double>(end - start).count();
       start = end;

@@ -7,6 +7,7 @@
 
 #include "systems/body/compliance/compliance.hpp"
 #include "systems/body/skeleton/skeleton.hpp"
+#include "systems/check_columns.hpp"
 #include "systems/contact/couple_tools.hpp"
 #include "systems/contact/detect_contacts.hpp"
 #include "systems/contact/group_regions.hpp"
@@ -36,6 +37,11 @@ bool any_paper_beam(const StepContext& context) {
              });
 }
 
+/// What regions have from the last step: rows of their own, and those of their blocks.
+constexpr ColumnSet kOfRegions = table_columns<RegionTable>() | table_columns<CellTable>() |
+                                 table_columns<PatchCellTable>() | table_columns<MdrLayerTable>() |
+                                 columns<Footing, RegionCoupling>();
+
 bool any_moving(const StepContext& context) {
   return any_friction(context) ||
          std::ranges::any_of(contact_laws(), [&context](const ContactLaw* law) {
@@ -48,15 +54,16 @@ bool any_moving(const StepContext& context) {
 std::vector<System<StepContext>> step_systems() {
   // The paper's Fig. 4, top to bottom.
   std::vector<System<StepContext>> systems{
-      {"couple_tools", "takes the tools' poses and their motion", "a tool", nullptr, couple_tools},
+      {"couple_tools", "takes the tools' poses and their motion", "a tool", nullptr, couple_tools,
+       columns<ToolPose, ToolMotion>()},
       {"detect_contacts", "finds the tool's surface points inside a body", "a tool and a body",
        any_tool_and_body, detect_contacts},
       {"group_contact_points", "groups contact points closer than r_th", "a tool and a body",
        any_tool_and_body, group_contact_points},
       {"group_regions", "keeps the identity of contact regions", "a tool and a body",
-       any_tool_and_body, group_regions},
+       any_tool_and_body, group_regions, columns<RegionIdentity>(), kOfRegions},
       {"region_grids", "finds depth and area cell by cell", "a tool and a body", any_tool_and_body,
-       region_grids},
+       region_grids, columns<RegionFrame, CellGeometry, Overlap, SmoothContact>(), kOfRegions},
       {"main_beams", "the beam from what is fixed to every region",
        "a body with contact model paper and body model skeleton", any_paper_beam, main_beams},
   };
@@ -64,16 +71,18 @@ std::vector<System<StepContext>> step_systems() {
     systems.insert(systems.end(), law->place.begin(), law->place.end());
   }
   systems.push_back({"region_motion", "slide, spin and axis of every region",
-                     "a body with friction", any_moving, region_motion});
+                     "a body with friction", any_moving, region_motion, columns<RegionMotion>()});
   for (const ContactLaw* const law : contact_laws()) {
     systems.insert(systems.end(), law->solve.begin(), law->solve.end());
   }
   const System<StepContext> last[] = {
       {"region_wrenches", "force and torque of every region, equation (1)", "a tool and a body",
-       any_tool_and_body, region_wrenches},
+       any_tool_and_body, region_wrenches, columns<RegionWrench, StoredEnergy>()},
       {"compliance", "the whole body's deformation under its regions",
-       "a body with body model compliance", any_compliance, compliance},
-      {"sum_wrenches", "the wrench on every tool, faults, work", "a tool", nullptr, sum_wrenches},
+       "a body with body model compliance", any_compliance, compliance,
+       columns<RegionSupport, RegionReaction, SupportField, Footing, RegionCoupling>()},
+      {"sum_wrenches", "the wrench on every tool, faults, work", "a tool", nullptr, sum_wrenches,
+       columns<ToolWrench>()},
   };
   systems.insert(systems.end(), std::begin(last), std::end(last));
   return systems;
@@ -103,7 +112,11 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
 void step(const Model& model, State& state, std::span<const Pose> tool_poses, Scratch& scratch) {
   TORSION_ASSERT(tool_poses.size() == model.tools.size());
   StepContext context = scratch.context(model, state, tool_poses);
+#ifdef NDEBUG
   scratch.schedule.run(context);
+#else
+  run_with_checks(scratch.schedule, context);
+#endif
   Clock& clock = state.clock;
   clock.faults_ever |= clock.faults;
   clock.time = static_cast<double>(clock.step) * clock.dt;

@@ -320,7 +320,8 @@ void turn_layers(State& state, std::uint32_t region, const glm::dmat2& back) {
 
 constexpr System<StepContext> kMdrSolve[] = {
     {"mdr_forces", "round contacts of an elastic half-space: force, friction and torque",
-     "a body with contact model mdr", any_with<ContactModel::kMdr>, mdr_forces},
+     "a body with contact model mdr", any_with<ContactModel::kMdr>, mdr_forces,
+     columns<MdrLayer, MdrState, CellTraction, RegionNormal, RegionFriction, Contact>()},
 };
 
 }  // namespace

@@ -14,13 +14,15 @@ bool any_paper_friction(const StepContext& context) {
 
 constexpr System<StepContext> kPlace[] = {
     {"carry_tractions", "keeps tractions at their place on the body",
-     "a body with contact model paper and friction", any_paper_friction, carry_tractions},
+     "a body with contact model paper and friction", any_paper_friction, carry_tractions,
+     columns<TractionFrame>(), columns<CellTraction>()},
     {"paper_normal_forces", "normal force f = k1 x + k3 x^3", "a body with contact model paper",
-     any_with<ContactModel::kPaper>, paper_normal_forces},
+     any_with<ContactModel::kPaper>, paper_normal_forces, columns<RegionNormal, Contact>()},
 };
 constexpr System<StepContext> kSolve[] = {
     {"paper_friction_forces", "friction and contact torque, equations (2)-(9), (14)",
-     "a body with contact model paper and friction", any_paper_friction, paper_friction_forces},
+     "a body with contact model paper and friction", any_paper_friction, paper_friction_forces,
+     columns<RegionFriction, CellTraction>()},
 };
 
 }  // namespace

@@ -341,9 +341,13 @@ void forget_cells(const Model& model, State& state, std::uint32_t block) {
   state.patch_cells.zero({block * side * side, side * side});
 }
 
+constexpr ColumnSet kPatchWrites =
+    columns<PatchState, PatchEnergy, LayerGrid, Influence, FootingResponse, RegionCarrier,
+            CellTraction, RegionNormal, RegionFriction, Contact>();
 constexpr System<StepContext> kPatchSolve[] = {
     {"patch_forces", "elastic half-space cell by cell: pressure, friction and torque",
-     "a body with contact model patch", any_with<ContactModel::kPatch>, patch_forces},
+     "a body with contact model patch", any_with<ContactModel::kPatch>, patch_forces,
+     kPatchWrites | table_columns<PatchCellTable>(), columns<RegionFrame>()},
 };
 
 }  // namespace

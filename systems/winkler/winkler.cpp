@@ -119,7 +119,8 @@ void winkler_forces(StepContext& context) {
 
 constexpr System<StepContext> kWinklerSolve[] = {
     {"winkler_forces", "a bed of springs with friction smooth over a velocity",
-     "a body with contact model winkler", any_with<ContactModel::kWinkler>, winkler_forces},
+     "a body with contact model winkler", any_with<ContactModel::kWinkler>, winkler_forces,
+     columns<CellTraction, RegionNormal, RegionFriction, Contact>()},
 };
 
 }  // namespace

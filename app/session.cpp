@@ -6,7 +6,7 @@
 #include "app/progress.hpp"
 #include "device/scripted_motion.hpp"
 #include "scenes/load_gltf.hpp"
-#include "systems/contact/fault.hpp"
+#include "systems/contact/region_wrenches.hpp"
 
 namespace torsion {
 

@@ -6,7 +6,7 @@
 #include "app/live/device_words.hpp"
 #include "ecs/hash.hpp"
 #include "ecs/model_names.hpp"
-#include "systems/contact/fault.hpp"
+#include "systems/contact/region_wrenches.hpp"
 
 namespace torsion {
 namespace {

@@ -8,13 +8,12 @@
 #include "systems/body/compliance/compliance.hpp"
 #include "systems/body/skeleton/skeleton.hpp"
 #include "systems/check_columns.hpp"
-#include "systems/contact/couple_tools.hpp"
 #include "systems/contact/detect_contacts.hpp"
 #include "systems/contact/group_regions.hpp"
 #include "systems/contact/law.hpp"
 #include "systems/contact/region_grid.hpp"
-#include "systems/contact/region_motion.hpp"
 #include "systems/contact/region_wrenches.hpp"
+#include "systems/contact/tool_motion.hpp"
 #include "systems/model/prepare.hpp"
 #include "systems/scratch.hpp"
 #include "systems/surface/take_snapshot.hpp"
@@ -86,6 +85,21 @@ std::vector<System<StepContext>> step_systems() {
   };
   systems.insert(systems.end(), std::begin(last), std::end(last));
   return systems;
+}
+
+void Scratch::reserve(const Model& model, State& state) {
+  contact.reserve(model, state);
+  paper.reserve(model);
+  patch.reserve(model, state);
+  compliance.reserve(state);
+  if (!state.mdr_layers.empty()) {
+    mdr = make_mdr_tables();
+  }
+  schedule = Schedule<StepContext>(step_systems(), context(model, state, {}));
+}
+
+StepContext Scratch::context(const Model& model, State& state, std::span<const Pose> tool_poses) {
+  return {model, state, tool_poses, contact, paper, mdr, patch, compliance};
 }
 
 Simulation::Simulation() : scratch(std::make_unique<Scratch>()) {}

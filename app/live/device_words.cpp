@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "device/device_text.hpp"
-#include "systems/hold/coupling_choice.hpp"
+#include "systems/hold/virtual_coupling.hpp"
 
 namespace torsion {
 namespace {

@@ -7,9 +7,8 @@
 
 #include "app/live/rebuild.hpp"
 #include "device/scripted_motion.hpp"
-#include "systems/hold/coupling_choice.hpp"
+#include "systems/hold/virtual_coupling.hpp"
 #include "systems/math/frames.hpp"
-#include "systems/math/rotation_vector.hpp"
 
 namespace torsion {
 namespace {

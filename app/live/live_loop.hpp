@@ -16,7 +16,7 @@
 #include "ecs/ring.hpp"
 #include "ecs/snapshot.hpp"
 #include "ecs/triple_buffer.hpp"
-#include "systems/hold/passivity.hpp"
+#include "systems/hold/handle_side.hpp"
 #include "systems/hold/tool_hold.hpp"
 
 namespace torsion {

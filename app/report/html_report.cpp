@@ -11,7 +11,7 @@
 #include "app/report/html_style.hpp"
 #include "app/report/report_plots.hpp"
 #include "ecs/model_names.hpp"
-#include "systems/contact/fault.hpp"
+#include "systems/contact/region_wrenches.hpp"
 
 namespace torsion {
 namespace {

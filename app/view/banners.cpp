@@ -4,7 +4,7 @@
 
 #include "app/live/device_words.hpp"
 #include "app/view/panel_style.hpp"
-#include "systems/contact/fault.hpp"
+#include "systems/contact/region_wrenches.hpp"
 
 namespace torsion {
 namespace {

@@ -56,7 +56,7 @@ struct Footing {
   std::array<std::array<glm::dvec3, kFootingPorts>, 6> unit_forces{};
   std::array<double, 36> own{};  // 6 x 6: motion at `center` by that unit wrench, what yields of it
   // 3 x 3, m/N, body: how the body's bend beside its half-space moves it by a force, for contact
-  // models without cells. `patch` has the bend in its own tables (patch/influences.hpp).
+  // models without cells. `patch` has the bend in its own tables (patch/region.hpp).
   std::array<double, 9> bend{};
 };
 

@@ -76,13 +76,13 @@ struct OwnedRows {
   Range balls;       // in `balls`; tools only
   Range anchors;     // in `anchors`; bodies only
   Range influences;  // in `influences`; bodies with contact model patch only: its tables and, of a
-                     // layer with body model compliance, its kernel (layer_kernel.hpp)
+                     // layer with body model compliance, its kernel (half_space/layer.hpp)
   Range ports;       // in `ports`; body model compliance only, the first of them are its anchors
   Range compliance;  // in `compliance`, 3 rows a port of 3 numbers a port, displacements by the
                      // force there, m/N; then 3 rows a port of 3 an anchor, turns by it, rad/N
 };
 
-/// What bounds the forces of a body's regions (force_bound.hpp). Written by: region_wrenches.
+/// What bounds the forces of a body's regions (region_wrenches.hpp). Written by: region_wrenches.
 struct StoredEnergy {
   double most = 0.0;   // J: what the regions' contacts may hold; 0 where there are none
   double peak = 0.0;   // J: the largest that `most` has been

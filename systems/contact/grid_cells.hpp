@@ -1,15 +1,73 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 
-#include "systems/contact/cell_finder.hpp"
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "ecs/components.hpp"
 #include "systems/contact/scratch.hpp"
 #include "systems/contact/step_context.hpp"
 #include "systems/math/smooth_step.hpp"
 
 namespace torsion {
+
+/// A cell of a region's grid: i along x, j along y.
+struct CellPlace {
+  std::uint32_t i;
+  std::uint32_t j;
+};
+
+/// Finds the cell of a region's grid over or under which a point lies.
+struct CellFinder {
+  /// @param grid       in its body's frame, moved as the material under it: points of a tool that
+  ///                   has twisted its contact lie over other places of the grid at rest
+  /// @param half_size  m, of the grid
+  /// @param along      cells along each side
+  CellFinder(const Pose& grid, const glm::dvec2& half_size, std::uint32_t along)
+      : origin(grid.position),
+        tangent_x(grid.rotation * glm::dvec3(1.0, 0.0, 0.0)),
+        tangent_y(grid.rotation * glm::dvec3(0.0, 1.0, 0.0)),
+        half(half_size),
+        side(along),
+        cells_over_length(0.5 * static_cast<double>(along) / half_size) {}
+
+  /// @param point  m, body
+  /// @return along the grid's axes, m
+  [[nodiscard]] glm::dvec2 place(const glm::dvec3& point) const {
+    const glm::dvec3 offset = point - origin;
+    return {glm::dot(offset, tangent_x), glm::dot(offset, tangent_y)};
+  }
+
+  /// @param point  m, body; none where it is beside the grid, or NaN
+  [[nodiscard]] std::optional<CellPlace> under(const glm::dvec3& point) const {
+    const glm::dvec2 at = place(point);
+    // Written so that NaN is in no cell.
+    if (!(std::abs(at.x) <= half.x && std::abs(at.y) <= half.y)) {
+      return std::nullopt;
+    }
+    return CellPlace{index(at.x * cells_over_length.x), index(at.y * cells_over_length.y)};
+  }
+
+  glm::dvec3 origin;  // m, body
+  glm::dvec3 tangent_x;
+  glm::dvec3 tangent_y;
+  glm::dvec2 half;  // m
+  std::uint32_t side;
+  glm::dvec2 cells_over_length;  // 1/m
+
+ private:
+  /// @param from_middle  in cells; rounding may put it beside the grid
+  [[nodiscard]] std::uint32_t index(double from_middle) const {
+    const double from_edge = from_middle + 0.5 * static_cast<double>(side);
+    return static_cast<std::uint32_t>(std::clamp(from_edge, 0.0, static_cast<double>(side - 1)));
+  }
+};
 
 /// One region's cells and what finding them needs of the tables.
 struct Grid {
@@ -99,5 +157,37 @@ inline double facing_share(double slope) {
 /// ContactScratch::cell_columns the body's distances at the cells' points, depths and coverage.
 /// @return the cells with coverage
 CellBits find_cells(const Grid& grid, const RegionPoints& contact);
+
+/// Where the tool's underside ends at a steep side, as a punch's does, cells count with the share
+/// that lies under it; by their centres alone they would come and go as wholes, and a contact that
+/// turns over its cells would lose the friction of one after another. Cells whose centres are
+/// beside the tool are put on its underside, carried on over them with its slopes.
+/// The side is looked for half a cell's diagonal above the underside, where it is nearer than that
+/// wherever it cuts the cell, and followed down along its plane.
+/// @pre   find_tool_surface has left the cells' places and slopes in ContactScratch::cell_columns
+/// @post  CellColumns::rim_share and rim_bearing are found, when there are any
+/// @return whether there are any
+bool find_rims(const Grid& grid);
+
+/// Takes from coverage and bearing what is not under the tool.
+void take_rims(const CellColumns& columns);
+
+/// CellGeometry::bearing of a cell that only partly lies under a face. What it carries it carries
+/// on a smaller area, and gives way by more under it. The softness that it has beyond a whole
+/// cell's, kRimSoftness (1 / bearing - 1) times what its own influence on itself is, makes a punch
+/// whose rim runs through a row of cells as stiff as in between those a row narrower and wider
+/// (rim_stiffness_test.cpp): a row of cells that are long across the rim is the softer for that.
+/// @param share   of the cell under the face
+/// @param aspect  the cell's length across the rim over that along it
+double bearing_of(double share, double aspect);
+
+inline constexpr double kRimSoftness = 1.3;
+
+/// Of a cell's length: so much farther out a face's rim is laid for the bearing. By this a punch on
+/// a grid of cells with one pressure each is narrower than it is, on either side (likewise).
+inline constexpr double kRimBeyond = 0.13;
+
+/// Area, depths, centroid and mean normal from the cells.
+Overlap summarize_cells(const Grid& grid);
 
 }  // namespace torsion

@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems/contact/cell_finder.hpp"
-#include "systems/contact/fault.hpp"
 #include "systems/contact/grid_cells.hpp"
-#include "systems/contact/join_clusters.hpp"
 #include "systems/contact/law.hpp"
 #include "systems/contact/region_grid.hpp"
 #include "systems/contact/region_wrenches.hpp"

@@ -1,5 +1,3 @@
-#include "systems/contact/join_clusters.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,8 +8,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "systems/contact/cell_finder.hpp"
 #include "systems/contact/grid_cells.hpp"
+#include "systems/contact/group_regions.hpp"
 #include "systems/geometry/bounds.hpp"
 #include "systems/math/disjoint_sets.hpp"
 #include "systems/math/frames.hpp"

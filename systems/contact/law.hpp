@@ -27,12 +27,12 @@ struct ContactLaw {
   /// contact as a whole: a force, and a couple about its middle.
   bool by_cells = false;
   /// It reckons with how the body gives way to its load in the step in which that is found
-  /// (support/own_answer.hpp): writes ContactScratch::support_answers.
+  /// (support/contact_load.hpp): writes ContactScratch::support_answers.
   bool moves_own_support = false;
   /// On a body that moves as a whole: so many times a contact's own compliance the body has to give
   /// way for other regions to answer within a step (support/body_law.hpp).
   double answers_from = 0.0;
-  /// Its force is bounded by the overlap and by the tools' work (force_bound.hpp).
+  /// Its force is bounded by the overlap and by the tools' work (region_wrenches.hpp).
   bool is_bounded = true;
   /// It needs RegionMotion on bodies without friction, too.
   bool needs_motion = true;

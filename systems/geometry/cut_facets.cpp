@@ -1,5 +1,3 @@
-#include "systems/geometry/cut_facets.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -9,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/geometry/bounds.hpp"
+#include "systems/geometry/unite_meshes.hpp"
 
 namespace torsion {
 namespace {

@@ -1,5 +1,13 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ecs/components.hpp"
+#include "ecs/result.hpp"
+#include "ecs/surface.hpp"
 #include "systems/geometry/distance.hpp"
 
 namespace torsion {
@@ -27,5 +35,40 @@ class FieldDistance {
   const DistanceNode* nodes_;
   const DistanceBrick* bricks_;
 };
+
+/// The resolution of a distance field. Measured at the defaults on spheres and tori: the largest
+/// error near the surface is 1e-5 of the longest side; doubling coarse_cells divides it by 8 where
+/// the surface is smooth, and by 2 at edges, which come out rounded by about a fine cell.
+struct FieldOptions {
+  std::uint32_t coarse_cells = 32;  // along the longest side, with a margin around the mesh
+  std::uint32_t subdivision = 4;    // fine cells along one edge of a coarse cell
+  std::uint32_t threads = 2;        // the result does not depend on it
+};
+
+/// The rows of one field, with ranges that count from 0 in its own nodes and bricks.
+struct BuiltField {
+  DistanceField header;
+  std::vector<DistanceNode> nodes;
+  std::vector<DistanceBrick> bricks;
+};
+
+/// What a field is of. Closed, oriented meshes.
+struct FieldOfMesh {
+  FieldOfMesh(const SurfaceMesh& mesh) : part(mesh), solid(mesh) {}  // NOLINT(google-explicit-*)
+  FieldOfMesh(const SurfaceMesh& of_part, const SurfaceMesh& of_solid)
+      : part(of_part), solid(of_solid) {}
+  const SurfaceMesh& part;   // whose box the field covers
+  const SurfaceMesh& solid;  // to which it measures: the part, or what it and others make
+};
+
+/// Load time: the distance field of a closed, oriented mesh, in the mesh's frame. Coarse nodes
+/// cover the mesh's box and a margin of 1.5 coarse cells; every coarse cell that the surface comes
+/// near gets a brick of fine nodes. Fails as MeshDistance::build does, and where the mesh has no
+/// extent.
+Result<BuiltField> build_distance_field(const FieldOfMesh& mesh, const FieldOptions& options = {});
+
+/// A field as bytes and back; nullopt where the bytes are no such field.
+std::vector<std::byte> to_bytes(const BuiltField& field);
+std::optional<BuiltField> field_from_bytes(std::span<const std::byte> bytes);
 
 }  // namespace torsion

@@ -10,8 +10,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "systems/geometry/sample_surface_pieces.hpp"
-#include "systems/geometry/sample_surface_tree.hpp"
 #include "systems/math/lanes.hpp"
 
 namespace torsion {

@@ -1,13 +1,57 @@
 #pragma once
 
-// Meshes that overlap bound one solid: their union.
+// Triangles cut along other triangles.
 
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include <glm/vec3.hpp>
+
+#include "ecs/components/bodies.hpp"
 #include "ecs/result.hpp"
 #include "ecs/scene_description.hpp"
+#include "ecs/surface.hpp"
 
 namespace torsion {
+
+struct Facet {
+  std::array<glm::dvec3, 3> corner;  // m
+  glm::dvec3 normal{0.0};            // unit; zero without area
+  Bounds box;
+};
+
+/// A convex, flat piece of a triangle: its corners in order, m.
+using Polygon = std::vector<glm::dvec3>;
+
+/// One for each triangle.
+std::vector<Facet> facets_of(const SurfaceMesh& mesh);
+
+/// True where all corners of `a` lie in the plane of `b`.
+/// @param same  m: places nearer than that are one, here and below
+bool is_coplanar(const Facet& a, const Facet& b, double same);
+
+/// True where two facets cross or touch along a line, or are coplanar.
+bool do_cross(const Facet& a, const Facet& b, double same);
+
+/// True where a place in a facet's plane lies within its edges.
+bool is_in(const Facet& facet, const glm::dvec3& place);
+
+/// Cuts the pieces of a facet along another one.
+void cut_by(std::vector<Polygon>& pieces, const Facet& facet, const Facet& other, double same);
+
+// Flat pieces of a surface as one triangle mesh.
+
+/// The pieces as one mesh, without places where an edge ends in the middle of another: nothing
+/// where they bound no solid.
+/// @param pieces  convex; as they were cut, so that neighbours may have different corners along one
+///                edge
+/// @param same    m: corners nearer than a few times that are one
+std::optional<SurfaceMesh> close_pieces(const std::vector<Polygon>& pieces, double same);
+
+// Meshes that overlap bound one solid: their union.
 
 /// What has become one.
 struct Union {

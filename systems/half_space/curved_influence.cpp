@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "ecs/assert.hpp"
-#include "systems/half_space/layer_influence.hpp"
+#include "systems/half_space/layer.hpp"
 
 namespace torsion {
 namespace {

@@ -1,14 +1,173 @@
 #include "systems/hold/handle_side.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "systems/hold/count_play.hpp"
-#include "systems/hold/coupling_choice.hpp"
-#include "systems/math/rotation_vector.hpp"
+#include "systems/hold/virtual_coupling.hpp"
+#include "systems/math/finite.hpp"
+#include "systems/math/frames.hpp"
 
 namespace torsion {
+namespace {
+
+constexpr double kFarthest = 2.0;   // counts: what is farther is followed at once
+constexpr double kPlay = 1.0;       // counts: what is nearer is not
+constexpr double kSlowTime = 0.25;  // s: of the way between, twice that of a loose hand
+
+/// What of a change goes beyond `free`, for each axis.
+glm::dvec3 beyond(const glm::dvec3& change, double free) {
+  return change - glm::clamp(change, -free, free);
+}
+
+/// How far to go of a change within `period`.
+glm::dvec3 followed(const glm::dvec3& change, double count, double period) {
+  const glm::dvec3 at_once = beyond(change, kFarthest * count);
+  const double share = std::min(1.0, period / kSlowTime);
+  return at_once + share * beyond(change - at_once, kPlay * count);
+}
+
+}  // namespace
+
+Pose follow_counts(const Pose& last, const Pose& measured, double count, double turn_count,
+                   double period) {
+  Pose pose = measured;
+  if (count > 0.0) {
+    pose.position = last.position + followed(measured.position - last.position, count, period);
+  }
+  if (turn_count > 0.0) {
+    const glm::dvec3 turn =
+        followed(turn_between(last.rotation, measured.rotation), turn_count, period);
+    const double angle = glm::length(turn);
+    pose.rotation = angle > 0.0
+                        ? glm::normalize(glm::angleAxis(angle, turn / angle) * last.rotation)
+                        : last.rotation;
+  }
+  return pose;
+}
+
+namespace {
+
+constexpr double kSlowest = 1e-9;  // m or rad a sample: slower, damping would divide by nothing
+// Where a device's are not known: a small handle alone, 50 g on 20 mm. Mechanism and fingers only
+// add to it, and the more there is, the more a late damper may do.
+constexpr double kLightMass = 0.05;     // kg
+constexpr double kLightInertia = 1e-5;  // kg m^2
+
+/// @param held  force on the hand over the interval that has passed
+/// @param way   of the handle over it
+/// @return the force to display over the next one
+glm::dvec3 keep_channel_passive(EnergyBooks& books, const glm::dvec3& held, const glm::dvec3& way,
+                                const glm::dvec3& wanted, double largest_damping,
+                                double largest_stored, double period) {
+  // The force on the hand does the work held . way on it.
+  books.stored = std::min(books.stored - glm::dot(held, way), largest_stored);
+  const double square = glm::dot(way, way);
+  if (books.stored >= 0.0 || square < kSlowest * kSlowest) {
+    return wanted;
+  }
+  // A damper of b takes b v^2 T = b way^2 / T over the next interval, should the hand go on.
+  const double damping = std::min(-books.stored * period / square, largest_damping);
+  books.dissipated += damping * square / period;
+  return wanted - damping * way / period;
+}
+
+}  // namespace
+
+PassivityLimits choose_passivity(const DeviceTraits& device) {
+  constexpr double kShareOfForce = 0.02;
+  const double lag = device.period + 2.0 * device.delay;
+  const auto damping = [&](double inertia, double largest, double count) {
+    const double most = 0.5 * inertia / lag;
+    return count > 0.0 ? std::min(most, kShareOfForce * largest * device.period / count) : most;
+  };
+  PassivityLimits limits;
+  limits.largest_damping = damping(device.mass > 0.0 ? device.mass : kLightMass,
+                                   device.largest_force, device.encoder_step);
+  limits.largest_turn_damping = damping(device.inertia > 0.0 ? device.inertia : kLightInertia,
+                                        device.largest_torque, device.encoder_turn_step);
+  limits.delay = static_cast<std::uint32_t>(
+      std::clamp(std::round(device.delay / device.period), 0.0, 1.0 * kLongestDelay));
+  return limits;
+}
+
+Wrench keep_passive(PassivityState& state, const PassivityLimits& limits, const Wrench& wanted,
+                    const glm::dvec3& shift, const glm::dvec3& turn, double period) {
+  const auto count = static_cast<std::uint32_t>(state.sent.size());
+  const Wrench& held =
+      state.sent[(state.samples + count - 1 - std::min(limits.delay, kLongestDelay)) % count];
+  const Wrench next{
+      keep_channel_passive(state.translation, held.force, shift, wanted.force,
+                           limits.largest_damping, limits.largest_stored, period),
+      keep_channel_passive(state.rotation, held.torque, turn, wanted.torque,
+                           limits.largest_turn_damping, limits.largest_stored, period)};
+  state.sent[state.samples % count] = next;
+  state.samples = (state.samples + 1) % count;
+  return next;
+}
+
+namespace {
+
+constexpr double kNothing = 1e-9;  // a share that is only the rounding of what fell
+
+glm::dvec3 at_most(const glm::dvec3& vector, double most) {
+  const double length = glm::length(vector);
+  return length > most ? vector * (most / length) : vector;
+}
+
+void change_state(OutputGuard& guard, const GuardLimits& limits, const GuardInput& input, bool good,
+                  double period) {
+  switch (guard.state) {
+    case GuardState::kWaiting:
+      guard.share = 0.0;
+      if (good && input.distance <= limits.near) {
+        guard.state = GuardState::kRising;
+      }
+      break;
+    case GuardState::kRising:
+      guard.share = std::min(1.0, guard.share + period / limits.rise);
+      guard.state = guard.share == 1.0 ? GuardState::kLive : GuardState::kRising;
+      break;
+    case GuardState::kLive:
+      break;
+    case GuardState::kFalling:
+      guard.share -= period / limits.fall;
+      guard.share = guard.share > kNothing ? guard.share : 0.0;
+      guard.state = guard.share == 0.0 ? GuardState::kWaiting : GuardState::kFalling;
+      break;
+  }
+}
+
+}  // namespace
+
+Wrench guard_output(OutputGuard& guard, const GuardLimits& limits, const GuardInput& input,
+                    double period) {
+  const bool good = !input.faulty && input.result_age <= limits.longest_silence &&
+                    finite(input.wanted) && std::isfinite(input.distance);
+  if (!good && (guard.state == GuardState::kLive || guard.state == GuardState::kRising)) {
+    // What was sent last falls, from its whole size: its share is already in it.
+    guard.state = GuardState::kFalling;
+    guard.last_good = guard.sent;
+    guard.share = 1.0;
+  }
+  change_state(guard, limits, input, good, period);
+  const bool falling = guard.state == GuardState::kFalling;
+  const Wrench source = falling ? guard.last_good : good ? input.wanted : Wrench{};
+  const glm::dvec3 force = at_most(guard.share * source.force, limits.largest_force);
+  const glm::dvec3 torque = at_most(guard.share * source.torque, limits.largest_torque);
+  // A fall has its own rate, which is safer than any slower one.
+  const bool ended = guard.state == GuardState::kWaiting;
+  const double force_step =
+      falling || ended ? limits.largest_force : limits.largest_force_rate * period;
+  const double torque_step =
+      falling || ended ? limits.largest_torque : limits.largest_torque_rate * period;
+  guard.sent.force += at_most(force - guard.sent.force, force_step);
+  guard.sent.torque += at_most(torque - guard.sent.torque, torque_step);
+  return guard.sent;
+}
+
 namespace {
 
 constexpr double kNearHandle = 0.01;      // m: a hand finds that without a guide

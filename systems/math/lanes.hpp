@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <numeric>
 
+#include "systems/math/wide_lanes.hpp"
+
 // TORSION_WIDEST before a function compiles its loops for the widest vectors that the machine has,
 // chosen when the program starts. Without fused multiply-add (CMakeLists.txt) all versions give the
 // same bits. Sanitizers start too late for the choice.
@@ -22,9 +24,7 @@ inline double larger(double a, double b) {
   return a > b ? a : b;
 }
 
-/// How many cells a loop takes at a time that looks for a largest value: one at a time would wait
-/// for the one before. Columns of cells are as long as a multiple of that (Scratch).
-inline constexpr std::size_t kLanes = 8;
+/// What a loop over cells adds up eight at a time: one at a time would wait for the one before.
 using Lanes = std::array<double, kLanes>;
 
 /// The largest of all lanes and 0.

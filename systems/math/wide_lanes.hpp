@@ -8,13 +8,14 @@
 
 namespace torsion {
 
-inline constexpr std::size_t kPatchLanes = 8;
+/// Columns of cells are as long as a multiple of that (lay_columns in contact/scratch.hpp).
+inline constexpr std::size_t kLanes = 8;
 
 constexpr std::size_t whole_lanes(std::size_t count) {
-  return (count + kPatchLanes - 1) / kPatchLanes * kPatchLanes;
+  return (count + kLanes - 1) / kLanes * kLanes;
 }
 
-using Wide = double __attribute__((vector_size(sizeof(double) * kPatchLanes)));
+using Wide = double __attribute__((vector_size(sizeof(double) * kLanes)));
 
 #define TORSION_LANES static inline __attribute__((always_inline))
 
@@ -40,7 +41,7 @@ TORSION_LANES double sum_of(const Wide& lanes) {
 /// The largest of all lanes and 0.
 TORSION_LANES double largest_of(const Wide& lanes) {
   double most = 0.0;
-  for (std::size_t lane = 0; lane < kPatchLanes; ++lane) {
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
     most = lanes[lane] > most ? lanes[lane] : most;
   }
   return most;

@@ -1,4 +1,5 @@
-#include "systems/mdr/mdr.hpp"
+// The contact model `mdr`: each region is a round, or nearly round, contact of an elastic
+// half-space (docs/models.md).
 
 #include <algorithm>
 #include <array>
@@ -9,14 +10,14 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
-#include "systems/contact/friction_decay.hpp"
+#include "systems/contact/law.hpp"
 #include "systems/contact/region_grid.hpp"
 #include "systems/contact/scratch.hpp"
-#include "systems/contact/support/own_answer.hpp"
+#include "systems/contact/stick_slip.hpp"
+#include "systems/contact/support/contact_load.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/mdr/layers.hpp"
 #include "systems/mdr/round_contact.hpp"
-#include "systems/mdr/smooth_contact.hpp"
 
 namespace torsion {
 namespace {
@@ -318,6 +319,18 @@ void turn_layers(State& state, std::uint32_t region, const glm::dmat2& back) {
   }
 }
 
+/// Normal force, friction and couple of every region of a body with this model.
+void mdr_forces(StepContext& context) {
+  const Model& model = context.model;
+  State& state = context.state;
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    const std::uint32_t body = state.regions.at<RegionIdentity>(region).body;
+    if (model.bodies.at<BodyModels>(body).contact == ContactModel::kMdr) {
+      move_region(context, context.mdr, region);
+    }
+  }
+}
+
 constexpr System<StepContext> kMdrSolve[] = {
     {"mdr_forces", "round contacts of an elastic half-space: force, friction and torque",
      "a body with contact model mdr", any_with<ContactModel::kMdr>, mdr_forces,
@@ -339,16 +352,5 @@ const ContactLaw kMdrLaw{
     .turn = turn_layers,
     .begin = forget_layers,
 };
-
-void mdr_forces(StepContext& context) {
-  const Model& model = context.model;
-  State& state = context.state;
-  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
-    const std::uint32_t body = state.regions.at<RegionIdentity>(region).body;
-    if (model.bodies.at<BodyModels>(body).contact == ContactModel::kMdr) {
-      move_region(context, context.mdr, region);
-    }
-  }
-}
 
 }  // namespace torsion

@@ -1,5 +1,3 @@
-#include "systems/mdr/smooth_contact.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,12 +7,13 @@
 #include <glm/geometric.hpp>
 
 #include "systems/contact/grid_cells.hpp"
-#include "systems/contact/grid_place.hpp"
+#include "systems/contact/region_grid.hpp"
 #include "systems/geometry/distance_shapes.hpp"
 #include "systems/geometry/surface_piece.hpp"
 #include "systems/half_space/elliptic_contact.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/smooth_step.hpp"
+#include "systems/mdr/round_contact.hpp"
 
 namespace torsion {
 namespace {

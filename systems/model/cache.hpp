@@ -9,6 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "ecs/result.hpp"
+#include "systems/geometry/distance_field.hpp"
+
 namespace torsion {
 
 /// Names one entry of the cache: the kind of thing and the hash of all that it was made from.
@@ -34,5 +37,10 @@ std::optional<std::vector<std::byte>> load_cached(const CacheKey& key);
 /// all or nothing and two writers at once do no harm. False where the folder cannot be written,
 /// which is not an error: the cache only saves time.
 bool store_cached(const CacheKey& key, std::span<const std::byte> bytes);
+
+/// A distance field as build_distance_field makes it, from the user's cache where the same mesh was
+/// met before; stores it there if not.
+Result<BuiltField> load_or_build_distance_field(const FieldOfMesh& mesh,
+                                                const FieldOptions& options = {});
 
 }  // namespace torsion

@@ -10,9 +10,9 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "ecs/model_names.hpp"
-#include "systems/contact/contact_axes.hpp"
-#include "systems/contact/group_points.hpp"
+#include "systems/contact/detect_contacts.hpp"
 #include "systems/contact/law.hpp"
+#include "systems/contact/region_grid.hpp"
 #include "systems/geometry/distance.hpp"
 #include "systems/geometry/surface_piece.hpp"
 #include "systems/math/frames.hpp"

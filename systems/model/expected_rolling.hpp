@@ -1,14 +1,23 @@
 #pragma once
 
-// How far the contacts of an expected motion roll.
-
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
 #include "ecs/model.hpp"
 
 namespace torsion {
+
+/// Where a scene's contacts with a body are expected: a ball.
+struct ExpectedPlace {
+  bool known = false;      // false: anywhere
+  glm::dvec3 center{0.0};  // m, body
+  double radius = 0.0;     // m
+};
+
+// How far the contacts of an expected motion roll.
 
 /// A sample of a tool inside a body.
 struct TouchingPoint {

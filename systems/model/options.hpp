@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ecs/model.hpp"
-#include "systems/model/expected_place.hpp"
+#include "systems/model/expected_rolling.hpp"
 
 namespace torsion {
 

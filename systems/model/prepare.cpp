@@ -3,20 +3,16 @@
 #include <algorithm>
 #include <numeric>
 
-#include "systems/contact/support/surface_bend.hpp"
+#include "systems/contact/support/footing.hpp"
 #include "systems/geometry/bounds.hpp"
-#include "systems/geometry/distance_field_build.hpp"
+#include "systems/geometry/distance_field.hpp"
 #include "systems/geometry/sample_surface.hpp"
 #include "systems/geometry/unite_meshes.hpp"
 #include "systems/half_space/influence.hpp"
-#include "systems/half_space/layer_influence.hpp"
-#include "systems/half_space/layer_kernel.hpp"
-#include "systems/half_space/layer_thickness.hpp"
+#include "systems/half_space/layer.hpp"
 #include "systems/math/frames.hpp"
-#include "systems/model/cached_distance_field.hpp"
+#include "systems/model/cache.hpp"
 #include "systems/model/choose_models.hpp"
-#include "systems/model/prepare_anchors.hpp"
-#include "systems/model/prepare_compliance.hpp"
 
 namespace torsion {
 namespace {

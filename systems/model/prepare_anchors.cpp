@@ -1,5 +1,3 @@
-#include "systems/model/prepare_anchors.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,8 +10,8 @@
 #include "systems/body/skeleton/beam_sections.hpp"
 #include "systems/geometry/bounds.hpp"
 #include "systems/geometry/distance.hpp"
-#include "systems/geometry/fixed_volume.hpp"
-#include "systems/math/cross.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/model/prepare.hpp"
 
 namespace torsion {
 namespace {

@@ -1,5 +1,3 @@
-#include "systems/model/prepare_compliance.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,12 +8,11 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "systems/geometry/bounds.hpp"
 #include "systems/geometry/distance.hpp"
-#include "systems/geometry/fixed_volume.hpp"
-#include "systems/geometry/lattice.hpp"
 #include "systems/model/finite_elements/compliance.hpp"
 #include "systems/model/finite_elements/solid_surface.hpp"
-#include "systems/model/prepare_anchors.hpp"
+#include "systems/model/prepare.hpp"
 
 namespace torsion {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "systems/contact/friction_decay.hpp"
+#include "systems/contact/stick_slip.hpp"
 #include "systems/math/lanes.hpp"
 
 namespace torsion {

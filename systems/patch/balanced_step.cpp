@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "systems/half_space/local_inverse.hpp"
+#include "systems/half_space/influence.hpp"
 #include "systems/math/lanes.hpp"
 #include "systems/patch/disc_projection.hpp"
 #include "systems/patch/sums.hpp"

@@ -2,8 +2,8 @@
 
 // A step of the tractions together with the body that gives way as a whole under them.
 
+#include "systems/patch/passes.hpp"
 #include "systems/patch/solver.hpp"
-#include "systems/patch/traction_passes.hpp"
 
 namespace torsion {
 

@@ -6,7 +6,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "systems/contact/rim_cells.hpp"
+#include "systems/contact/grid_cells.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
 #include "systems/patch/passes.hpp"
@@ -89,7 +89,7 @@ void foresee(std::size_t count, double share, const double* __restrict change,
              double* __restrict to, Wide& __restrict sums) {
   Wide total{};
   std::size_t cell = 0;
-  for (; cell + kPatchLanes <= count; cell += kPatchLanes) {
+  for (; cell + kLanes <= count; cell += kLanes) {
     const Wide by = lanes_at(change + cell).all;
     lanes_at(to + cell).all += share * by;
     total += by < 0.0 ? -by : by;
@@ -114,7 +114,7 @@ void add_slope(std::size_t count, const double* __restrict target, const double*
   Wide slope{};
   Wide stiffness{};
   std::size_t cell = 0;
-  for (; cell + kPatchLanes <= count; cell += kPatchLanes) {
+  for (; cell + kLanes <= count; cell += kLanes) {
     const Wide to = lanes_at(target + cell).all;
     const Wide by = lanes_at(change + cell).all;
     slope += by * (to > kNoContact ? to - lanes_at(moved + cell).all : Wide{});
@@ -176,7 +176,7 @@ void add_up(std::size_t count, const PatchColumns& columns, const PatchPlaces& p
   const Wide none{};
   const Wide half = none + reference;
   std::array<Wide, kSums> sums{};
-  for (std::size_t cell = 0; cell < count; cell += kPatchLanes) {
+  for (std::size_t cell = 0; cell < count; cell += kLanes) {
     const Wide pressure = lanes_at(&columns.pressure[cell]).all;
     const Wide x = lanes_at(&places.x[cell]).all;
     const Wide y = lanes_at(&places.y[cell]).all;
@@ -216,7 +216,7 @@ void add_up(std::size_t count, const double* __restrict pressures, Wide& __restr
             Wide& __restrict loaded) {
   Wide sums{};
   Wide counts{};
-  for (std::size_t cell = 0; cell < count; cell += kPatchLanes) {
+  for (std::size_t cell = 0; cell < count; cell += kLanes) {
     const Wide pressure = lanes_at(pressures + cell).all;
     sums += pressure;
     counts += pressure > 0.0 ? Wide{} + 1.0 : Wide{};

@@ -1,5 +1,3 @@
-#include "systems/patch/definite_response.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -8,8 +6,9 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 
-#include "systems/contact/support/support_field.hpp"
+#include "systems/contact/support/footing.hpp"
 #include "systems/half_space/influence.hpp"
+#include "systems/patch/support.hpp"
 
 namespace torsion {
 namespace {

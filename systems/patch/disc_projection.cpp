@@ -25,7 +25,7 @@ TORSION_WIDEST
 void find_load(std::size_t count, const double* place_x, const double* place_y, const double* x,
                const double* y, std::array<Wide, 3>& totals) {
   std::array<Wide, 3> sums{};
-  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+  for (std::size_t k = 0; k < count; k += kLanes) {
     const Wide along_x = lanes_at(x + k).all;
     const Wide along_y = lanes_at(y + k).all;
     sums[0] += along_x;
@@ -78,7 +78,7 @@ void project(std::size_t count, const SurfaceMotion& motion, const double* __res
 TORSION_WIDEST
 void add_answers(const DiscColumns& columns, std::array<Wide, 6>& totals) {
   std::array<Wide, 6> sums{};
-  for (std::size_t k = 0; k < columns.place_x.size(); k += kPatchLanes) {
+  for (std::size_t k = 0; k < columns.place_x.size(); k += kLanes) {
     const Wide x = lanes_at(&columns.place_x[k]).all;
     const Wide y = lanes_at(&columns.place_y[k]).all;
     const Wide xx = lanes_at(&columns.answer_xx[k]).all;

@@ -5,8 +5,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "systems/contact/region_motion.hpp"
-#include "systems/contact/stuck_stiffness.hpp"
+#include "systems/contact/stick_slip.hpp"
+#include "systems/contact/tool_motion.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
 #include "systems/patch/passes.hpp"
@@ -38,7 +38,7 @@ void add_up(std::size_t count, const PatchColumns& columns, const double* __rest
   EnergySums total;
   const Wide none{};
   const Wide one = none + 1.0;
-  for (std::size_t cell = 0; cell < count; cell += kPatchLanes) {
+  for (std::size_t cell = 0; cell < count; cell += kLanes) {
     const Wide pressure = lanes_at(&columns.pressure[cell]).all;
     const Wide traction_x = lanes_at(&columns.traction_x[cell]).all;
     const Wide traction_y = lanes_at(&columns.traction_y[cell]).all;

@@ -6,16 +6,12 @@
 #include <cstdint>
 #include <numbers>
 
-#include "systems/contact/contact_axes.hpp"
 #include "systems/contact/grid_cells.hpp"
 #include "systems/contact/region_grid.hpp"
-#include "systems/contact/region_motion.hpp"
 #include "systems/contact/region_wrenches.hpp"
+#include "systems/contact/tool_motion.hpp"
 #include "systems/half_space/influence.hpp"
 #include "systems/math/frames.hpp"
-#include "systems/patch/centering.hpp"
-#include "systems/patch/layout.hpp"
-#include "systems/patch/resampling.hpp"
 
 namespace torsion {
 namespace {

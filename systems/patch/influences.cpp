@@ -1,15 +1,12 @@
-#include "systems/patch/influences.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "systems/contact/support/surface_bend.hpp"
+#include "systems/contact/support/footing.hpp"
 #include "systems/half_space/curved_influence.hpp"
-#include "systems/half_space/layer_influence.hpp"
-#include "systems/half_space/layer_kernel.hpp"
-#include "systems/half_space/layer_thickness.hpp"
+#include "systems/half_space/layer.hpp"
 #include "systems/patch/grid.hpp"
+#include "systems/patch/region.hpp"
 
 namespace torsion {
 namespace {

@@ -1,11 +1,11 @@
-#include "systems/patch/layout.hpp"
-
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
-#include "systems/contact/contact_axes.hpp"
+#include "systems/contact/region_grid.hpp"
 #include "systems/half_space/influence.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/patch/grid.hpp"
@@ -146,6 +146,261 @@ void shift_origin(const Grid& grid, const glm::dvec2& shift) {
   if (turn > 0.0) {
     const glm::dvec3 way = grid.frame.origin - before;
     grid.carrier.translation += glm::angleAxis(turn, grid.carrier.rotation / turn) * way - way;
+  }
+}
+
+namespace {
+
+constexpr int kMostPasses = 12;
+constexpr double kNearGrid = 2e-3;  // of the grid: so near, cells keep what they know of the tool
+constexpr double kLeastShare = 1.0 / 32;  // of its size, that a grid has after a pass
+
+/// How a pass moves and resizes a grid, in its own plane, m.
+struct GridStep {
+  glm::dvec2 shift{0.0};
+  glm::dvec2 growth{0.0};  // of the half sides
+
+  GridStep& operator+=(const GridStep& other) {
+    shift += other.shift;
+    growth += other.growth;
+    return *this;
+  }
+};
+
+GridStep operator+(GridStep a, const GridStep& b) {
+  return a += b;
+}
+
+GridStep operator*(double scale, const GridStep& step) {
+  return {scale * step.shift, scale * step.growth};
+}
+
+double product(const GridStep& a, const GridStep& b) {
+  return glm::dot(a.shift, b.shift) + glm::dot(a.growth, b.growth);
+}
+
+/// Finds where x = g(x) from what is left to do at the places gone to, g(x) - x (Anderson, J. ACM
+/// 12 (1965) 547, with the last two steps): on meshes plain passes leave three quarters of it each.
+class FixedPoint {
+ public:
+  /// @param left  to do at the place where the last step has led
+  /// @return the step to take
+  GridStep next(const GridStep& left) {
+    if (any_) {
+      std::swap(changes_[0], changes_[1]);
+      changes_[0] = {step_, left + -1.0 * left_};
+      count_ = std::min<std::size_t>(count_ + 1, changes_.size());
+    }
+    any_ = true;
+    left_ = left;
+    step_ = left;
+    GridStep rest = left;
+    // By Gram and Schmidt: each change of `left` takes its part of it away. The older one is made
+    // normal to the newer one first.
+    std::array<Change, 2> normal = changes_;
+    for (std::size_t k = 0; k < count_; ++k) {
+      for (std::size_t before = 0; before < k; ++before) {
+        const double part = product(normal[k].left, normal[before].left) /
+                            product(normal[before].left, normal[before].left);
+        normal[k].left += -part * normal[before].left;
+        normal[k].step += -part * normal[before].step;
+      }
+      const double square = product(normal[k].left, normal[k].left);
+      if (square <= kSame * product(changes_[k].left, changes_[k].left) || square == 0.0) {
+        count_ = k;
+        break;
+      }
+      const double part = product(rest, normal[k].left) / square;
+      rest += -part * normal[k].left;
+      step_ += -part * (normal[k].step + normal[k].left);
+    }
+    if (product(step_, step_) > kFarthest * kFarthest * product(left, left)) {
+      step_ = left;
+    }
+    return step_;
+  }
+
+  void forget() {
+    count_ = 0;
+    any_ = false;
+  }
+
+ private:
+  static constexpr double kSame = 1e-4;     // of a change's square: it says nothing that is new
+  static constexpr double kFarthest = 8.0;  // times what is left
+
+  struct Change {
+    GridStep step;  // gone
+    GridStep left;  // how much more there is left to do then
+  };
+  std::array<Change, 2> changes_;  // the last one first
+  std::size_t count_ = 0;
+  GridStep left_;
+  GridStep step_;
+  bool any_ = false;
+};
+
+double largest_share(const GridStep& step, const glm::dvec2& half_size) {
+  const glm::dvec2 share = glm::max(glm::abs(step.shift), glm::abs(step.growth)) / half_size;
+  return std::max(share.x, share.y);
+}
+
+/// Whether passes come nearer.
+class Progress {
+ public:
+  /// @param left  what is left to do, as a share of the grid
+  void note(double left) {
+    const bool nearer = left < kNearer * least_;
+    stalled_ = nearer ? 0 : stalled_ + 1;
+    blurred_ = !nearer && left < kBlurred;
+    least_ = std::min(least_, left);
+  }
+  [[nodiscard]] bool is_at_end() const {
+    return least_ < kCentered || blurred_ || stalled_ > kMostStalled;
+  }
+  /// Steps as along a staircase (the rim of a flat face goes by whole cells) lead nowhere.
+  [[nodiscard]] bool stalls() const { return stalled_ > 2; }
+
+ private:
+  static constexpr double kNearer = 0.5;     // of what was left to do
+  static constexpr double kCentered = 1e-9;  // so little is left
+  static constexpr double kBlurred = 1e-5;   // distances to a mesh may say no more
+  static constexpr int kMostStalled = 5;
+
+  double least_ = 1.0;
+  int stalled_ = 0;
+  bool blurred_ = false;
+};
+
+/// Middle of the overlap in the grid's plane, weighted with its depth, m.
+glm::dvec2 overlap_middle(const Grid& grid) {
+  double sum = 0.0;
+  glm::dvec2 moment(0.0);
+  std::uint32_t cell = 0;
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
+      const double weight = grid.cells[cell].coverage * std::max(grid.cells[cell].depth, 0.0);
+      sum += weight;
+      moment += weight * cell_center(grid.frame, grid.side, i, j);
+    }
+  }
+  return sum > 0.0 ? moment / sum : glm::dvec2(0.0);
+}
+
+/// How much a grid may grow in one pass: where many samples of the tool touch, they have said
+/// already how large the contact is.
+double most_growth(const Grid& grid, const RegionPoints& contact) {
+  constexpr std::ptrdiff_t kMany = 4;
+  const auto own = [&contact](const ContactPoint& point) {
+    return point.cluster == contact.cluster;
+  };
+  return std::ranges::count_if(points_of(grid.scratch, contact), own) < kMany ? 16.0 : 1.5;
+}
+
+/// How many times as large a grid that cuts the contact off has to be, 1 if none does: by the depth
+/// at its edges, as if that fell with the square of the distance.
+double growth_beyond_edges(const Grid& grid, const CellBits& covered, double most) {
+  constexpr double kLeast = 1.25;
+  constexpr double kShallow = 0.25;  // of the largest depth: the next pass finds that as well
+  const std::uint32_t last = grid.side - 1;
+  const std::uint32_t first = patch_spare(grid.side);
+  double edge = -1.0;  // m: the depth of what is cut
+  double deepest = 0.0;
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    for (std::uint32_t i = first; i < grid.side; ++i) {
+      const CellGeometry& cell = grid.cells[j * grid.side + i];
+      const bool is_covered = (covered[j] >> i & 1U) != 0;
+      const bool outermost = i == first || i == last || j == 0 || j == last;
+      if (is_covered) {
+        deepest = std::max(deepest, cell.depth);
+        if (outermost && cell.coverage >= 1.0) {
+          edge = std::max(edge, cell.depth);
+        }
+      }
+    }
+  }
+  if (edge <= kShallow * deepest) {
+    return 1.0;
+  }
+  const double fall = 1.0 - edge / deepest;
+  return fall > 0.0 ? std::clamp(kGridMargin / std::sqrt(fall), kLeast, most) : most;
+}
+
+/// Half the sides of a grid that holds the whole overlap on either side of its middle, so that none
+/// of it is cut off: a grid that cuts it off sees a smaller one, and no pass leads far from there.
+glm::dvec2 half_size_around(const Grid& grid, const glm::dvec2& middle, const PlaneBox& box) {
+  const glm::dvec2 reach = glm::max(box.highest - middle, middle - box.lowest);
+  const glm::dvec2 least = kGridMargin * glm::max(reach, glm::dvec2(kSmallestHalf));
+  // Cells are made longer only where the overlap is so by more than a doubling and a half, or they
+  // might go to and fro between two shapes.
+  constexpr double kLonger = 0.6;  // of a doubling
+  const std::int32_t now = table_aspect(grid.frame.half_size);
+  const std::int32_t wanted = table_aspect(least);
+  const bool longer = std::abs(wanted) > std::abs(now);
+  const bool keeps = longer && std::abs(std::log2(least.x / least.y) - now) < kLonger;
+  return tabulated_half_size(least, keeps ? now : wanted);
+}
+
+/// Passes over a grid whose axes stay until it lies around the contact.
+void find_middle(const Grid& grid, const RegionPoints& contact, double start_depth) {
+  // Of the half sides: where the contact's middle is wanted.
+  const glm::dvec2 off = patch_middle(grid.side) / static_cast<double>(grid.side) * 2.0 - 1.0;
+  grid.frame.half_size = glm::dvec2(std::max(grid.frame.half_size.x, grid.frame.half_size.y));
+  const double most = most_growth(grid, contact);
+  FixedPoint seeker;
+  Progress progress;
+  bool seen_whole = false;
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    const CellBits covered = find_cells(grid, contact);
+    const PlaneBox box = covered_box(grid, covered);
+    if (box.empty()) {
+      return;
+    }
+    const glm::dvec2 before = grid.frame.half_size;
+    // Until it has held all of the contact once: what a pass has seen whole is cut off by little.
+    const double beyond = seen_whole ? 1.0 : growth_beyond_edges(grid, covered, most);
+    seen_whole = beyond == 1.0;
+    const glm::dvec2 middle = overlap_middle(grid);
+    const glm::dvec2 half = beyond > 1.0 ? beyond * before : half_size_around(grid, middle, box);
+    GridStep step{middle - off * half, half - before};
+    if (beyond > 1.0) {
+      seeker.forget();
+    } else {
+      progress.note(largest_share(step, half));
+      if (progress.is_at_end()) {
+        return;
+      }
+      if (progress.stalls() || table_aspect(half) != table_aspect(before)) {
+        seeker.forget();
+      } else {
+        step = seeker.next(step);
+      }
+    }
+    lay(grid, step.shift, glm::max(before + step.growth, kLeastShare * before));
+    turn_normal_to(grid.frame, body_normal(grid, grid.frame.origin));
+    if (largest_share(step, before) > kNearGrid) {
+      restart_heights(grid, start_depth);
+    }
+  }
+  find_cells(grid, contact);
+}
+
+}  // namespace
+
+void center_patch(const Grid& grid, const RegionPoints& contact, double start_depth) {
+  find_middle(grid, contact, start_depth);
+  const ContactAxes axes = contact_axes(grid, covered_moments(grid));
+  if (axes.is_askew()) {
+    turn_axes(grid.frame, axes.angle);
+    // What fits the grid along its diagonal fits it along its sides, then.
+    grid.frame.half_size *= std::numbers::sqrt2;
+    restart_heights(grid, start_depth);
+    find_middle(grid, contact, start_depth);
+  }
+  if (axes.is_long()) {
+    lay_along_contact(grid, contact, start_depth, glm::dvec2(0.0));
+    restart_heights(grid, start_depth);
+    find_cells(grid, contact);
   }
 }
 

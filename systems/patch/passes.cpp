@@ -46,7 +46,7 @@ LocalInverse scaled(const LocalInverse& inverse, double scale) {
 TORSION_WIDEST
 double dot(std::size_t count, const double* a, const double* b) {
   Wide sums{};
-  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+  for (std::size_t k = 0; k < count; k += kLanes) {
     sums += lanes_at(a + k).all * lanes_at(b + k).all;
   }
   return sum_of(sums);
@@ -56,7 +56,7 @@ TORSION_WIDEST
 double dot(std::size_t count, const double* a_x, const double* a_y, const double* b_x,
            const double* b_y) {
   Wide sums{};
-  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+  for (std::size_t k = 0; k < count; k += kLanes) {
     sums += lanes_at(a_x + k).all * lanes_at(b_x + k).all +
             lanes_at(a_y + k).all * lanes_at(b_y + k).all;
   }
@@ -66,7 +66,7 @@ double dot(std::size_t count, const double* a_x, const double* a_y, const double
 TORSION_WIDEST
 double largest(std::size_t count, const double* values) {
   Wide most{};
-  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+  for (std::size_t k = 0; k < count; k += kLanes) {
     const Wide value = lanes_at(values + k).all;
     most = value > most ? value : most;
   }
@@ -94,15 +94,15 @@ void to_border(std::uint32_t side, const double* __restrict cells, double* __res
   for (std::size_t row = 0; row < side; ++row) {
     const double* const from = cells + row * side;
     double* const to = bordered + (row + 1) * width + 1;
-    if (side < kPatchLanes) {
+    if (side < kLanes) {
       for (std::size_t i = 0; i < side; ++i) {
         to[i] = from[i];
       }
       continue;
     }
-    for (std::size_t i = 0; i < side; i += kPatchLanes) {
+    for (std::size_t i = 0; i < side; i += kLanes) {
       // The last eight end with the row: some are copied twice.
-      const std::size_t at = i + kPatchLanes <= side ? i : side - kPatchLanes;
+      const std::size_t at = i + kLanes <= side ? i : side - kLanes;
       lanes_at(to + at).all = lanes_at(from + at).all;
     }
   }
@@ -113,7 +113,7 @@ void apply_local_inverse(const LocalInverse& inverse, double scale, std::uint32_
                          const double* __restrict wanted, double* __restrict asked) {
   const std::size_t width = std::size_t{side} + 2;
   const LocalInverse by = scaled(inverse, scale);
-  for (std::size_t row = 0; side < kPatchLanes && row < side; ++row) {
+  for (std::size_t row = 0; side < kLanes && row < side; ++row) {
     const double* const low = wanted + row * width;
     const double* const middle = low + width;
     const double* const high = middle + width;
@@ -124,9 +124,9 @@ void apply_local_inverse(const LocalInverse& inverse, double scale, std::uint32_
               by.corner * ((low[i] + high[i + 2]) + (low[i + 2] + high[i]));
     }
   }
-  for (std::size_t i = 0; side >= kPatchLanes && i < side; i += kPatchLanes) {
+  for (std::size_t i = 0; side >= kLanes && i < side; i += kLanes) {
     // The last eight end with the row: some are asked twice, for the same.
-    const std::size_t at = i + kPatchLanes <= side ? i : side - kPatchLanes;
+    const std::size_t at = i + kLanes <= side ? i : side - kLanes;
     ask_columns(by, side, wanted + width + 1 + at, asked + at);
   }
 }
@@ -143,7 +143,7 @@ double wanted_by_asked(const LocalInverse& inverse, double scale, std::uint32_t 
   const double along_y = inverse.along_y;
   const double corner = inverse.corner;
   Wide sums{};
-  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+  for (std::size_t k = 0; k < count; k += kLanes) {
     const double* const at = wanted + width + k;
     sums +=
         lanes_at(at).all * (here * lanes_at(at).all + along_x * lanes_at(at + 1).all +
@@ -170,7 +170,7 @@ PressureResidual pressure_residual(std::size_t count, const double* __restrict d
   Wide lacking{};
   Wide scale{};
   const Wide none{};
-  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+  for (std::size_t k = 0; k < count; k += kLanes) {
     const Wide has = lanes_at(pressure + k).all;
     const Wide all = lanes_at(depth + k).all;
     const Wide deep = all > 0.0 ? all : none;
@@ -187,7 +187,7 @@ TORSION_WIDEST
 double keep_asked(std::size_t count, const double* __restrict residual, double* __restrict asked) {
   Wide sums{};
   const Wide none{};
-  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+  for (std::size_t k = 0; k < count; k += kLanes) {
     const Wide left = lanes_at(residual + k).all;
     const Wide all = lanes_at(asked + k).all;
     const Wide kept = left != 0.0 ? all : none;
@@ -202,7 +202,7 @@ double mix_pressures(std::size_t count, const double* __restrict residual,
                      const double* __restrict asked, double kept, double* __restrict step) {
   Wide sums{};
   const Wide none{};
-  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+  for (std::size_t k = 0; k < count; k += kLanes) {
     const Wide wants = lanes_at(asked + k).all;
     const Wide mixed = wants + kept * lanes_at(step + k).all;
     const Wide way = wants != 0.0 ? mixed : none;
@@ -219,7 +219,7 @@ SweepChange change_pressures(std::size_t count, double length, const double* __r
   Wide most{};
   Wide sums{};
   Wide least{};
-  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+  for (std::size_t k = 0; k < count; k += kLanes) {
     const Wide way = length * lanes_at(step + k).all;
     const Wide to = lanes_at(pressure + k).all + way;
     lanes_at(step + k).all = way;
@@ -248,7 +248,7 @@ bool lose_cells(std::size_t count, double least_depth, const double* __restrict 
                 double* __restrict change_x, double* __restrict change_y) {
   const Wide none{};
   Wide lost{};
-  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+  for (std::size_t k = 0; k < count; k += kLanes) {
     const Wide has = lanes_at(pressure + k).all;
     const Wide has_x = lanes_at(traction_x + k).all;
     const Wide has_y = lanes_at(traction_y + k).all;

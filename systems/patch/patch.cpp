@@ -1,21 +1,21 @@
-#include "systems/patch/patch.hpp"
+// The contact model `patch`: each region is a piece of an elastic half-space under a grid of cells,
+// with pressure and Coulomb friction solved together (docs/models.md).
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "systems/contact/contact_axes.hpp"
-#include "systems/contact/friction_decay.hpp"
 #include "systems/contact/grid_cells.hpp"
-#include "systems/contact/region_motion.hpp"
+#include "systems/contact/law.hpp"
+#include "systems/contact/region_grid.hpp"
+#include "systems/contact/stick_slip.hpp"
+#include "systems/contact/tool_motion.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/patch/cells.hpp"
 #include "systems/patch/energy.hpp"
 #include "systems/patch/grid.hpp"
-#include "systems/patch/join.hpp"
 #include "systems/patch/passes.hpp"
 #include "systems/patch/region.hpp"
-#include "systems/patch/split.hpp"
 
 namespace torsion {
 namespace {
@@ -341,6 +341,18 @@ void forget_cells(const Model& model, State& state, std::uint32_t block) {
   state.patch_cells.zero({block * side * side, side * side});
 }
 
+/// Pressures, tractions, forces and couple of every region of a body with this model.
+void patch_forces(StepContext& context) {
+  const Model& model = context.model;
+  State& state = context.state;
+  const SweepLimits sweeps = sweep_limits(model, state);
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    if (is_patch(model, state, region)) {
+      solve_region(context, region, sweeps);
+    }
+  }
+}
+
 constexpr ColumnSet kPatchWrites =
     columns<PatchState, PatchEnergy, LayerGrid, Influence, FootingResponse, RegionCarrier,
             CellTraction, RegionNormal, RegionFriction, Contact>();
@@ -367,16 +379,5 @@ const ContactLaw kPatchLaw{
     .join = join_patch,
     .end = join_energies,
 };
-
-void patch_forces(StepContext& context) {
-  const Model& model = context.model;
-  State& state = context.state;
-  const SweepLimits sweeps = sweep_limits(model, state);
-  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
-    if (is_patch(model, state, region)) {
-      solve_region(context, region, sweeps);
-    }
-  }
-}
 
 }  // namespace torsion

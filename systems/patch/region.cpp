@@ -3,9 +3,8 @@
 #include <algorithm>
 
 #include "systems/contact/grid_cells.hpp"
-#include "systems/contact/region_motion.hpp"
+#include "systems/contact/tool_motion.hpp"
 #include "systems/math/frames.hpp"
-#include "systems/patch/influences.hpp"
 #include "systems/patch/passes.hpp"
 
 namespace torsion {

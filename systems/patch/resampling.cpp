@@ -1,5 +1,3 @@
-#include "systems/patch/resampling.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>

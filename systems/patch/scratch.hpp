@@ -6,8 +6,8 @@
 #include "ecs/state.hpp"
 #include "systems/contact/scratch.hpp"
 #include "systems/patch/cells.hpp"
-#include "systems/patch/definite_response.hpp"
 #include "systems/patch/solver.hpp"
+#include "systems/patch/support.hpp"
 
 namespace torsion {
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "systems/half_space/influence.hpp"
-#include "systems/half_space/local_inverse.hpp"
 #include "systems/patch/disc_projection.hpp"
 #include "systems/patch/support.hpp"
 
@@ -45,7 +44,7 @@ struct PatchWork {
   std::vector<double> target_x, target_y;
   DiscColumns discs;
   LocalInverses inverses;  // of the problem's tables, found by solve_patch
-  // ((side + 2) x (side + 2)): cells with a border of zeros, and kPatchLanes zeros
+  // ((side + 2) x (side + 2)): cells with a border of zeros, and kLanes zeros
   std::vector<double> bordered;
   // Cells with a traction
   std::vector<double> scales_x, scales_y, scales;

@@ -8,8 +8,7 @@
 #include <glm/mat2x2.hpp>
 
 #include "systems/contact/support/contact_load.hpp"
-#include "systems/contact/support/footing_response.hpp"
-#include "systems/contact/support/support_field.hpp"
+#include "systems/contact/support/footing.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
 #include "systems/math/wide_lanes.hpp"
@@ -19,17 +18,17 @@ namespace {
 
 // Of a body's compliances over those of its contact (yielding_ratio): where the solver has to know.
 constexpr double kSoft = 0.5;
-using Half = double __attribute__((vector_size(sizeof(double) * kPatchLanes / 2)));
+using Half = double __attribute__((vector_size(sizeof(double) * kLanes / 2)));
 constexpr std::size_t kAxisColumn = kSupportColumn;
 
 /// Moments of tractions with the terms, sums over the cells.
-/// @param cells    a multiple of kPatchLanes, of terms and tractions
+/// @param cells    a multiple of kLanes, of terms and tractions
 /// @param moments  (kAxisColumn) out
 TORSION_WIDEST
 void find_moments(const double* __restrict terms, const double* __restrict traction,
                   std::size_t cells, double* __restrict moments) {
   Wide sums[kSupportTerms] = {};
-  for (std::size_t cell = 0; cell < cells; cell += kPatchLanes) {
+  for (std::size_t cell = 0; cell < cells; cell += kLanes) {
     Wide load;
     std::memcpy(&load, traction + cell, sizeof load);
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
@@ -49,7 +48,7 @@ void find_moments(const double* __restrict terms, const double* __restrict tract
 TORSION_WIDEST
 void respond(const double* __restrict response, const double* __restrict moments,
              double* __restrict polynomials) {
-  constexpr std::size_t kVectors = 3 * kAxisColumn / kPatchLanes;
+  constexpr std::size_t kVectors = 3 * kAxisColumn / kLanes;
   Wide sums[kVectors] = {};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
@@ -57,7 +56,7 @@ void respond(const double* __restrict response, const double* __restrict moments
       const double* const column = response + (axis * kAxisColumn + k) * 3 * kAxisColumn;
       for (std::size_t row = 0; row < kVectors; ++row) {
         Wide value;
-        std::memcpy(&value, column + row * kPatchLanes, sizeof value);
+        std::memcpy(&value, column + row * kLanes, sizeof value);
         sums[row] += moment * value;
       }
     }
@@ -69,7 +68,7 @@ void respond(const double* __restrict response, const double* __restrict moments
 TORSION_WIDEST
 void add_terms(const double* __restrict terms, const double* __restrict values, std::size_t cells,
                double* __restrict displacements) {
-  for (std::size_t cell = 0; cell < cells; cell += kPatchLanes) {
+  for (std::size_t cell = 0; cell < cells; cell += kLanes) {
     Wide sum;
     std::memcpy(&sum, displacements + cell, sizeof sum);
     for (std::size_t k = 0; k < kSupportTerms; ++k) {

@@ -1,8 +1,7 @@
-#include "systems/patch/traction_passes.hpp"
-
 #include <cmath>
 
 #include "systems/math/lanes.hpp"
+#include "systems/patch/passes.hpp"
 
 namespace torsion {
 namespace {
@@ -96,7 +95,7 @@ void add_up_step(const TractionColumns& cells, TractionStep& __restrict step) {
   Wide slipped{};
   Wide clipped{};
   const Wide none{};
-  for (std::size_t k = 0; k < cells.count; k += kPatchLanes) {
+  for (std::size_t k = 0; k < cells.count; k += kLanes) {
     const Wide left_x = lanes_at(cells.target_x + k).all - lanes_at(cells.moved_x + k).all;
     const Wide left_y = lanes_at(cells.target_y + k).all - lanes_at(cells.moved_y + k).all;
     const Wide slips = lanes_at(cells.slips + k).all;
@@ -112,7 +111,7 @@ void add_up_step(const TractionColumns& cells, TractionStep& __restrict step) {
 TORSION_WIDEST
 double slope_of(const TractionColumns& cells, const double* x, const double* y) {
   Wide slope{};
-  for (std::size_t k = 0; k < cells.count; k += kPatchLanes) {
+  for (std::size_t k = 0; k < cells.count; k += kLanes) {
     // What is left of the way is small beside the way: the difference first.
     const Wide left_x = lanes_at(cells.target_x + k).all - lanes_at(cells.moved_x + k).all;
     const Wide left_y = lanes_at(cells.target_y + k).all - lanes_at(cells.moved_y + k).all;
@@ -127,7 +126,7 @@ double limits(std::size_t count, const double* __restrict pressure,
               const double* __restrict friction, const double* __restrict traction_x,
               const double* __restrict traction_y, double* __restrict limit) {
   Wide most{};
-  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+  for (std::size_t k = 0; k < count; k += kLanes) {
     const Wide x = lanes_at(traction_x + k).all;
     const Wide y = lanes_at(traction_y + k).all;
     const Wide radius = lanes_at(friction + k).all * lanes_at(pressure + k).all;
@@ -150,7 +149,7 @@ void change_both(const TractionColumns& cells, double length, SweepChange& __res
     most = size > most ? size : most;
     sums += size;
   };
-  for (std::size_t k = 0; k < cells.count; k += kPatchLanes) {
+  for (std::size_t k = 0; k < cells.count; k += kLanes) {
     go(cells.step_x + k, cells.traction_x + k);
     go(cells.step_y + k, cells.traction_y + k);
   }
@@ -195,7 +194,7 @@ double slip_scale(std::size_t count, const double* __restrict pressure,
                   const double* __restrict friction, const double* __restrict depth) {
   Wide sums{};
   const Wide none{};
-  for (std::size_t k = 0; k < count; k += kPatchLanes) {
+  for (std::size_t k = 0; k < count; k += kLanes) {
     const Wide deep = lanes_at(pressure + k).all > 0.0 ? lanes_at(depth + k).all : none;
     const Wide slip = lanes_at(friction + k).all * deep;
     sums += slip * slip;

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/math/lanes.hpp"
-#include "systems/math/least_squares.hpp"
+#include "systems/math/linear_algebra.hpp"
 
 namespace torsion {
 

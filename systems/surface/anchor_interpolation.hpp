@@ -11,7 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "ecs/frame_world.hpp"
-#include "systems/surface/vertex_block.hpp"
+#include "systems/surface/twist_and_dent.hpp"
 
 namespace torsion {
 

@@ -4,16 +4,75 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
 #include "systems/geometry/distance.hpp"
 #include "systems/math/frames.hpp"
+#include "systems/math/lanes.hpp"
 #include "systems/surface/anchor_interpolation.hpp"
 #include "systems/surface/body_field.hpp"
-#include "systems/surface/vertex_block.hpp"
+#include "systems/surface/twist_and_dent.hpp"
 
 namespace torsion {
+TORSION_WIDEST
+void turn_block(const TwistAxis& axis, const BlockColumn& angles, BlockVectors& points) {
+  float largest = 0.0F;
+  for (const float angle : angles) {
+    largest = std::max(largest, std::abs(angle));
+  }
+  if (largest == 0.0F) {
+    return;
+  }
+  if (!(largest < 0.5F * std::numbers::pi_v<float>)) {
+    for (std::size_t i = 0; i < kPointBlock; ++i) {
+      const glm::vec3 turned =
+          turn_vertex({points.x[i], points.y[i], points.z[i]}, axis, angles[i]);
+      points.x[i] = turned.x;
+      points.y[i] = turned.y;
+      points.z[i] = turned.z;
+    }
+    return;
+  }
+  const glm::vec3 k(axis.direction);
+  const glm::vec3 p(axis.point);
+  for (std::size_t i = 0; i < kPointBlock; ++i) {
+    const SineVersine turn = sine_and_versine_of_half(0.5F * angles[i]);
+    const float rx = points.x[i] - p.x;
+    const float ry = points.y[i] - p.y;
+    const float rz = points.z[i] - p.z;
+    const float ax = k.y * rz - k.z * ry;
+    const float ay = k.z * rx - k.x * rz;
+    const float az = k.x * ry - k.y * rx;
+    points.x[i] += turn.sine * ax + turn.versine * (k.y * az - k.z * ay);
+    points.y[i] += turn.sine * ay + turn.versine * (k.z * ax - k.x * az);
+    points.z[i] += turn.sine * az + turn.versine * (k.x * ay - k.y * ax);
+  }
+}
+
+void deform_vertices(const FrameWorld& frame, std::uint32_t body, std::span<glm::vec4> positions) {
+  const FrameBody& data = frame.bodies.at<FrameBody>(body);
+  const Range vertices = frame.bodies.at<DrawRange>(body).vertices;
+  TORSION_ASSERT(positions.size() == vertices.count);
+  const auto rest = frame.body_vertices.rows<VertexRest>(vertices);
+  const auto displacement = frame.body_vertices.rows<VertexDisplacement>(vertices);
+  const auto twist = frame.twist.rows<TwistAngle>(data.twist);
+  const auto axes = frame.axes.rows<TwistAxis>(data.axes);
+  for (std::uint32_t vertex = 0; vertex < vertices.count; ++vertex) {
+    glm::vec3 position(rest[vertex].position);
+    float turned = 0.0F;  // rad, as the heat map shows it
+    for (std::uint32_t slot = 0; slot < data.regions_drawn; ++slot) {
+      const float angle = twist[slot * vertices.count + vertex].angle;
+      if (angle != 0.0F) {
+        position = turn_vertex(position, axes[slot], angle);
+        turned += angle;
+      }
+    }
+    positions[vertex] = glm::vec4(position + glm::vec3(displacement[vertex].displacement), turned);
+  }
+}
+
 namespace {
 
 bool inside_box(const Bounds& bounds, const glm::dvec3& point) {

@@ -3,9 +3,20 @@
 #include "ecs/snapshot.hpp"
 #include "ecs/state.hpp"
 #include "systems/mdr/places.hpp"
-#include "systems/surface/ring_turns.hpp"
+#include "systems/surface/region_fields.hpp"
 
 namespace torsion {
+
+/// Where the anchors of bodies with body model compliance are under the tractions of all regions,
+/// for those who draw them. Writes AnchorMotion and AnchorTurns.
+void anchor_motions(const Model& model, const State& state, Snapshot& snapshot);
+
+/// Displacements of the anchors of each body whose body model is kSkeleton, summed over its regions
+/// in their order of formation: bending, shear, stretch and sideways contraction of a Timoshenko
+/// beam from q_f to where p_eq was at rest. Torsion about the beam is left out: the twist angles of
+/// the drawn vertices carry it (systems/surface/surface_field.hpp). Source: docs/models.md, "Body
+/// model skeleton".
+void skeleton_motions(const Model& model, const State& state, Snapshot& snapshot);
 
 /// Tables by which a step's snapshot is taken. Constant.
 struct SnapshotTables {

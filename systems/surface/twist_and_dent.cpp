@@ -8,9 +8,9 @@
 
 #include <glm/geometric.hpp>
 
-#include "systems/body/skeleton/main_beam.hpp"
+#include "systems/body/skeleton/skeleton.hpp"
 #include "systems/contact/support/body_law.hpp"
-#include "systems/half_space/source.hpp"
+#include "systems/half_space/fields.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/smooth_step.hpp"
 
@@ -257,7 +257,7 @@ RegionTwist region_twist(const Model& model, const Snapshot& snapshot, std::uint
     const glm::dvec3 axis = glm::dot(motion.axis, frame.normal) < 0.0 ? -motion.axis : motion.axis;
     const glm::dvec3 center = to_inner(pose, tool.mass_center);
     // A turn of less than a hundredth of a radian has hardly an axis yet: it grows in. A tool that
-    // keeps turning about one axis soon remembers twice as much (systems/contact/couple_tools.cpp).
+    // keeps turning about one axis soon remembers twice as much (systems/contact/tool_motion.cpp).
     constexpr double kFirstTurn = 0.01;
     const double known = smooth_step(tool.axis_turn / kFirstTurn);
     // A beam that is softer than the contact would turn farther than the tool that turns it.

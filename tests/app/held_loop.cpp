@@ -11,7 +11,7 @@
 #include "app/session.hpp"
 #include "device/scripted_motion.hpp"
 #include "systems/hold/handle_side.hpp"
-#include "systems/hold/tool_equilibrium.hpp"
+#include "systems/hold/tool_hold.hpp"
 #include "tests/support/paths.hpp"
 
 namespace torsion::test {

@@ -86,7 +86,7 @@ TEST_P(HeldSceneTest, IsStillInEveryGripLateAndCoarseToo) {
     // white noise of density s^2 T on a damper c = 6 N s/m and the grip's spring k, moves the hand
     // by s sqrt(T / (2 c k)) = 65 um where it is loosest, and twelve times that, all that a minute
     // brings (6 of those to either side), is 2 counts: it stays within the three in which the
-    // handle is taken to stand still (count_play.hpp), once that has found its place. A force that
+    // handle is taken to stand still (handle_side.hpp), once that has found its place. A force that
     // toggled by a count would be half of one from its mean; of the slow way to the place, at most
     // a count and a time of 0.25 s, e^-1.2 = 0.3 counts are left after half of 0.6 s.
     const double count = 200.0 * traits.encoder_step;  // N

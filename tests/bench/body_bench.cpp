@@ -8,9 +8,9 @@
 #include <benchmark/benchmark.h>
 
 #include "systems/body/skeleton/skeleton.hpp"
-#include "systems/model/prepare_anchors.hpp"
-#include "systems/surface/skeleton_motions.hpp"
+#include "systems/model/prepare.hpp"
 #include "systems/surface/surface_field.hpp"
+#include "systems/surface/take_snapshot.hpp"
 #include "tests/systems/body_scene.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 #include <benchmark/benchmark.h>
 
 #include "systems/geometry/distance.hpp"
-#include "systems/geometry/distance_field_build.hpp"
+#include "systems/geometry/distance_field.hpp"
 #include "systems/geometry/distance_mesh.hpp"
 #include "tests/support/distance_columns.hpp"
 #include "tests/systems/geometry/distance_meshes.hpp"

@@ -10,7 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include "systems/contact/fault.hpp"
+#include "systems/contact/region_wrenches.hpp"
 #include "systems/geometry/distance.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/scratch.hpp"
@@ -106,7 +106,7 @@ std::vector<std::vector<Pose>> poses_of(const RandomScene& random, const World& 
   return poses;
 }
 
-/// Half the speeds that count as a jump (couple_tools.cpp).
+/// Half the speeds that count as a jump (tool_motion.cpp).
 double slow_enough_rate(const std::vector<std::vector<Pose>>& poses, double rate) {
   constexpr double kSpeed = 10.0;       // m/s
   constexpr double kTurnSpeed = 250.0;  // rad/s

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/body/skeleton/beam_sections.hpp"
-#include "systems/model/prepare_anchors.hpp"
+#include "systems/model/prepare.hpp"
 #include "systems/step.hpp"
 
 namespace torsion {

@@ -5,13 +5,11 @@
 #include <Eigen/Core>
 #include <glm/geometric.hpp>
 
-#include "systems/body/compliance/region_couplings.hpp"
-#include "systems/body/compliance/region_supports.hpp"
-#include "systems/contact/fault.hpp"
+#include "systems/body/compliance/region_stands.hpp"
 #include "systems/contact/law.hpp"
+#include "systems/contact/region_wrenches.hpp"
 #include "systems/contact/scratch.hpp"
-#include "systems/math/dense_solve.hpp"
-#include "systems/math/matrix6.hpp"
+#include "systems/math/linear_algebra.hpp"
 
 namespace torsion {
 namespace {
@@ -309,7 +307,8 @@ void add_sway(const CompliantBody& body, const Eigen::Map<RowMatrix>& upper, New
   }
 }
 
-/// Where a region's equations have reckoned with the body's answer to its own load (own_answer.hpp).
+/// Where a region's equations have reckoned with the body's answer to its own load
+/// (contact_load.hpp).
 void take_own_answer(const SupportAnswer& answer, RegionSupport& support,
                      RegionReaction& reaction) {
   support.translation += answer.translation;

@@ -1,12 +1,10 @@
-#include "systems/body/compliance/region_supports.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Core>
 #include <glm/geometric.hpp>
 
-#include "systems/body/compliance/region_couplings.hpp"
+#include "systems/body/compliance/region_stands.hpp"
 #include "systems/contact/law.hpp"
 #include "systems/contact/scratch.hpp"
 
@@ -113,7 +111,7 @@ void begin_split_support(const Model& model, State& state, std::uint32_t from,
   left.tail<3>() -= Eigen::Vector3d(couple.x, couple.y, couple.z);
   move_by_part(both.motion, both.known, left, there.center, fresh);
   move_by_part(both.motion.transpose(), both.known.transpose(), taken, here.center, old);
-  // What each has given way to by its own load (own_answer.hpp).
+  // What each has given way to by its own load (contact_load.hpp).
   Eigen::Map<Vector6>(state.regions.at<RegionReaction>(from).wrench.data()) -= load - left;
   Eigen::Map<Vector6>(state.regions.at<RegionReaction>(region).wrench.data()) = taken;
 }

@@ -8,8 +8,8 @@
 #include <Eigen/Core>
 #include <glm/geometric.hpp>
 
-#include "systems/math/cross.hpp"
-#include "systems/math/least_squares.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/math/linear_algebra.hpp"
 
 namespace torsion {
 namespace {

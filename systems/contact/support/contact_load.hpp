@@ -2,7 +2,12 @@
 
 #include <cstdint>
 
+#include <Eigen/Core>
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
 #include "ecs/state.hpp"
+#include "systems/contact/scratch.hpp"
 #include "systems/contact/support/footing.hpp"
 
 namespace torsion {
@@ -22,5 +27,32 @@ ContactEllipse contact_ellipse(const Model& model, const State& state, std::uint
 /// Contact model patch: cell by cell. The others: force and couple as a ball spreads them.
 ContactLoad contact_load(const Model& model, const State& state, std::uint32_t region,
                          const Footing& footing);
+
+// How a compliant body gives way under a region within the step in which the region's loads are
+// found. Contact model patch has that in its own equations (patch/support.hpp); this is for those
+// that know a contact as a whole.
+
+/// Of a contact on the material: forces along the grid's x and y and the couple about its normal,
+/// and the force into the body; or motions along them, m and rad.
+using ContactLoads = glm::dvec4;
+
+struct OwnAnswer {
+  bool any = false;            // else the body does not give way, or not so that it is known
+  glm::dvec3 point{0.0};       // m, body: where the loads act
+  glm::dmat4 compliance{0.0};  // motions by loads: the others' answers are in it, where they matter
+  ContactLoads known{0.0};     // to which the body has given way already
+  // Of loads of 1, about the footing's centre: wrenches, and what they move.
+  Eigen::Matrix<double, 6, 4> wrenches, motions;
+};
+
+/// @param point  m, body: where the loads act
+OwnAnswer own_answer(const Model& model, const State& state, std::uint32_t region,
+                     const glm::dvec3& point);
+
+/// What becomes of the region's support when the body has given way to so much more.
+/// @param reckoned  motion of the material that the contact has taken
+SupportAnswer support_answer(const Model& model, const State& state, std::uint32_t region,
+                             const OwnAnswer& answer, const ContactLoads& more,
+                             const ContactLoads& reckoned);
 
 }  // namespace torsion

@@ -1,14 +1,47 @@
 #pragma once
 
+// The polynomial in which body model compliance moves the surface under a region.
+
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 
 #include <Eigen/Core>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 
 #include "ecs/components.hpp"
-#include "systems/math/matrix6.hpp"
+#include "ecs/model.hpp"
+#include "systems/half_space/curved_influence.hpp"
+#include "systems/math/linear_algebra.hpp"
 
 namespace torsion {
+
+/// Degree of each of a SupportField's terms.
+inline constexpr std::array<int, kSupportTerms> kSupportDegrees{0, 1, 1, 2, 2, 2, 3, 3,
+                                                                3, 3, 4, 4, 4, 4, 4};
+
+/// Coordinates of a point at most 1 from the origin: farther out the field goes on as it is at 1,
+/// for a polynomial says nothing of what it was not fitted to.
+inline glm::dvec2 support_coordinates(const glm::dvec2& point) {
+  return point / std::max(1.0, glm::length(point));
+}
+
+/// The terms at a place: 1; x, y; x^2, x y, y^2; x^3, x^2 y, ...; ... y^4.
+inline std::array<double, kSupportTerms> support_terms(const glm::dvec2& at) {
+  const double x = at.x;
+  const double y = at.y;
+  const double xx = x * x;
+  const double xy = x * y;
+  const double yy = y * y;
+  return {1.0,    x,      y,       xx,      xy,      yy,      xx * x, xx * y,
+          yy * x, yy * y, xx * xx, xx * xy, xx * yy, xy * yy, yy * yy};
+}
+
+/// How far the field moves a point, m, body.
+/// @param point  m, body
+glm::dvec3 displacement_at(const SupportField& field, const glm::dvec3& point);
 
 /// What body model compliance knows of a body: its ports, and the matrix of the displacements at
 /// ports by forces at ports, (3 ports)^2, row-major, m/N.
@@ -87,5 +120,27 @@ SupportField bending(const Footing& footing, const PortVectors& displacements,
 
 /// Rigid motion at `to` by unit wrenches at `from`, through the ports.
 Matrix6 motion_between(const PortCompliance& body, const Footing& to, const Footing& from);
+
+/// response = fit times the ports' compliance times the fit transposed: the terms of the polynomial
+/// in which a footing moves by unit moments.
+void find_response(const PortCompliance& body, const Footing& footing, FootingResponse& response);
+
+/// How a body bends away from the half-space that its contact is taken for, and up to where the
+/// contact has to know.
+struct SurfaceBend {
+  SurfaceCurvature curvature;  // in the axes asked for
+  double reach = 0.0;          // m; 0: flat
+};
+
+/// Of the surface around a contact. What the curvature adds to a half-space's response goes with
+/// the logarithm of the distance (curved_influence.hpp), so that the ports, and the elements
+/// between them, know only the part at their own distances. `reach` is the distance at which they
+/// have it: the mean, in logarithms, over what the footing makes of the ports.
+/// @param across  m: of the contact
+SurfaceBend find_surface_bend(const Model& model, std::uint32_t body, const Footing& footing,
+                              const RegionFrame& axes, double across);
+
+/// Whether any surface of the body may be curved at all.
+bool may_bend(const Model& model, std::uint32_t body);
 
 }  // namespace torsion

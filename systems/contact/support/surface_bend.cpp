@@ -1,12 +1,11 @@
-#include "systems/contact/support/surface_bend.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
 
+#include "systems/contact/support/footing.hpp"
+#include "systems/geometry/bounds.hpp"
 #include "systems/geometry/distance.hpp"
-#include "systems/geometry/lattice.hpp"
 #include "systems/math/frames.hpp"
 
 namespace torsion {

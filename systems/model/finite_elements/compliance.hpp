@@ -11,8 +11,8 @@
 #include "ecs/components.hpp"
 #include "ecs/result.hpp"
 #include "systems/geometry/distance.hpp"
-#include "systems/half_space/coupling.hpp"
-#include "systems/model/expected_place.hpp"
+#include "systems/half_space/fields.hpp"
+#include "systems/model/expected_rolling.hpp"
 
 namespace torsion {
 

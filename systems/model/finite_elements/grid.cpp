@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "systems/geometry/lattice.hpp"
+#include "systems/geometry/bounds.hpp"
 
 namespace torsion {
 namespace {

@@ -11,8 +11,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
-#include "systems/math/least_squares.hpp"
-#include "systems/math/matrix6.hpp"
+#include "systems/math/linear_algebra.hpp"
 #include "systems/math/smooth_step.hpp"
 
 namespace torsion {

@@ -100,11 +100,11 @@ double to_own_images(const Port& port, const Mirrors& mirrors) {
 
 /// A candidate next to a middle plane, but for rounding in it, is put there.
 void center(const Mirrors& mirrors, double spacing, std::vector<Port>& candidates) {
-  constexpr double kRounding = 1e-6;
+  constexpr double kSameSide = 1e-6;
   for (Port& port : candidates) {
     for (int axis = 0; axis < 3; ++axis) {
       if (mirrors.across[axis] &&
-          std::abs(port.position[axis] - mirrors.middle[axis]) < kRounding * spacing) {
+          std::abs(port.position[axis] - mirrors.middle[axis]) < kSameSide * spacing) {
         port.position[axis] = mirrors.middle[axis];
         port.normal[axis] = 0.0;
       }

@@ -11,8 +11,8 @@
 
 #include <unistd.h>
 
-#include "systems/geometry/distance_field_build.hpp"
-#include "systems/model/cached_distance_field.hpp"
+#include "systems/geometry/distance_field.hpp"
+#include "systems/model/cache.hpp"
 #include "tests/support/contact_scenes.hpp"
 
 namespace {

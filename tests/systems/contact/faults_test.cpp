@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "ecs/hash.hpp"
-#include "systems/contact/fault.hpp"
+#include "systems/contact/region_wrenches.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "systems/contact/fault.hpp"
+#include "systems/contact/region_wrenches.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"

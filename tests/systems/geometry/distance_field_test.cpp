@@ -12,10 +12,9 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/geometry/distance_field_build.hpp"
 #include "systems/geometry/distance_mesh.hpp"
 #include "systems/geometry/distance_shapes.hpp"
-#include "systems/model/cached_distance_field.hpp"
+#include "systems/model/cache.hpp"
 #include "tests/systems/geometry/distance_meshes.hpp"
 #include "tests/systems/geometry/field_world.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "systems/geometry/distance_field_build.hpp"
+#include "systems/geometry/distance_field.hpp"
 #include "systems/geometry/distance_mesh.hpp"
 #include "tests/systems/geometry/distance_meshes.hpp"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "ecs/world.hpp"
-#include "systems/geometry/distance_field_build.hpp"
+#include "systems/geometry/distance_field.hpp"
 
 namespace torsion {
 

@@ -10,8 +10,6 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/geometry/sample_surface_pieces.hpp"
-#include "systems/geometry/sample_surface_tree.hpp"
 #include "tests/systems/geometry/distance_meshes.hpp"
 
 namespace torsion {

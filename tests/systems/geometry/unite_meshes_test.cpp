@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/geometry/distance_field_build.hpp"
+#include "systems/geometry/distance_field.hpp"
 #include "systems/geometry/distance_mesh.hpp"
 #include "tests/support/contact_scenes.hpp"
 

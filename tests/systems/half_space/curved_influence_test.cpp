@@ -13,7 +13,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/half_space/layer_influence.hpp"
+#include "systems/half_space/layer.hpp"
 
 namespace torsion {
 namespace {

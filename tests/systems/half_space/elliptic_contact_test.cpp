@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "systems/mdr/contact_shape.hpp"
+#include "systems/mdr/round_contact.hpp"
 #include "tests/reference/exact/elliptic_integrals.hpp"
 #include "tests/reference/exact/hertz.hpp"
 #include "tests/reference/exact/hertz_ellipse.hpp"

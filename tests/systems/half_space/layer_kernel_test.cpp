@@ -1,7 +1,5 @@
 // The layer's kernel and a contact's tables on a layer, against exact solutions.
 
-#include "systems/half_space/layer_kernel.hpp"
-
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -11,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/half_space/layer_influence.hpp"
+#include "systems/half_space/layer.hpp"
 #include "systems/patch/solver.hpp"
 #include "tests/reference/airy_layer.hpp"
 #include "tests/reference/exact/layers.hpp"

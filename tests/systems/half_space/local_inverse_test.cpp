@@ -1,11 +1,10 @@
-#include "systems/half_space/local_inverse.hpp"
-
 #include <cstdint>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "systems/half_space/influence.hpp"
 #include "systems/patch/passes.hpp"
 #include "tests/systems/patch/asked_by_inverse.hpp"
 
@@ -48,7 +47,7 @@ TEST_P(LocalInverseOnGridTest, AsksEveryCellAndItsNeighbours) {
   for (std::size_t cell = 0; cell < std::size_t{side} * side; ++cell) {
     wanted[cell] = uniform(random);
   }
-  std::vector<double> bordered(std::size_t{side + 2} * (side + 2) + kPatchLanes, 0.0);
+  std::vector<double> bordered(std::size_t{side + 2} * (side + 2) + kLanes, 0.0);
   to_border(side, wanted.data(), bordered.data());
   std::vector<double> asked(count, 0.0);
   apply_local_inverse(inverse, kScale, side, bordered.data(), asked.data());

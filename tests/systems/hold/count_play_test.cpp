@@ -1,5 +1,3 @@
-#include "systems/hold/count_play.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +5,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/math/rotation_vector.hpp"
+#include "systems/hold/handle_side.hpp"
+#include "systems/math/frames.hpp"
 #include "tests/systems/hold/held_tool.hpp"
 
 namespace torsion {

@@ -1,10 +1,9 @@
-#include "systems/hold/coupling_choice.hpp"
-
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
+#include "systems/hold/virtual_coupling.hpp"
 #include "tests/systems/hold/held_tool.hpp"
 
 namespace torsion {

@@ -5,7 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "systems/math/rotation_vector.hpp"
+#include "systems/math/frames.hpp"
 namespace torsion::test {
 namespace {
 

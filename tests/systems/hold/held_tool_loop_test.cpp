@@ -7,11 +7,10 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/hold/coupling_choice.hpp"
-#include "systems/hold/output_guard.hpp"
-#include "systems/hold/passivity.hpp"
+#include "systems/hold/handle_side.hpp"
 #include "systems/hold/tool_hold.hpp"
-#include "systems/math/rotation_vector.hpp"
+#include "systems/hold/virtual_coupling.hpp"
+#include "systems/math/frames.hpp"
 #include "tests/reference/exact/hertz.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/systems/hold/emulated_hand.hpp"

@@ -1,11 +1,10 @@
-#include "systems/hold/output_guard.hpp"
-
 #include <cmath>
 #include <limits>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "systems/hold/handle_side.hpp"
 #include "tests/systems/hold/held_tool.hpp"
 
 namespace torsion {

@@ -1,11 +1,9 @@
-#include "systems/hold/tool_dynamics.hpp"
-
 #include <cmath>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/hold/tool_equilibrium.hpp"
+#include "systems/hold/tool_hold.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
 #include "tests/systems/hold/held_tool.hpp"

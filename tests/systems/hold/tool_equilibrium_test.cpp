@@ -1,9 +1,8 @@
-#include "systems/hold/tool_equilibrium.hpp"
-
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/math/rotation_vector.hpp"
+#include "systems/hold/tool_hold.hpp"
+#include "systems/math/frames.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/systems/hold/held_tool.hpp"
 

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/math/rotation_vector.hpp"
+#include "systems/math/frames.hpp"
 #include "tests/systems/hold/held_tool.hpp"
 
 namespace torsion {

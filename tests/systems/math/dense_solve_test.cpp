@@ -1,11 +1,11 @@
-#include "systems/math/dense_solve.hpp"
-
 #include <algorithm>
 #include <array>
 #include <random>
 
 #include <Eigen/Core>
 #include <gtest/gtest.h>
+
+#include "systems/math/linear_algebra.hpp"
 
 namespace torsion {
 namespace {

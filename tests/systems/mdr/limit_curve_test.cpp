@@ -1,5 +1,3 @@
-#include "systems/mdr/limit_curve.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "systems/mdr/places.hpp"
 #include "tests/reference/exact/limit_surface.hpp"
 
 namespace torsion {
@@ -32,7 +31,7 @@ TEST(LimitCurveTest, LiesOnTheExactCurveAndSagsLittleInside) {
       deepest = std::min(deepest, size);
     }
   }
-  EXPECT_GE(deepest, 1.0 - 5e-5);  // what limit_curve.hpp states
+  EXPECT_GE(deepest, 1.0 - 5e-5);  // what places.hpp states
 }
 
 TEST(LimitCurveTest, KeepsLoadsInsideAndBringsOthersToTheNearestPoint) {

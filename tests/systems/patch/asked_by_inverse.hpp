@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "systems/half_space/local_inverse.hpp"
+#include "systems/half_space/influence.hpp"
 
 namespace torsion::test {
 

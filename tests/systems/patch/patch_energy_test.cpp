@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/half_space/local_inverse.hpp"
+#include "systems/half_space/influence.hpp"
 #include "systems/patch/energy.hpp"
 #include "tests/support/dense_algebra.hpp"
 #include "tests/support/studies.hpp"

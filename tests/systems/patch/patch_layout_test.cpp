@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "systems/contact/contact_axes.hpp"
+#include "systems/contact/region_grid.hpp"
 #include "systems/half_space/influence.hpp"
-#include "systems/patch/layout.hpp"
+#include "systems/patch/grid.hpp"
 
 namespace torsion {
 namespace {

@@ -8,8 +8,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "systems/surface/skeleton_motions.hpp"
 #include "systems/surface/surface_field.hpp"
+#include "systems/surface/take_snapshot.hpp"
 #include "tests/support/directions.hpp"
 #include "tests/systems/body_scene.hpp"
 

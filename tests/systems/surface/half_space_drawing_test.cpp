@@ -8,8 +8,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/surface/ring_turns.hpp"
-#include "systems/surface/turn_vertex.hpp"
+#include "systems/surface/region_fields.hpp"
 #include "systems/surface/twist_and_dent.hpp"
 #include "tests/reference/exact/hertz.hpp"
 #include "tests/reference/exact/lubkin.hpp"

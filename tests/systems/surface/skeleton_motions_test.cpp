@@ -1,5 +1,3 @@
-#include "systems/surface/skeleton_motions.hpp"
-
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -8,8 +6,9 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/body/skeleton/main_beam.hpp"
-#include "systems/model/prepare_anchors.hpp"
+#include "systems/body/skeleton/skeleton.hpp"
+#include "systems/model/prepare.hpp"
+#include "systems/surface/take_snapshot.hpp"
 #include "tests/systems/body_scene.hpp"
 
 namespace torsion {

@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "systems/scratch.hpp"
-#include "systems/surface/anchor_motions.hpp"
 #include "systems/surface/surface_field.hpp"
+#include "systems/surface/take_snapshot.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
 #include "tests/systems/body/compliance/soft_bodies.hpp"

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "systems/contact/support/contact_load.hpp"
-#include "systems/contact/support/footing_response.hpp"
+#include "systems/contact/support/footing.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
 #include "tests/support/studies.hpp"

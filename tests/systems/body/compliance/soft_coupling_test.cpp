@@ -10,11 +10,10 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/contact/fault.hpp"
 #include "systems/contact/region_wrenches.hpp"
-#include "systems/contact/support/support_field.hpp"
+#include "systems/contact/support/footing.hpp"
 #include "systems/half_space/influence.hpp"
-#include "systems/patch/definite_response.hpp"
+#include "systems/patch/support.hpp"
 #include "systems/scratch.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/dense_algebra.hpp"

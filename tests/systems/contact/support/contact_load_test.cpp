@@ -3,7 +3,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/contact/support/support_field.hpp"
+#include "systems/contact/support/footing.hpp"
 #include "systems/math/frames.hpp"
 #include "tests/support/contact_scenes.hpp"
 

@@ -9,8 +9,6 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/contact/support/support_field.hpp"
-
 namespace torsion {
 namespace {
 

@@ -51,9 +51,9 @@ void SceneOptions::add_to(CLI::App& subcommand) {
                   "Cells of a round contact, 16 to 2500; unless said as the models need")
       ->check(CLI::Range(kFewestCells, kMostCells));
   subcommand
-      .add_option("--sweeps", sweeps,
-                  "Sweeps a step of contact model patch over its cells, 2 unless said")
-      ->check(CLI::Range(1U, kMostSweeps));
+      .add_option("--iterations", iterations,
+                  "Iterations of contact model patch in a step, at most; 2 unless said")
+      ->check(CLI::Range(1U, kMostIterations));
 }
 
 PrepareOptions SceneOptions::prepare_options() const {
@@ -61,7 +61,7 @@ PrepareOptions SceneOptions::prepare_options() const {
   options.rate = rate;
   options.contact_model = contact_model_named(contact_model).value_or(ContactModel::kAuto);
   options.body_model = body_model_named(body_model).value_or(BodyModel::kAuto);
-  options.settings = {grid_side_for(cells), sweeps};
+  options.settings = {grid_side_for(cells), iterations};
   return options;
 }
 

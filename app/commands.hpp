@@ -31,9 +31,9 @@ struct SceneOptions {
   std::string scene;
   std::string contact_model = "auto";
   std::string body_model = "auto";
-  double rate = 1000.0;      // Hz
-  std::uint32_t cells = 0;   // in a round contact; 0: as the models need
-  std::uint32_t sweeps = 2;  // of contact model patch over its cells in a step
+  double rate = 1000.0;          // Hz
+  std::uint32_t cells = 0;       // in a round contact; 0: as the models need
+  std::uint32_t iterations = 2;  // of contact model patch over its cells in a step
 
   void add_to(CLI::App& subcommand);
   [[nodiscard]] PrepareOptions prepare_options() const;

@@ -62,12 +62,12 @@ std::string Histogram::text() const {
 
 void PatchStatistics::add(const PatchState& state) {
   residuals.add(state.residual);
-  sweeps += state.sweeps;
-  most_sweeps = std::max(most_sweeps, state.sweeps);
+  iterations += state.iterations;
+  most_iterations = std::max(most_iterations, state.iterations);
 }
 
-double PatchStatistics::mean_sweeps() const {
-  return static_cast<double>(sweeps) / static_cast<double>(region_steps());
+double PatchStatistics::mean_iterations() const {
+  return static_cast<double>(iterations) / static_cast<double>(region_steps());
 }
 
 void RunStatistics::add_step(const World& world, double step_us) {

@@ -49,13 +49,13 @@ inline constexpr double kLeastResidual = 1e-6;
 /// How closely contact model patch solved its regions: an entry is one region in one step.
 struct PatchStatistics {
   Histogram residuals{kLeastResidual};  // as in PatchState
-  std::uint64_t sweeps = 0;             // of all together
-  std::uint32_t most_sweeps = 0;
+  std::uint64_t iterations = 0;         // of all together
+  std::uint32_t most_iterations = 0;
 
   void add(const PatchState& state);
   [[nodiscard]] std::uint64_t region_steps() const { return residuals.count(); }
   /// @pre region_steps() > 0
-  [[nodiscard]] double mean_sweeps() const;
+  [[nodiscard]] double mean_iterations() const;
 };
 
 /// What a run was like, gathered step by step without allocation.

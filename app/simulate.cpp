@@ -180,7 +180,8 @@ void add_simulate(CLI::App& app, Command& command) {
       ->needs(realtime);
   add_device_options(*subcommand, options->device);
   replay->excludes(record)->excludes(realtime);
-  for (const char* chosen : {"--contact-model", "--body-model", "--rate", "--cells", "--sweeps"}) {
+  for (const char* chosen :
+       {"--contact-model", "--body-model", "--rate", "--cells", "--iterations"}) {
     replay->excludes(chosen);
   }
   subcommand->add_flag("--json", options->json, "Print the summary as JSON");

@@ -26,14 +26,15 @@ nlohmann::ordered_json histogram_json(const Histogram& histogram) {
 
 std::string patch_text(const PatchStatistics& patch) {
   return fmt::format(
-      "patch    sweeps mean {:.2f}, most {}; residual median {:.2g}, 99 % {:.2g}, largest {:.2g}\n",
-      patch.mean_sweeps(), patch.most_sweeps, patch.residuals.quantile(0.5),
+      "patch    iterations mean {:.2f}, most {}; residual median {:.2g}, 99 % {:.2g}, largest "
+      "{:.2g}\n",
+      patch.mean_iterations(), patch.most_iterations, patch.residuals.quantile(0.5),
       patch.residuals.quantile(0.99), patch.residuals.largest());
 }
 
 nlohmann::ordered_json patch_json(const PatchStatistics& patch) {
   return {{"region_steps", patch.region_steps()},
-          {"sweeps", {{"mean", patch.mean_sweeps()}, {"most", patch.most_sweeps}}},
+          {"iterations", {{"mean", patch.mean_iterations()}, {"most", patch.most_iterations}}},
           {"residual",
            {{"median", patch.residuals.quantile(0.5)},
             {"p99", patch.residuals.quantile(0.99)},

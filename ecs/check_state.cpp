@@ -39,27 +39,29 @@ void check_sizes(const Model& model, const State& state, Findings& findings) {
   findings.require(
       state.layer_influences.empty() || state.layer_influences.size() == regions * tables,
       "layer_influences", 0, "there must be one grid's for each region, or none");
-  const std::uint64_t footings = state.footings.size();
-  findings.require(footings == 0 || footings == regions, "footings", 0,
+  const std::uint64_t support_fits = state.support_fits.size();
+  findings.require(support_fits == 0 || support_fits == regions, "support_fits", 0,
                    "there must be one for each region, or none");
-  findings.require(state.couplings.size() == (footings == 0 ? 0 : footings * (footings - 1) / 2),
-                   "couplings", 0, "there must be one for each two regions, or none");
+  findings.require(
+      state.couplings.size() == (support_fits == 0 ? 0 : support_fits * (support_fits - 1) / 2),
+      "couplings", 0, "there must be one for each two regions, or none");
 }
 
 /// Of a region that is otherwise sound.
-void check_footing(const Model& model, const State& state, const RegionIdentity& region,
-                   std::uint32_t row, Findings& findings) {
+void check_support_fit(const Model& model, const State& state, const RegionIdentity& region,
+                       std::uint32_t row, Findings& findings) {
   const std::uint32_t block = region.cells.first / std::max(region.cells.count, 1U);
-  if (block >= state.footings.size()) {
+  if (block >= state.support_fits.size()) {
     findings.require(false, "regions", row, "its footing is not there");
     return;
   }
-  const Footing& footing = state.footings.at<Footing>(block);
+  const SupportFit& support_fit = state.support_fits.at<SupportFit>(block);
   const std::uint32_t ports = model.bodies.at<OwnedRows>(region.body).ports.count;
-  const bool few = footing.count <= kFootingPorts;
-  findings.require(few && std::all_of(footing.ports.begin(), footing.ports.begin() + footing.count,
-                                      [ports](std::uint32_t port) { return port < ports; }),
-                   "footings", block, "the ports that it stands on are not there");
+  const bool few = support_fit.count <= kSupportPorts;
+  findings.require(
+      few && std::all_of(support_fit.ports.begin(), support_fit.ports.begin() + support_fit.count,
+                         [ports](std::uint32_t port) { return port < ports; }),
+      "support_fits", block, "the ports that it stands on are not there");
 }
 
 void check_regions(const Model& model, const State& state, Findings& findings) {
@@ -71,8 +73,8 @@ void check_regions(const Model& model, const State& state, Findings& findings) {
     findings.require(inside(region.cells, state.cells.size()) && region.cells.count == count &&
                          region.cells.first % count == 0,
                      "regions", row, "its cells are not there");
-    if (findings.first.empty() && !state.footings.empty()) {
-      check_footing(model, state, region, row, findings);
+    if (findings.first.empty() && !state.support_fits.empty()) {
+      check_support_fit(model, state, region, row, findings);
     }
   }
 }

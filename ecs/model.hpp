@@ -33,13 +33,13 @@ struct Capacities {
 /// Most cells along one side of a region's grid: one row of them fits the bits of a machine word.
 inline constexpr std::uint32_t kMaxGridSide = 64;
 
-inline constexpr std::uint32_t kMostSweeps = 100;
+inline constexpr std::uint32_t kMostIterations = 100;
 
 /// One row: what the user may set. Written by: load.
 struct Settings {
   std::uint32_t grid_side = 16;  // cells along one side of a region's grid, 1 to kMaxGridSide; 16
                                  // gives about 200 in a round contact
-  std::uint32_t sweeps = 2;      // over the cells of a region with contact model patch in one step,
+  std::uint32_t iterations = 2;  // over the cells of a region with contact model patch in one step,
                                  // 1 to kMostSweeps
 };
 

@@ -22,7 +22,7 @@ void State::reserve(const Capacities& capacities, const Settings& settings) {
   fill_with_zeros(patch_cells, capacities.patch_bodies > 0 ? cells_of_all : 0);
   fill_with_zeros(mdr_layers, capacities.mdr_bodies > 0 ? capacities.regions * kMdrLayers : 0);
   fill_with_zeros(layer_influences, capacities.regions * capacities.layer_influences);
-  fill_with_zeros(footings, footed);
+  fill_with_zeros(support_fits, footed);
   fill_with_zeros(couplings, footed > 0 ? footed * (footed - 1) / 2 : 0);
   for (std::uint32_t row = 0; row < tools.size(); ++row) {
     tools.at<ToolPose>(row) = ToolPose{};

@@ -52,8 +52,8 @@ struct State {
   PatchCellTable patch_cells;  // the same rows as `cells`; none without contact model patch
   MdrLayerTable mdr_layers;    // kMdrLayers rows a block of cells; none without contact model mdr
   Table<Influence> layer_influences;  // tables of one grid a block of cells, or none
-  Table<Footing, FootingResponse>
-      footings;  // one a block of cells; none without body model compliance
+  Table<SupportFit, SupportResponse>
+      support_fits;  // one a block of cells; none without body model compliance
   Table<RegionCoupling>
       couplings;  // likewise, one for each two blocks: i, j < i at i (i - 1)/2 + j
 
@@ -62,11 +62,11 @@ struct State {
 
   [[nodiscard]] auto tables() {
     return std::tie(bodies, tools, regions, cells, patch_cells, mdr_layers, layer_influences,
-                    footings, couplings);
+                    support_fits, couplings);
   }
   [[nodiscard]] auto tables() const {
     return std::tie(bodies, tools, regions, cells, patch_cells, mdr_layers, layer_influences,
-                    footings, couplings);
+                    support_fits, couplings);
   }
 };
 

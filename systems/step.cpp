@@ -39,7 +39,7 @@ bool any_paper_beam(const StepContext& context) {
 /// What regions have from the last step: rows of their own, and those of their blocks.
 constexpr ColumnSet kOfRegions = table_columns<RegionTable>() | table_columns<CellTable>() |
                                  table_columns<PatchCellTable>() | table_columns<MdrLayerTable>() |
-                                 columns<Footing, RegionCoupling>();
+                                 columns<SupportFit, RegionCoupling>();
 
 bool any_moving(const StepContext& context) {
   return any_friction(context) ||
@@ -79,7 +79,7 @@ std::vector<System<StepContext>> step_systems() {
        any_tool_and_body, region_wrenches, columns<RegionWrench, StoredEnergy>()},
       {"compliance", "the whole body's deformation under its regions",
        "a body with body model compliance", any_compliance, compliance,
-       columns<RegionSupport, RegionReaction, SupportField, Footing, RegionCoupling>()},
+       columns<RegionSupport, RegionReaction, SupportField, SupportFit, RegionCoupling>()},
       {"sum_wrenches", "the wrench on every tool, faults, work", "a tool", nullptr, sum_wrenches,
        columns<ToolWrench>()},
   };

@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 struct FileHeader {
   std::array<char, 8> magic = {'T', 'O', 'R', 'S', 'R', 'E', 'C', '\0'};
@@ -46,7 +46,7 @@ json to_json(const Recording& recording) {
   return {{"scene", recording.scene},
           {"rate_Hz", recording.rate},
           {"grid_side", recording.settings.grid_side},
-          {"sweeps", recording.settings.sweeps},
+          {"iterations", recording.settings.iterations},
           {"tools", recording.tools},
           {"world_hash", fmt::format("{:016x}", recording.world_hash)},
           {"scene_bodies", to_json(recording.scene_picks)},
@@ -71,7 +71,7 @@ Recording from_json(const json& head) {
   recording.scene = head.at("scene").get<std::string>();
   recording.rate = head.at("rate_Hz").get<double>();
   recording.settings = {head.at("grid_side").get<std::uint32_t>(),
-                        head.at("sweeps").get<std::uint32_t>()};
+                        head.at("iterations").get<std::uint32_t>()};
   recording.tools = head.at("tools").get<std::vector<std::string>>();
   recording.world_hash = std::stoull(head.at("world_hash").get<std::string>(), nullptr, 16);
   for (const json& body : head.at("scene_bodies")) {
@@ -124,8 +124,8 @@ bool head_is_valid(const Recording& recording) {
   const Settings& settings = recording.settings;
   return recording.picks.size() == recording.scene_picks.size() &&
          std::ranges::all_of(recording.picks, is_valid) &&
-         std::ranges::all_of(recording.scene_picks, is_valid) && settings.sweeps >= 1 &&
-         settings.sweeps <= kMostSweeps && settings.grid_side <= kMaxGridSide;
+         std::ranges::all_of(recording.scene_picks, is_valid) && settings.iterations >= 1 &&
+         settings.iterations <= kMostIterations && settings.grid_side <= kMaxGridSide;
 }
 
 /// Entries must be in the order of steps, with a pose for every tool in every step.

@@ -30,20 +30,20 @@ std::string reference_text(const ElementCurve& curve) {
 }
 
 std::string path_text(const ElementCurve& curve) {
-  const auto by_twist = std::ranges::minmax(curve.rows, {}, &ElementCurve::Row::twist);
+  const auto by_turn = std::ranges::minmax(curve.rows, {}, &ElementCurve::Row::turn);
   return fmt::format(
-      " It is pressed {:.4g} mm deep, twisted to {:.3g} rad and back to \u2212{:.3g} rad.",
-      1e3 * curve.rows.back().depth, by_twist.max.twist, -by_twist.min.twist);
+      " It is pressed {:.4g} mm deep, turned to {:.3g} rad and back to \u2212{:.3g} rad.",
+      1e3 * curve.rows.back().depth, by_turn.max.turn, -by_turn.min.turn);
 }
 
-/// What moves the tool in the finite element path: depth below the first touch and twist.
+/// What moves the tool in the finite element path: depth below the first touch and turn.
 std::vector<PathPoint> path_of(const ElementCurve& curve, const Pose& touching, int steps) {
   std::vector<PathPoint> path;
   Leg leg = Leg::kApproach;
   for (const ElementCurve::Row& row : curve.rows) {
     const double before = path.empty() ? 0.0 : path.back().abscissa;
-    if (row.twist != before) {
-      const bool forth = row.twist > before;
+    if (row.turn != before) {
+      const bool forth = row.turn > before;
       leg = leg == Leg::kApproach || (forth && leg == Leg::kLoad) ? Leg::kLoad
             : forth                                               ? Leg::kReload
                                                                   : Leg::kUnload;
@@ -51,10 +51,10 @@ std::vector<PathPoint> path_of(const ElementCurve& curve, const Pose& touching, 
     PathPoint point;
     const double depth = path.empty() ? -kStartClearance : row.depth;
     point.tool = {touching.position - glm::dvec3(0.0, depth, 0.0),
-                  glm::angleAxis(row.twist, glm::dvec3(0.0, 1.0, 0.0))};
+                  glm::angleAxis(row.turn, glm::dvec3(0.0, 1.0, 0.0))};
     point.steps = path.empty() ? 1 : steps;
     point.leg = leg;
-    point.abscissa = row.twist;
+    point.abscissa = row.turn;
     point.force = row.force;
     point.torque = row.torque;
     path.push_back(point);
@@ -64,9 +64,9 @@ std::vector<PathPoint> path_of(const ElementCurve& curve, const Pose& touching, 
 
 ReferenceField field_of(const ElementCurve& curve) {
   ReferenceField field;
-  const auto most = std::ranges::max_element(curve.rows, {}, &ElementCurve::Row::twist);
+  const auto most = std::ranges::max_element(curve.rows, {}, &ElementCurve::Row::turn);
   field.point = static_cast<std::size_t>(most - curve.rows.begin());
-  field.tool_twist = most->twist;
+  field.tool_turn = most->turn;
   field.contact_radius = most->contact_radius;
   const double reach = std::min(kFieldReach * most->contact_radius, curve.field.back().radius);
   for (int i = 1; i <= kFieldPoints; ++i) {
@@ -92,11 +92,11 @@ std::vector<ReferenceCase> element_cases(bool quick) {
     one.description = element_scene.description + path_text(curve);
     one.reference = reference_text(curve);
     one.force_meaning = "normal force";
-    one.torque_meaning = "torque about the axis of the twist";
+    one.torque_meaning = "torque about the axis of the turn";
     one.scene = element_scene.scene;
     one.finite_body = element_scene.finite_body;
     one.path = path_of(curve, element_scene.touching, quick ? 8 : 40);
-    one.x = {PlotAxis::Quantity::kAbscissa, "twist of the tool (mrad)", 1e3};
+    one.x = {PlotAxis::Quantity::kAbscissa, "turn of the tool (mrad)", 1e3};
     const bool large = std::ranges::max(curve.rows, {}, &ElementCurve::Row::torque).torque > 1.0;
     one.y = {PlotAxis::Quantity::kTorque, large ? "torque (N m)" : "torque (mN m)",
              large ? 1.0 : 1e3};

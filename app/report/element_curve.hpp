@@ -10,18 +10,18 @@ namespace torsion {
 struct ElementCurve {
   struct Row {
     double depth = 0.0;           // m
-    double twist = 0.0;           // rad
+    double turn = 0.0;            // rad: the tool's
     double force = 0.0;           // N
     double torque = 0.0;          // N m
     double contact_radius = 0.0;  // m
   };
   struct FieldRow {
     double radius = 0.0;  // m, from the axis
-    double twist = 0.0;   // rad
+    double twist = 0.0;   // rad: the surface's
   };
   int divisions = 0;  // elements to a contact radius
   std::vector<Row> rows;
-  std::vector<FieldRow> field;  // at the largest twist; empty where there is none
+  std::vector<FieldRow> field;  // at the largest turn of the tool; empty where there is none
   // Between this mesh and the next coarser one, over the largest value; nullopt with one mesh only.
   std::optional<double> force_error;
   std::optional<double> torque_error;

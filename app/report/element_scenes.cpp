@@ -207,7 +207,7 @@ ElementScene compass_on_ellipsoid() {
   result.name = "compass_on_ellipsoid";
   result.title = "Compass on an ellipsoid: two contacts";
   result.description = fmt::format(
-      "Two round tips of radius 4 mm, {:.3g} mm apart, twisted about the axis between them, on {}.",
+      "Two round tips of radius 4 mm, {:.3g} mm apart, turned about the axis between them, on {}.",
       2e3 * foot, kEllipsoidText);
   result.scene.bodies.push_back(ellipsoid());
   std::vector<PartDescription> tips;

@@ -52,20 +52,21 @@ ReferenceCase twist_case(bool quick) {
   const double amplitude = reference::slip_twist(contact, 0.1 * contact.radius);
   ReferenceCase result;
   result.name = "sphere_twist";
-  result.title = "Ball on a half-space, twisted to and fro";
+  result.title = "Ball on a half-space, turned to and fro";
   result.description =
       sphere_text(sphere) +
       fmt::format(
-          " Then it is twisted to {:.3g} rad, back to \u2212{:.3g} rad and up again, at "
+          " Then it is turned to {:.3g} rad, back to \u2212{:.3g} rad and up again, at "
           "constant depth.",
           amplitude, amplitude);
   result.reference = fmt::format(
       "Sneddon (1965) for force and contact radius, Lubkin (1951) for torque and twist field, "
-      "Masing\u2019s rule after each turn; evaluated to 1e-11. That a sphere presses not quite as "
+      "Masing\u2019s rule after each reversal; evaluated to 1e-11. That a sphere presses not quite "
+      "as "
       "Hertz\u2019 paraboloid changes the torque by {:.1g}\u00a0%.",
       100.0 * pressure_error(sphere));
-  result.force_meaning = "normal force, pressing and twisting";
-  result.torque_meaning = "torque about the axis of the twist";
+  result.force_meaning = "normal force, pressing and turning";
+  result.torque_meaning = "torque about the axis of the turn";
   result.scene = scene_of(sphere);
   result.path = press(sphere, true);
   for (PathPoint& point : result.path) {
@@ -73,18 +74,18 @@ ReferenceCase twist_case(bool quick) {
   }
   result.path.front().force = 0.0;
   reference::MasingHistory history;
-  to_and_fro(amplitude, [&](double twist, Leg leg) {
+  to_and_fro(amplitude, [&](double turn, Leg leg) {
     const double torque = reference::move_to(
-        history, [&](double phi) { return reference::torque(contact, phi); }, twist);
-    result.path.push_back({pose_at(kPaperBallDepth, twist, 0.0), sphere.steps, leg, twist,
-                           sphere.hertz.force, torque});
-    if (twist == amplitude && leg == Leg::kLoad) {
+        history, [&](double phi) { return reference::torque(contact, phi); }, turn);
+    result.path.push_back(
+        {pose_at(kPaperBallDepth, turn, 0.0), sphere.steps, leg, turn, sphere.hertz.force, torque});
+    if (turn == amplitude && leg == Leg::kLoad) {
       result.field.point = result.path.size() - 1;
     }
   });
-  result.x = {PlotAxis::Quantity::kAbscissa, "twist of the tool (mrad)", 1e3};
+  result.x = {PlotAxis::Quantity::kAbscissa, "turn of the tool (mrad)", 1e3};
   result.y = {PlotAxis::Quantity::kTorque, "torque (mN m)", 1e3};
-  result.field.tool_twist = amplitude;
+  result.field.tool_turn = amplitude;
   result.field.contact_radius = contact.radius;
   for (int i = 1; i <= 80; ++i) {
     const double r = 0.1 * i * contact.radius;

@@ -6,7 +6,7 @@
 
 namespace torsion {
 
-/// A sphere on a half-space where the answer is known in closed form: pressed and twisted to and
+/// A sphere on a half-space where the answer is known in closed form: pressed and turned to and
 /// fro, pushed to and fro, sliding while it spins.
 /// @param quick  fewer steps between the points of a path
 std::vector<ReferenceCase> exact_cases(bool quick);

@@ -26,7 +26,7 @@ struct PathPoint {
 /// The twist of the surface along a ray from the axis, at one point of the path.
 struct ReferenceField {
   std::size_t point = 0;        // row of the path
-  double tool_twist = 0.0;      // rad
+  double tool_turn = 0.0;       // rad
   std::vector<double> radii;    // m, ascending
   std::vector<double> twists;   // rad: how far it has gone around the axis
   double contact_radius = 0.0;  // m

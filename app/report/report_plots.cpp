@@ -227,14 +227,14 @@ Plot loop_plot(const MeasuredCase& measured) {
 Plot field_plot(const MeasuredCase& measured) {
   const ReferenceField& field = measured.reference_case.field;
   Plot plot;
-  plot.caption = "Twist of the surface over the tool\u2019s, at the largest twist.";
+  plot.caption = "Twist of the surface over the turn of the tool, at the largest turn.";
   plot.x_label = "radius over the contact\u2019s";
-  plot.y_label = "twist over the tool\u2019s";
+  plot.y_label = "twist over turn of the tool";
   plot.from_zero = true;
   const auto add = [&](PlotSeries series, const std::vector<double>& twists, std::size_t stride) {
     for (std::size_t i = 0; i < field.radii.size(); i += stride) {
       series.points.emplace_back(field.radii[i] / field.contact_radius,
-                                 twists[i] / field.tool_twist);
+                                 twists[i] / field.tool_turn);
     }
     plot.series.push_back(std::move(series));
   };

@@ -41,7 +41,7 @@ glm::dvec3 in_world(const Pose& pose, const glm::dvec3& point) {
   return pose.position + pose.rotation * point;
 }
 
-/// A ring around the contact with a stroke along the normal, and one that shows the twist.
+/// A ring around the contact with a stroke along the normal, and one that shows the turn.
 void draw_region(const Pencil& pencil, const LiveFrame& frame, const World& world,
                  std::uint32_t region) {
   constexpr int kSides = 32;

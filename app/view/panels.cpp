@@ -262,8 +262,8 @@ void wrench_plots(const ViewState& state, const History& history) {
   }
 }
 
-/// Torque against twist: what runs now, and in grey what ran before the last switch.
-void twist_plot(const History& history) {
+/// Torque against the tool's turn: what runs now, and in grey what ran before the last switch.
+void turn_plot(const History& history) {
   if (history.size() == 0) {
     return;
   }
@@ -283,7 +283,8 @@ void twist_plot(const History& history) {
     before.name = "";
   }
   const std::array<Curve, 2> curves = {before, current};
-  draw_plot({"Torque about the normal (N m) by twist", "deg", 0.0, 0.0, 1e-4}, curves, 110.0F);
+  draw_plot({"Torque about the normal (N m) by turn of the tool", "deg", 0.0, 0.0, 1e-4}, curves,
+            110.0F);
 }
 
 void timing_plot(const History& history) {
@@ -321,7 +322,7 @@ void right_panel(ViewState& state, LiveSession& session) {
     state.contact_axes = axes == 0;
     const History& history = state.histories[state.tool];
     wrench_plots(state, history);
-    twist_plot(history);
+    turn_plot(history);
     timing_plot(history);
     if (session.on_device(state.tool)) {
       device_plot(history);

@@ -32,12 +32,12 @@ struct ComplianceValue {
   double value = 0.0;  // m/N, rad/N
 };
 
-inline constexpr std::uint32_t kFootingPorts = 32;
+inline constexpr std::uint32_t kSupportPorts = 32;
 
 /// How a region stands on the ports around it: what its tractions are as forces at them, and how
-/// their displacements make a SupportField. Laid anew when the contact has moved or grown. Written
-/// by: compliance.
-struct Footing {
+/// their displacements make a SupportField. Found again when the contact has moved or grown.
+/// Written by: compliance.
+struct SupportFit {
   glm::dvec3 origin{0.0};     // m, body
   glm::dvec3 tangent_x{0.0};  // body, unit
   glm::dvec3 tangent_y{0.0};
@@ -50,10 +50,10 @@ struct Footing {
   std::uint64_t serial = 0;    // no two that were laid have the same
   std::uint32_t on_layer = 0;  // 1: not the ports but `own` moves it, all of it
   std::uint32_t count = 0;     // of the ports
-  std::array<std::uint32_t, kFootingPorts> ports{};
-  std::array<std::array<double, kFootingPorts>, kSupportTerms> fit{};  // term by displacement
+  std::array<std::uint32_t, kSupportPorts> ports{};
+  std::array<std::array<double, kSupportPorts>, kSupportTerms> fit{};  // term by displacement
   // Forces at the ports that are a unit wrench about `center`, spread as a rigid disc would.
-  std::array<std::array<glm::dvec3, kFootingPorts>, 6> unit_forces{};
+  std::array<std::array<glm::dvec3, kSupportPorts>, 6> unit_forces{};
   std::array<double, 36> own{};  // 6 x 6: motion at `center` by that unit wrench, what yields of it
   // 3 x 3, m/N, body: how the body's bend beside its half-space moves it by a force, for contact
   // models without cells. `patch` has the bend in its own tables (patch/region.hpp).
@@ -62,18 +62,18 @@ struct Footing {
 
 inline constexpr std::uint32_t kSupportColumn = 16;  // terms of one axis, with one more of zero
 
-/// What becomes of a region's tractions through its footing's ports: the three axes' terms,
+/// What becomes of a region's tractions through its support fit's ports: the three axes' terms,
 /// body axes, by the tractions' moments with their terms, m/N. Column by column; in a column and
 /// from one column to the next kSupportColumn an axis. Written by: patch_forces.
-struct FootingResponse {
-  std::uint64_t serial = 0;  // of the footing for which it was found
+struct SupportResponse {
+  std::uint64_t serial = 0;  // of the support fit for which it was found
   std::array<double, std::size_t{9} * kSupportColumn * kSupportColumn> terms{};
 };
 
 /// 6 x 6, body axes: how a wrench on one region moves the material under another one. Written by:
 /// compliance.
 struct RegionCoupling {
-  std::uint64_t serial_to = 0;  // of the footings between which it was found
+  std::uint64_t serial_to = 0;  // of the support fits between which it was found
   std::uint64_t serial_from = 0;
   std::array<double, 36> motion{};
 };

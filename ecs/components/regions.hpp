@@ -59,10 +59,10 @@ struct RegionSupport {
   glm::dvec3 rotation_by_others{0.0};     // rad
 };
 
-/// How the body's other regions answer to a change of this one's load, where the body gives way by
+/// How the body's other regions answer to a change of this one's load, where the body deflects
 /// much: by it they move this one, as a rigid body, by minus `motion` times the change. Without it
 /// each of two tools that pinch a soft body would feel it move away by far, and the other's answer
-/// a step later. Written by: compliance; zero where the body gives way by little. With contact
+/// a step later. Written by: compliance; zero where the body deflects little. With contact
 /// model mdr `wrench` is what the region's own support counts on, whether others answer or not.
 struct RegionReaction {
   std::array<double, 36> motion{};  // 6 x 6, body axes, about RegionSupport::about
@@ -149,26 +149,26 @@ struct RegionFriction {
 
 /// How the contact model `patch` stands in a region. Written by: patch_forces.
 struct PatchState {
-  glm::dvec2 slide{0.0};       // m, grid: motion of the last step, as in RegionMotion
-  double spin = 0.0;           // rad, likewise
-  double deepened = 0.0;       // m: change of the largest depth in the last step
-  double along_last = 0.0;     // share of the motion before it by which it went on: -1 to 1
-  double depth = 0.0;          // m: the largest depth
-  double residual = 0.0;       // what is left of the equations, as in PatchOutcome
-  std::uint32_t sweeps = 0;    // in the last step
-  std::uint32_t started = 0;   // 0: no solution yet
-  std::uint32_t moved = 0;     // 1: the grid has moved, displacements must be found anew
-  std::uint32_t resized = 0;   // 1: and its cells have another size or other axes
-  std::uint32_t settling = 0;  // steps to go until it has settled on other axes
-  std::uint32_t copy_of = 0;   // in the step in which it splits off: 1 + the other's block of cells
+  glm::dvec2 slide{0.0};         // m, grid: motion of the last step, as in RegionMotion
+  double spin = 0.0;             // rad, likewise
+  double deepened = 0.0;         // m: change of the largest depth in the last step
+  double along_last = 0.0;       // share of the motion before it by which it went on: -1 to 1
+  double depth = 0.0;            // m: the largest depth
+  double residual = 0.0;         // what is left of the equations, as in PatchOutcome
+  std::uint32_t iterations = 0;  // in the last step
+  std::uint32_t started = 0;     // 0: no solution yet
+  std::uint32_t moved = 0;       // 1: the grid has moved, displacements must be found again
+  std::uint32_t resized = 0;     // 1: and its cells have another size or other axes
+  std::uint32_t settling = 0;    // steps to go until it has settled on other axes
+  std::uint32_t copy_of = 0;  // in the step in which it splits off: 1 + the other's block of cells
 };
 
 /// What a region with contact model `patch` holds of the work done on it, and the forces of the
-/// last step that its work is reckoned by. Written by: patch_forces.
+/// last step that its work is computed from. Written by: patch_forces.
 struct PatchEnergy {
   double held = 0.0;       // J, with what the body as a whole holds of its load
   double owed = 0.0;       // J: lacking work that is still to be charged
-  double lent = 0.0;       // J: what grids that were laid anew held more than those before them
+  double lent = 0.0;       // J: what was held more after regriddings than before them
   double taken = 0.0;      // N, off the normal force: takes that back while the tool lifts off
   double depth = 0.0;      // m: the largest
   glm::dvec3 force{0.0};   // N, body, on the tool; with what is taken
@@ -201,9 +201,10 @@ struct MdrState {
 
 /// Written by: region_wrenches.
 struct RegionWrench {
-  Wrench on_tool;            // world, about the tool's mass centre, as let out
-  Wrench event_change;       // world: what an event would have made jump; none: the last change
-  double event_share = 0.0;  // of event_change still let out: 1 at the event, 0 when faded
+  Wrench on_tool;       // world, about the tool's mass centre, as output
+  Wrench event_change;  // world: what an event would have made jump; none: the last change
+  double event_share =
+      0.0;  // of event_change that is still taken off: 1 at the event, 0 when faded
   std::uint32_t event_now =
       0;  // a RegionEvent (region_wrenches.hpp); group_regions and region_grids set it
   std::uint32_t padding = 0;

@@ -40,10 +40,10 @@ enum class WrenchState : std::uint32_t { kLive, kFalling, kRising };
 /// The product: what the bodies exert on the tool, about its mass centre, world frame. Written by:
 /// sum_wrenches.
 struct ToolWrench {
-  Wrench total;        // as let out
-  Wrench held;         // what was let out when a fault began; fades from there
+  Wrench total;        // as output
+  Wrench held;         // what was output when a fault began; fades from there
   double work = 0.0;   // J, done by the tool's holder so far
-  double share = 1.0;  // of `held` (falling) or of the computed wrench (rising) that is let out
+  double share = 1.0;  // of `held` (falling) or of the computed wrench (rising) that is output
   WrenchState state = WrenchState::kLive;
   std::uint32_t padding = 0;
 };

@@ -173,7 +173,7 @@ bool find_rims(const Grid& grid);
 void take_rims(const CellColumns& columns);
 
 /// CellGeometry::bearing of a cell that only partly lies under a face. What it carries it carries
-/// on a smaller area, and gives way by more under it. The softness that it has beyond a whole
+/// on a smaller area, and deflects by more under it. The softness that it has beyond a whole
 /// cell's, kRimSoftness (1 / bearing - 1) times what its own influence on itself is, makes a punch
 /// whose rim runs through a row of cells as stiff as in between those a row narrower and wider
 /// (rim_stiffness_test.cpp): a row of cells that are long across the rim is the softer for that.

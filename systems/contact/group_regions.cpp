@@ -72,7 +72,7 @@ bool any_took_over(const State& state, std::uint32_t body) {
 
 /// Ends the last step's events. A body with compliance answers to regions that took over from the
 /// next step on, and moves all its regions. Of answers that follow upon each other within the fade
-/// a region that stands by waits for the first alone, lest the force stand still.
+/// a region that waits does so for the first alone, so that the force does not stand still.
 void end_events(const Model& model, State& state) {
   for (std::uint32_t body = 0; body < model.bodies.size(); ++body) {
     const bool begins_to_follow =
@@ -138,8 +138,8 @@ void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t c
   std::ranges::fill(state.cells.rows<CellGeometry>(cells), CellGeometry{});
   std::ranges::fill(state.cells.rows<CellTraction>(cells), CellTraction{});
   const std::uint32_t block = block_of(state.regions.at<RegionIdentity>(row));
-  if (!state.footings.empty()) {
-    state.footings.at<Footing>(block) = Footing{};
+  if (!state.support_fits.empty()) {
+    state.support_fits.at<SupportFit>(block) = SupportFit{};
   }
   const ContactLaw& law = law_of(model, pair.body);
   if (law.begin != nullptr) {
@@ -256,7 +256,7 @@ void note_splits(const Model& model, State& state, ContactScratch& scratch,
   }
 }
 
-/// Points are sought under the body's rest shape. One that gives way may be dragged along by
+/// Points are sought under the body's rest shape. One that deflects may be dragged along by
 /// friction until the tool stands beside that shape with all its points: cells that carry a force
 /// where they are now are a contact without them. Where there are points they say which contacts
 /// there are.

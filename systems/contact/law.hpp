@@ -26,7 +26,7 @@ struct ContactLaw {
   /// finds in its own equations what that does to a body that moves as a whole. Others know a
   /// contact as a whole: a force, and a couple about its middle.
   bool by_cells = false;
-  /// It reckons with how the body gives way to its load in the step in which that is found
+  /// It accounts for how the body deflects under its load in the step in which that is found
   /// (support/contact_load.hpp): writes ContactScratch::support_answers.
   bool moves_own_support = false;
   /// On a body that moves as a whole: so many times a contact's own compliance the body has to give
@@ -48,7 +48,7 @@ struct ContactLaw {
   // A region's grid.
   /// Moves it along with its contact, before cells are sought.
   void (*follow)(StepContext& context, std::uint32_t region, const RegionPoints& contact) = nullptr;
-  /// Finds its cells (find_cells in grid_cells.hpp), and lays it anew where they ask for that.
+  /// Finds its cells (find_cells in grid_cells.hpp), and regrids where they require it.
   void (*find_cells)(StepContext& context, std::uint32_t region,
                      const RegionPoints& contact) = nullptr;
   /// What it knows of the overlap besides the cells, once all regions have theirs: it may move

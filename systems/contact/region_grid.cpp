@@ -264,7 +264,7 @@ PlaneBox align_grid(const Grid& grid, std::uint32_t region, const CellBits& cove
 /// Passes over the grid until it holds the whole contact and little else. In most steps it does at
 /// once, and moves with the contact from step to step; when something happened to the region it
 /// settles within the step, so that what fades in is not the grid's way to its place.
-/// @return whether the grid was laid anew
+/// @return whether it was regridded
 bool fit_to_contact(const Grid& grid, std::uint32_t region, const RegionPoints& contact,
                     double start_depth, bool event_now) {
   for (int pass = 0; pass < kMostRegrids; ++pass) {

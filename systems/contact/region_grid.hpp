@@ -134,7 +134,7 @@ void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoin
 /// The deepest of the region's contact points; depth 0 where there are none.
 ContactPoint deepest_of_cluster(const Grid& grid, const RegionPoints& contact);
 
-/// A grid that is laid anew may see more of the body than the one before it, by whose cells it is
+/// A new grid may see more of the body than the one before it, by whose cells it is
 /// turned: of a face that comes to lie on a body the first to touch is an edge, whose normal is
 /// another one, and over the whole face that would be a depth of its own.
 void look_along_normal(const Grid& grid, const RegionPoints& contact);

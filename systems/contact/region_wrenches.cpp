@@ -132,7 +132,7 @@ struct Regions {
 
 bool unannounced(std::uint32_t event) {
   return event != static_cast<std::uint32_t>(RegionEvent::kNone) &&
-         event != static_cast<std::uint32_t>(RegionEvent::kGridLaidAnew);
+         event != static_cast<std::uint32_t>(RegionEvent::kRegridded);
 }
 
 Regions regions_on(const StepContext& context, std::uint32_t body) {
@@ -201,7 +201,7 @@ namespace {
 
 constexpr double kEventFade =
     0.01;  // s: shorter is felt as a click, longer drags an old force along
-constexpr double kMostByGrid = 0.05;  // of a force: what a grid laid anew may change of it
+constexpr double kMostByGrid = 0.05;  // of a force: what regridding may change of it
 constexpr double kFaultFall = 0.01;   // s: from the last good wrench to zero
 constexpr double kFaultRise =
     0.05;  // s: back again; slower, so that a flickering fault does not rattle the hand
@@ -267,11 +267,11 @@ double share_by_motion(const Model& model, const State& state, std::uint32_t reg
   return share < 1.0 ? std::pow(std::max(share, 0.0), 1.5) : 1.0;
 }
 
-/// Lets out what an event changed little by little.
-/// @param foretold  of the last step's change, what this step's motion goes on by
+/// Fades what an event has changed.
+/// @param extrapolated  of the last step's change, by which this step's motion continues it
 /// @param came      of a region that begins, the share that the tool's way has made
 /// @param faded     share that goes in this step
-void fade_event(RegionWrench& wrench, const Wrench& computed, double foretold, double came,
+void fade_event(RegionWrench& wrench, const Wrench& computed, double extrapolated, double came,
                 double faded) {
   const Wrench before = wrench.on_tool;
   const auto event = static_cast<RegionEvent>(wrench.event_now);
@@ -281,12 +281,13 @@ void fade_event(RegionWrench& wrench, const Wrench& computed, double foretold, d
   } else if (event == RegionEvent::kTakesOver || event >= RegionEvent::kBodyFollows) {
     wrench.event_change = before - computed;
     wrench.event_share = 1.0;
-  } else if (event == RegionEvent::kGridLaidAnew && wrench.event_share == 0.0) {
-    // All that the last step does not foretell is the grid's; where the motion turns back, so does
-    // what it foretells. Of grids that follow upon each other within the fade, while a tool is
-    // pressed in fast, only the first: the force must not wait.
-    wrench.event_change = before + wrench.event_change * foretold - computed;
-    // A quick tool's force bends away from what the last step foretells by more than any grid does.
+  } else if (event == RegionEvent::kRegridded && wrench.event_share == 0.0) {
+    // All that the last step does not extrapolate is the grid's; where the motion turns back, so
+    // does what it extrapolates. Of grids that follow upon each other within the fade, while a tool
+    // is pressed in fast, only the first: the force must not wait.
+    wrench.event_change = before + wrench.event_change * extrapolated - computed;
+    // A quick tool's force bends away from what the last step extrapolates by more than any grid
+    // does.
     const double most = kMostByGrid * glm::length(computed.force);
     const double jump = glm::length(wrench.event_change.force);
     wrench.event_change = wrench.event_change * (jump > most ? most / jump : 1.0);
@@ -307,7 +308,7 @@ double work_against(const Wrench& wrench, const ToolMotion& motion, double dt) {
 }
 
 /// What the computed wrench of a tool becomes, given whether this step had a fault.
-void let_out(ToolWrench& wrench, const Wrench& computed, bool faulty, double dt) {
+void output_wrench(ToolWrench& wrench, const Wrench& computed, bool faulty, double dt) {
   if (faulty && wrench.state != WrenchState::kFalling) {
     wrench.state = WrenchState::kFalling;
     wrench.held = wrench.total;
@@ -374,7 +375,7 @@ void sum_wrenches(StepContext& context) {
     }
     ToolWrench& wrench = state.tools.at<ToolWrench>(tool);
     const Wrench before = wrench.total;
-    let_out(wrench, computed, clock.faults != 0, clock.dt);
+    output_wrench(wrench, computed, clock.faults != 0, clock.dt);
     // By the trapezoidal rule.
     wrench.work +=
         work_against((before + wrench.total) * 0.5, state.tools.at<ToolMotion>(tool), clock.dt);

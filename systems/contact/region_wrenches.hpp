@@ -37,12 +37,12 @@ void bound_forces(StepContext& context);
 /// What of a region does not change little by little in this step.
 enum class RegionEvent : std::uint32_t {
   kNone,
-  kBegins,        // on_tool is zero: it is new, where there was none; what the tool's way in this
-                  // step has made of it is let out at once
-  kTakesOver,     // on_tool holds what it goes on from: another's or its own heir, or split off one
-  kGridLaidAnew,  // contact model patch, by interpolation
-  kBodyFollows    // to kBodyFollows + kFollowingSteps - 1, one after the other: the whole body
-                  // answers to regions that took over, of which it may be one
+  kBegins,      // on_tool is zero: it is new, where there was none; what the tool's way in this
+                // step has made of it is felt at once
+  kTakesOver,   // on_tool holds what it goes on from: another's or its own heir, or split off one
+  kRegridded,   // contact model patch, by interpolation
+  kBodyFollows  // to kBodyFollows + kFollowingSteps - 1, one after the other: the whole body
+                // answers to regions that took over, of which it may be one
 };
 
 /// Steps in which a body with compliance answers to regions that merge or split. Their contact is
@@ -54,12 +54,12 @@ inline constexpr std::uint32_t kFollowingSteps = 4;
 
 /// Force and torque of every region on its tool, about the tool's mass centre, in the world: T =
 /// (p_eq - c) x F plus the friction couple about the normal (equation (1) with the sign of
-/// docs/models.md). What a birth, merge, split or a grid laid anew would make jump is let out over
+/// docs/models.md). What a birth, merge, split or regridding would make jump is faded in over
 /// kEventFade seconds instead, on a body with compliance from when that has answered.
 void region_wrenches(StepContext& context);
 
 /// Adds the regions' wrenches on every tool, and the work of the tool's holder. After a fault what
-/// is let out falls from the last good wrench to zero and, once the fault is over, rises again; a
+/// is output falls from the last good wrench to zero and, once the fault is over, rises again; a
 /// wrench that is not finite never gets out.
 void sum_wrenches(StepContext& context);
 

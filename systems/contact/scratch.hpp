@@ -86,16 +86,17 @@ struct BeamSpring {
   double stiffness = 0.0;  // N/m, along the beam; 0: there is none
 };
 
-/// How the body as a whole has given way within the step to what a contact model has found in it:
-/// of those that reckon with it (ContactLaw::moves_own_support). The body model takes it over into
+/// How the body as a whole has deflected within the step to what a contact model has found in it:
+/// of those that account for it (ContactLaw::moves_own_support). The body model takes it over into
 /// RegionSupport and RegionReaction.
 struct SupportAnswer {
   glm::dvec3 translation{0.0};  // m, body, of RegionSupport::about
   glm::dvec3 rotation{0.0};     // rad, body
-  // Of it, what the contact has not reckoned with and feels in the next step:
+  // Of it, what the contact has not accounted for and feels in the next step:
   glm::dvec3 translation_left{0.0};  // m, body
   glm::dvec3 rotation_left{0.0};     // rad, body
-  std::array<double, 6> wrench{};    // on the material, about the footing's centre, for which it is
+  std::array<double, 6>
+      wrench{};  // on the material, about the support fit's centre, for which it is
 };
 
 /// Lays columns of one region's cells in one piece of memory, each followed by zeros up to whole

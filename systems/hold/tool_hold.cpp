@@ -83,7 +83,7 @@ Matrix6 contact_stiffness(const Model& model, const State& state, std::uint32_t 
                           stuck.about_tangents.y * (y * y.transpose()));
 }
 
-/// What the contacts do to the tool as they are now. What is let out of a region lags behind while
+/// What the contacts do to the tool as they are now. The output of a region lags behind while
 /// it forms, merges or splits, and a tool without mass that fell through that lag would bounce.
 Wrench contact_wrench(const State& state, std::uint32_t tool) {
   Wrench contact = state.tools.at<ToolWrench>(tool).total;

@@ -158,13 +158,13 @@ glm::dvec4 stiffness_of(const Outcome& outcome, double modulus) {
   return {slide, slide, turn, normal_slope(outcome.round, modulus)};
 }
 
-/// A contact on a body that gives way, and what it was asked.
+/// A contact on a body that deflects, and what it was asked.
 struct Balance {
   const Model& model;
   const State& state;
   std::uint32_t region;
   const Springs& springs;
-  RoundContact seen;  // when the body has not given way in this step
+  RoundContact seen;  // when the body has not deflected in this step
   double modulus;     // E*, Pa
   glm::dvec4 turns;   // 1, 1, its radius, 1
 
@@ -181,11 +181,11 @@ struct Balance {
   }
 };
 
-/// Springs and depth when the body gives way to their loads l: z = free - C (l(z) - known), by
+/// Springs and depth when the body deflects under their loads l: z = free - C (l(z) - known), by
 /// Broyden's method (Dennis and Schnabel, Numerical Methods for Unconstrained Optimization, 8) from
 /// springs that all stick.
 /// @param last  of the springs in the last step, N and N m, on the material
-/// @return the loads beyond those that the body had given way to
+/// @return the loads beyond those under which the body had deflected
 ContactLoads settle(const Balance& balance, const OwnAnswer& body, const glm::dvec3& last,
                     Outcome& outcome) {
   constexpr int kMostTries = 8;

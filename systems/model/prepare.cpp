@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "systems/contact/support/footing.hpp"
+#include "systems/contact/support/support_fit.hpp"
 #include "systems/geometry/bounds.hpp"
 #include "systems/geometry/distance_field.hpp"
 #include "systems/geometry/sample_surface.hpp"

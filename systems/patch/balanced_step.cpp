@@ -17,7 +17,7 @@ namespace {
 constexpr double kNearlyNone = 1e-300;  // keeps 0 / 0 away
 constexpr double kOnRim = 1.0 - 1e-12;  // of a limit's square
 
-/// Where the cells go when each answers on its own.
+/// Where the cells go when each changes as if alone.
 TORSION_WIDEST
 void find_trials_alone(std::size_t count, const double* __restrict stiffness,
                        const double* __restrict traction, const double* __restrict target,
@@ -27,16 +27,17 @@ void find_trials_alone(std::size_t count, const double* __restrict stiffness,
   }
 }
 
-/// Where the cells go by what is asked and kept, before they are brought onto their discs. One that
-/// slips is as far out of its disc as it slips: so it takes that much to make it stick.
+/// Where a whole step along the search direction leads before cells are brought onto their discs.
+/// One that slips is as far out of its disc as it slips: so it takes that much to make it stick.
 TORSION_WIDEST
-void find_trials(const TractionColumns& cells, const Mix& mix, const double* __restrict stiffness,
-                 const double* __restrict step_x, const double* __restrict step_y,
-                 double* __restrict trial_x, double* __restrict trial_y) {
+void find_trials(const TractionColumns& cells, const DirectionShares& shares,
+                 const double* __restrict stiffness, const double* __restrict direction_x,
+                 const double* __restrict direction_y, double* __restrict trial_x,
+                 double* __restrict trial_y) {
   const double* __restrict const slips = cells.slips;
   const double* __restrict const limits = cells.limit;
-  const double* __restrict const asked_x = cells.asked_x;
-  const double* __restrict const asked_y = cells.asked_y;
+  const double* __restrict const preconditioned_x = cells.preconditioned_x;
+  const double* __restrict const preconditioned_y = cells.preconditioned_y;
   const double* __restrict const along_x = cells.along_x;
   const double* __restrict const along_y = cells.along_y;
   const double* __restrict const softened = cells.softened;
@@ -46,23 +47,23 @@ void find_trials(const TractionColumns& cells, const Mix& mix, const double* __r
   const double* __restrict const target_y = cells.target_y;
   const double* __restrict const moved_x = cells.moved_x;
   const double* __restrict const moved_y = cells.moved_y;
-  const double share = mix.asked;
-  const double kept = mix.kept;
+  const double share = shares.share;
+  const double beta = shares.beta;
   for (std::size_t k = 0; k < cells.count; ++k) {
     const bool slip = slips[k] != 0.0;
     const double limit = limits[k];
-    const double new_x = share * asked_x[k];
-    const double new_y = share * asked_y[k];
+    const double new_x = share * preconditioned_x[k];
+    const double new_y = share * preconditioned_y[k];
     const double across = softened[k] * (along_x[k] * new_y - along_y[k] * new_x) +
-                          kept * (along_x[k] * step_y[k] - along_y[k] * step_x[k]);
+                          beta * (along_x[k] * direction_y[k] - along_y[k] * direction_x[k]);
     const double rim_x = limit * along_x[k] - across * along_y[k];
     const double rim_y = limit * along_y[k] + across * along_x[k];
     const double way =
         (target_x[k] - moved_x[k]) * along_x[k] + (target_y[k] - moved_y[k]) * along_y[k];
     const double reach = limit + stiffness[k] * larger(way, 0.0);
     const double scale = reach / std::sqrt(larger(rim_x * rim_x + rim_y * rim_y, kNearlyNone));
-    trial_x[k] = slip ? scale * rim_x : traction_x[k] + (new_x + kept * step_x[k]);
-    trial_y[k] = slip ? scale * rim_y : traction_y[k] + (new_y + kept * step_y[k]);
+    trial_x[k] = slip ? scale * rim_x : traction_x[k] + (new_x + beta * direction_x[k]);
+    trial_y[k] = slip ? scale * rim_y : traction_y[k] + (new_y + beta * direction_y[k]);
   }
 }
 
@@ -77,47 +78,50 @@ void set_columns(const PatchProblem& problem, double stiffness, DiscColumns& dis
   }
 }
 
-/// What the cells answer to tractions or displacements, as a load on the body.
-SurfaceLoad answered_load(const TractionColumns& cells, const double* x, const double* y,
-                          PatchWork& work) {
-  std::copy_n(x, cells.count, work.moves_x.begin());  // not needed before there is a step
-  std::copy_n(y, cells.count, work.moves_y.begin());
-  keep_answered(cells, work.moves_x.data(), work.moves_y.data());
-  return load_of(work.discs, work.moves_x.data(), work.moves_y.data());
+/// The load on the body by the part of tractions or displacements by which cells can change.
+SurfaceLoad free_load(const TractionColumns& cells, const double* x, const double* y,
+                      PatchWork& work) {
+  std::copy_n(x, cells.count, work.response_x.begin());  // not needed before there is a step
+  std::copy_n(y, cells.count, work.response_y.begin());
+  project_on_tangents(cells, work.response_x.data(), work.response_y.data());
+  return load_of(work.discs, work.response_x.data(), work.response_y.data());
 }
 
-/// What the cells ask for when the body moves along with what they come to.
-/// @param load  on the body: in: with whose motion the cells have found their ways; out: when they
-///              go there
-/// @return TractionSweep::square
-double ask_in_balance(const PatchProblem& problem, const StepRequest& request,
-                      const TractionColumns& cells, PatchWork& work, SurfaceLoad& load) {
-  ask_for_both(problem, request, {cells.residual_x, cells.residual_y}, work,
-               {cells.asked_x, cells.asked_y});
-  const SurfaceLoad asked = answered_load(cells, cells.asked_x, cells.asked_y, work);
-  glm::dmat3 answers(0.0);  // of the cells to the body's motions
+/// The preconditioned residual when the body moves along with the cells' change.
+/// @param load  on the body: in: for whose motion the residuals were found; out: with the change
+/// @return r' z, Pa m
+double precondition_in_balance(const PatchProblem& problem, const StepRequest& request,
+                               const TractionColumns& cells, PatchWork& work, SurfaceLoad& load) {
+  precondition_both(problem, request, {cells.residual_x, cells.residual_y}, work,
+                    {cells.preconditioned_x, cells.preconditioned_y});
+  const SurfaceLoad preconditioned =
+      free_load(cells, cells.preconditioned_x, cells.preconditioned_y, work);
+  glm::dmat3 stiffness(0.0);  // loads by the cells for motions of the body
   for (std::size_t k = 0; k < 3; ++k) {
-    move_as_one(problem.support, k, work.moves_x.data(), work.moves_y.data());
-    keep_answered(cells, work.moves_x.data(), work.moves_y.data());
-    const BothColumns asks{work.rigid_asks_x[k].data(), work.rigid_asks_y[k].data()};
-    ask_for_both(problem, request, {work.moves_x.data(), work.moves_y.data()}, work, asks);
-    answers[static_cast<int>(k)] = answered_load(cells, asks.x, asks.y, work);
+    move_as_one(problem.support, k, work.response_x.data(), work.response_y.data());
+    project_on_tangents(cells, work.response_x.data(), work.response_y.data());
+    const BothColumns tractions{work.rigid_tractions_x[k].data(), work.rigid_tractions_y[k].data()};
+    precondition_both(problem, request, {work.response_x.data(), work.response_y.data()}, work,
+                      tractions);
+    stiffness[static_cast<int>(k)] = free_load(cells, tractions.x, tractions.y, work);
   }
-  const glm::dmat3& yields = problem.support.slides;
-  const SurfaceLoad more = glm::inverse(glm::dmat3(1.0) + request.share * answers * yields) *
-                           (request.share * asked - load);
-  const SurfaceMotion moves = yields * more;
+  const glm::dmat3& compliance = problem.support.slides;
+  const SurfaceLoad more = glm::inverse(glm::dmat3(1.0) + request.share * stiffness * compliance) *
+                           (request.share * preconditioned - load);
+  const SurfaceMotion motion = compliance * more;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double share = -moves[static_cast<int>(k)];
-    add_scaled(cells.count, share, work.rigid_asks_x[k].data(), cells.asked_x);
-    add_scaled(cells.count, share, work.rigid_asks_y[k].data(), cells.asked_y);
+    const double share = -motion[static_cast<int>(k)];
+    add_scaled(cells.count, share, work.rigid_tractions_x[k].data(), cells.preconditioned_x);
+    add_scaled(cells.count, share, work.rigid_tractions_y[k].data(), cells.preconditioned_y);
   }
-  // The residual is what the cells see of it and the body's motion.
-  const double square =
-      dot(cells.count, cells.residual_x, cells.residual_y, cells.asked_x, cells.asked_y) +
-      glm::dot(yields * load, answered_load(cells, cells.asked_x, cells.asked_y, work));
+  // The residual has two parts: the cells' and the body's motion.
+  const double residual_product =
+      dot(cells.count, cells.residual_x, cells.residual_y, cells.preconditioned_x,
+          cells.preconditioned_y) +
+      glm::dot(compliance * load,
+               free_load(cells, cells.preconditioned_x, cells.preconditioned_y, work));
   load += more;
-  return square;
+  return residual_product;
 }
 
 /// The step to the discs' results.
@@ -128,67 +132,69 @@ TractionStep step_to_results(const DiscColumns& discs, const TractionColumns& ce
     const double y = discs.result_y[k];
     const double limit = cells.limit[k];
     const bool rim = limit > 0.0 && x * x + y * y >= kOnRim * limit * limit;
-    cells.step_x[k] = x - cells.traction_x[k];
-    cells.step_y[k] = y - cells.traction_y[k];
+    cells.direction_x[k] = x - cells.traction_x[k];
+    cells.direction_y[k] = y - cells.traction_y[k];
     step.slips += rim ? 1.0 : 0.0;
     step.clipped += rim && cells.slips[k] == 0.0 ? 1.0 : 0.0;
   }
-  step.slope = slope_along(cells, cells.step_x, cells.step_y);
+  step.slope = slope_along(cells, cells.direction_x, cells.direction_y);
   return step;
 }
 
 }  // namespace
 
-void ask_for_both(const PatchProblem& problem, const StepRequest& request,
-                  const BothColumns& wanted, PatchWork& work, const BothColumns& asked) {
+void precondition_both(const PatchProblem& problem, const StepRequest& request,
+                       const BothColumns& residual, PatchWork& work,
+                       const BothColumns& preconditioned) {
   if (!request.alone) {
-    ask_for(problem, work.inverses.x, wanted.x, work, asked.x);
-    ask_for(problem, work.inverses.y, wanted.y, work, asked.y);
+    precondition(problem, work.inverses.x, residual.x, work, preconditioned.x);
+    precondition(problem, work.inverses.y, residual.y, work, preconditioned.y);
     return;
   }
-  for (std::size_t k = 0; k < work.asked_x.size(); ++k) {
-    asked.x[k] = request.stiffness * wanted.x[k];
-    asked.y[k] = request.stiffness * wanted.y[k];
+  for (std::size_t k = 0; k < work.preconditioned_x.size(); ++k) {
+    preconditioned.x[k] = request.stiffness * residual.x[k];
+    preconditioned.y[k] = request.stiffness * residual.y[k];
   }
   const std::span<const double>& root = problem.rims.root;
   for (std::size_t k = 0; k < root.size(); ++k) {
     const double share = root[k] * root[k];
-    asked.x[k] *= share;
-    asked.y[k] *= share;
+    preconditioned.x[k] *= share;
+    preconditioned.y[k] *= share;
   }
 }
 
-TractionSweep find_balanced_step(const PatchProblem& problem, const StepRequest& request,
-                                 const TractionColumns& cells, PatchWork& work) {
+TractionIteration find_balanced_step(const PatchProblem& problem, const StepRequest& request,
+                                     const TractionColumns& cells, PatchWork& work) {
   DiscColumns& discs = work.discs;
   set_columns(problem, request.stiffness, discs);
-  const glm::dmat3& yields = problem.support.slides;
+  const glm::dmat3& compliance = problem.support.slides;
   const SurfaceLoad before = load_of(discs, cells.traction_x, cells.traction_y);
-  // How far the body goes when each cell answers on its own: with that the others' ways are found,
-  // for without it all might seem to slip.
+  // How far the body goes when each cell changes as if alone: the residuals are found with that,
+  // for without it all cells might seem to slip.
   const double* const stiffness = discs.stiffness.data();
   find_trials_alone(cells.count, stiffness, cells.traction_x, cells.target_x, cells.moved_x,
                     discs.trial_x.data());
   find_trials_alone(cells.count, stiffness, cells.traction_y, cells.target_y, cells.moved_y,
                     discs.trial_y.data());
   const BodyAnswer alone =
-      project_in_balance({yields, before, SurfaceLoad(0.0)}, cells.limit, discs);
+      project_in_balance({compliance, before, SurfaceLoad(0.0)}, cells.limit, discs);
   TractionColumns moved = cells;
   moved.target_x = work.target_x.data();
   moved.target_y = work.target_y.data();
   take_off_motion(discs, alone.motion, cells.target_x, cells.target_y, work.target_x.data(),
                   work.target_y.data());
-  find_ways(moved, request.stiffness);
-  TractionSweep sweep;
+  find_residuals(moved, request.stiffness);
+  TractionIteration iteration;
   SurfaceLoad load = alone.load;
-  sweep.square = ask_in_balance(problem, request, cells, work, load);
-  const Mix mix{request.share, request.before > 0.0 ? sweep.square / request.before : 0.0};
-  find_trials(moved, mix, stiffness, cells.step_x, cells.step_y, discs.trial_x.data(),
+  iteration.residual_product = precondition_in_balance(problem, request, cells, work, load);
+  const DirectionShares shares{
+      request.share, request.before > 0.0 ? iteration.residual_product / request.before : 0.0};
+  find_trials(moved, shares, stiffness, cells.direction_x, cells.direction_y, discs.trial_x.data(),
               discs.trial_y.data());
-  const SurfaceLoad kept = mix.kept * load_of(discs, cells.step_x, cells.step_y);
-  project_in_balance({yields, before + kept, load}, cells.limit, discs);
-  sweep.step = step_to_results(discs, cells);
-  return sweep;
+  const SurfaceLoad carried = shares.beta * load_of(discs, cells.direction_x, cells.direction_y);
+  project_in_balance({compliance, before + carried, load}, cells.limit, discs);
+  iteration.step = step_to_results(discs, cells);
+  return iteration;
 }
 
 }  // namespace torsion

@@ -85,8 +85,8 @@ void find_held(std::size_t count, const double* __restrict slips, const double* 
 /// to += share * change.
 /// @param sums  of the changes' sizes, out
 TORSION_WIDEST
-void foresee(std::size_t count, double share, const double* __restrict change,
-             double* __restrict to, Wide& __restrict sums) {
+void extrapolate(std::size_t count, double share, const double* __restrict change,
+                 double* __restrict to, Wide& __restrict sums) {
   Wide total{};
   std::size_t cell = 0;
   for (; cell + kLanes <= count; cell += kLanes) {
@@ -141,9 +141,9 @@ void add_slope(std::span<const double> target, std::span<const double> moved,
 }
 
 /// @return the sum of the changes' sizes
-double foresee(double share, std::span<const double> change, std::span<double> to) {
+double extrapolate(double share, std::span<const double> change, std::span<double> to) {
   Wide sums;
-  foresee(change.size(), share, change.data(), to.data(), sums);
+  extrapolate(change.size(), share, change.data(), to.data(), sums);
   return sum_of(sums);
 }
 
@@ -291,8 +291,8 @@ void add_rims(const PatchProblem& problem, const PatchColumns& columns, const Pa
   add_rims(problem, InfluenceKind::kZZ, sign, change.pressure, change.depression);
 }
 
-ForeseenShares best_shares(const PatchRows& rows, const PatchColumns& columns, bool coupled,
-                           double most) {
+ExtrapolationShares best_shares(const PatchRows& rows, const PatchColumns& columns, bool coupled,
+                                double most) {
   const PatchSurface& from = rows.surface;
   const PatchChange& change = rows.change;
   Slope normal;
@@ -311,8 +311,8 @@ ForeseenShares best_shares(const PatchRows& rows, const PatchColumns& columns, b
   return {share(normal), share(tangential)};
 }
 
-void foresee_cells(const PatchRows& rows, const ForeseenShares& shares, const PatchColumns& columns,
-                   PatchProblem& problem) {
+void extrapolate_cells(const PatchRows& rows, const ExtrapolationShares& shares,
+                       const PatchColumns& columns, PatchProblem& problem) {
   const auto [normal, tangential] = shares;
   const std::size_t count = rows.geometry.size();
   const PatchSurface& from = rows.surface;
@@ -322,12 +322,12 @@ void foresee_cells(const PatchRows& rows, const ForeseenShares& shares, const Pa
   carry_on(count, tangential, from.moved_y.data(), change.moved_y.data(), to.moved_y.data());
   carry_on(count, normal, from.depression.data(), change.depression.data(), to.depression.data());
   if (normal > 0.0) {
-    problem.foreseen_pressure = normal * foresee(normal, change.pressure, to.pressure);
+    problem.extrapolated_pressure = normal * extrapolate(normal, change.pressure, to.pressure);
   }
   if (tangential > 0.0) {
-    problem.foreseen_traction =
-        tangential * (foresee(tangential, change.traction_x, to.traction_x) +
-                      foresee(tangential, change.traction_y, to.traction_y));
+    problem.extrapolated_traction =
+        tangential * (extrapolate(tangential, change.traction_x, to.traction_x) +
+                      extrapolate(tangential, change.traction_y, to.traction_y));
   }
 }
 

@@ -65,7 +65,7 @@ void add_rims(const PatchProblem& problem, const PatchColumns& columns, const Pa
               double sign);
 
 /// Of what the last step changed.
-struct ForeseenShares {
+struct ExtrapolationShares {
   double normal = 0.0;      // of the pressures and depressions
   double tangential = 0.0;  // of what is along the surface
 };
@@ -73,13 +73,13 @@ struct ForeseenShares {
 /// How much of it to change again before anything else: as much as brings the complementary energy
 /// of this step's depths and targets to its least along it, 0 to `most`.
 /// @param coupled  pressures and tractions change together
-ForeseenShares best_shares(const PatchRows& rows, const PatchColumns& columns, bool coupled,
-                           double most);
+ExtrapolationShares best_shares(const PatchRows& rows, const PatchColumns& columns, bool coupled,
+                                double most);
 
-/// Fills the displacements and carries all on by these shares. Sets what of it is foreseen in
+/// Fills the displacements and carries all on by these shares. Sets what of it is extrapolated in
 /// `problem`.
-void foresee_cells(const PatchRows& rows, const ForeseenShares& shares, const PatchColumns& columns,
-                   PatchProblem& problem);
+void extrapolate_cells(const PatchRows& rows, const ExtrapolationShares& shares,
+                       const PatchColumns& columns, PatchProblem& problem);
 
 /// Puts the columns back into the rows.
 /// @param support_x, support_y  m: the body's motion, which what is held is with; empty without

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 
-#include "systems/contact/support/footing.hpp"
+#include "systems/contact/support/support_fit.hpp"
 #include "systems/half_space/influence.hpp"
 #include "systems/patch/support.hpp"
 
@@ -21,7 +21,7 @@ using AllMatrix = Eigen::Matrix<double, kAll, kAll>;
 
 constexpr std::uint32_t kDiscSide = 20;  // squares across the disc
 /// The contact's ellipse has the cells' second moments; what it holds may reach beyond it, as a
-/// rectangle's corners do, and grow by some before the footing is laid anew.
+/// rectangle's corners do, and grow by some before the support is refitted.
 constexpr double kHolds = 1.4;
 /// At nu < 0.5 pressure and traction help each other: a bonded punch is 9.9 % stiffer than one
 /// without friction at nu = 0, ln 3 (Johnson, Contact Mechanics, 1985, 3.8).
@@ -78,12 +78,12 @@ Eigen::MatrixXd factor_of_stiffness(const Eigen::MatrixXd& influences,
   return stiffness.llt().matrixL();
 }
 
-/// L of S for a footing's contact in the footing's axes (tangent_x, tangent_y, normal), axis by
-/// axis.
+/// L of S for a support fit's contact in the support fit's axes (tangent_x, tangent_y, normal),
+/// axis by axis.
 AllMatrix scaled_factor(const DiscStiffness& disc, const Elasticity& elasticity,
-                        const Footing& footing) {
-  const double radius = std::min(kHolds * footing.extent, footing.reach);
-  const double share = radius / footing.reach;
+                        const SupportFit& support_fit) {
+  const double radius = std::min(kHolds * support_fit.extent, support_fit.reach);
+  const double share = radius / support_fit.reach;
   const double nu = elasticity.poisson_ratio;
   const double coupled = 1.0 + kCoupledStiffer * (1.0 - 2.0 * nu);
   const double unit = std::sqrt(coupled * elasticity.shear_modulus() * radius);
@@ -95,16 +95,17 @@ AllMatrix scaled_factor(const DiscStiffness& disc, const Elasticity& elasticity,
   lower.topLeftCorner<2 * kTerms, 2 * kTerms>() = unit * tangential;
   lower.bottomRightCorner<kTerms, kTerms>() = unit * along_normal * normal;
   for (int row = 0; row < kAll; ++row) {
-    // A term of the disc's coordinates over one of the footing's, to its degree.
+    // A term of the disc's coordinates over one of the support fit's, to its degree.
     lower.row(row) *= std::pow(share, kSupportDegrees[static_cast<std::size_t>(row % kTerms)]);
   }
   return lower;
 }
 
-/// Of a response, which has 16 rows an axis and body axes, the 45 x 45 in the footing's.
-AllMatrix in_footing(const Footing& footing, const FootingResponse& response) {
-  const std::array<glm::dvec3, 3> axes{footing.tangent_x, footing.tangent_y, footing.normal};
-  AllMatrix half = AllMatrix::Zero();  // rows in the footing's axes, columns in the body's
+/// Of a response, which has 16 rows an axis and body axes, the 45 x 45 in the support fit's.
+AllMatrix in_support_fit(const SupportFit& support_fit, const SupportResponse& response) {
+  const std::array<glm::dvec3, 3> axes{support_fit.tangent_x, support_fit.tangent_y,
+                                       support_fit.normal};
+  AllMatrix half = AllMatrix::Zero();  // rows in the support fit's axes, columns in the body's
   AllMatrix matrix = AllMatrix::Zero();
   constexpr int kColumn = kSupportColumn;
   const auto value = [&response](int axis_to, int row, int axis_from, int column) {
@@ -133,9 +134,11 @@ AllMatrix in_footing(const Footing& footing, const FootingResponse& response) {
   return 0.5 * (matrix + matrix.transpose());
 }
 
-/// response += change, which is in the footing's axes.
-void add_in_body(const Footing& footing, const AllMatrix& change, FootingResponse& response) {
-  const std::array<glm::dvec3, 3> axes{footing.tangent_x, footing.tangent_y, footing.normal};
+/// response += change, which is in the support fit's axes.
+void add_in_body(const SupportFit& support_fit, const AllMatrix& change,
+                 SupportResponse& response) {
+  const std::array<glm::dvec3, 3> axes{support_fit.tangent_x, support_fit.tangent_y,
+                                       support_fit.normal};
   constexpr int kColumn = kSupportColumn;
   for (int body_to = 0; body_to < 3; ++body_to) {
     for (int body_from = 0; body_from < 3; ++body_from) {
@@ -180,11 +183,11 @@ DiscStiffness make_disc_stiffness() {
   return stiffness;
 }
 
-bool make_definite(const DiscStiffness& disc, const Elasticity& elasticity, const Footing& footing,
-                   FootingResponse& response) {
-  const AllMatrix lower = scaled_factor(disc, elasticity, footing);
+bool make_definite(const DiscStiffness& disc, const Elasticity& elasticity,
+                   const SupportFit& support_fit, SupportResponse& response) {
+  const AllMatrix lower = scaled_factor(disc, elasticity, support_fit);
   AllMatrix relative;
-  relative.noalias() = in_footing(footing, response) * lower;
+  relative.noalias() = in_support_fit(support_fit, response) * lower;
   relative = (lower.transpose() * relative).eval();
   AllMatrix shifted = relative;
   shifted.diagonal().array() -= kLeastResponse;
@@ -199,7 +202,7 @@ bool make_definite(const DiscStiffness& disc, const Elasticity& elasticity, cons
       lower.transpose().triangularView<Eigen::Upper>().solve(solver.eigenvectors());
   AllMatrix change;
   change.noalias() = back * lacking.asDiagonal() * back.transpose();
-  add_in_body(footing, change, response);
+  add_in_body(support_fit, change, response);
   return true;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Tractions onto their discs of friction, on a body that gives way as a whole. Source: Becker and
+// Tractions onto their discs of friction, on a body that deflects as a whole. Source: Becker and
 // Fadili, A quasi-Newton proximal splitting method, NIPS 2012: in a metric that is diagonal but for
 // a few rows a projection is a search for as many numbers, here the body's motion.
 

@@ -18,7 +18,7 @@ namespace {
 // charged later.
 constexpr double kMostCharge = 0.25;
 constexpr double kMostDrag = 0.02;
-// Of what is held: grids laid anew lend up to 0.2 % of it.
+// Of what is held: regridding lends up to 0.2 % of it.
 constexpr double kMostLent = 0.01;
 // Likewise, where a grid moves: the longer a tool rolls in steps so small that little drag comes of
 // them, the more it would owe.
@@ -30,7 +30,7 @@ struct EnergySums {
 };
 
 /// @param sunk  m: PatchSolution::sunk
-/// @param left_x, left_y, left_z  m: the displacements beyond what was asked for, out
+/// @param left_x, left_y, left_z  m: the displacements beyond their targets, out
 TORSION_WIDEST
 void add_up(std::size_t count, const PatchColumns& columns, const double* __restrict sunk,
             double* __restrict left_x, double* __restrict left_y, double* __restrict left_z,
@@ -62,12 +62,12 @@ void add_up(std::size_t count, const PatchColumns& columns, const double* __rest
   sums = total;
 }
 
-/// What is left to do times what it asks for, Pa m.
-double asked_for(const PatchProblem& problem, const LocalInverse& inverse,
-                 const std::vector<double>& left, PatchWork& work) {
+/// u' B u of displacements u with B the preconditioner, Pa m.
+double preconditioned_product(const PatchProblem& problem, const LocalInverse& inverse,
+                              const std::vector<double>& left, PatchWork& work) {
   const std::uint32_t side = problem.influences.side;
   to_border(side, left.data(), work.bordered.data());
-  return wanted_by_asked(inverse, 1.0 / problem.compliance, side, work.bordered.data());
+  return quadratic_form(inverse, 1.0 / problem.compliance, side, work.bordered.data());
 }
 
 /// The energy that the cells hold, and the body as a whole, J.
@@ -76,13 +76,13 @@ double held_energy(const PatchSolution& solution, double cell_area) {
   PatchWork& work = solution.work;
   EnergySums sums;
   add_up(whole_lanes(solution.columns.pressure.size()), solution.columns, solution.sunk.data(),
-         work.moves_x.data(), work.moves_y.data(), work.residual_x.data(), sums);
-  const double asked = asked_for(problem, work.inverses.x, work.moves_x, work) +
-                       asked_for(problem, work.inverses.y, work.moves_y, work) +
-                       asked_for(problem, work.inverses.z, work.residual_x, work);
+         work.response_x.data(), work.response_y.data(), work.residual_x.data(), sums);
+  const double product = preconditioned_product(problem, work.inverses.x, work.response_x, work) +
+                         preconditioned_product(problem, work.inverses.y, work.response_y, work) +
+                         preconditioned_product(problem, work.inverses.z, work.residual_x, work);
   const double stiffest = problem.coupled ? kStiffestCoupled : kStiffest;
   return solution.held_by_body +
-         cell_area * (0.5 * sum_of(sums.stored) - sum_of(sums.left) + 0.5 * stiffest * asked);
+         cell_area * (0.5 * sum_of(sums.stored) - sum_of(sums.left) + 0.5 * stiffest * product);
 }
 
 /// A step's motion as the region's stiffness sees it.
@@ -144,7 +144,7 @@ glm::dvec3 translation_by_others(const RegionSupport& support, const glm::dvec3&
          glm::cross(support.rotation_by_others, point - support.about);
 }
 
-/// Writes what the next step's work is reckoned by.
+/// Writes what the next step's work is computed from.
 void note_forces(const State& state, std::uint32_t region, PatchEnergy& energy) {
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const RegionNormal& normal = state.regions.at<RegionNormal>(region);

@@ -22,7 +22,7 @@ struct PatchSolution {
   const PatchProblem& problem;
   const PatchColumns& columns;
   /// m, into the body, whole lanes: how far the whole body's motion has gone beyond what the depths
-  /// have of it already; zero where the body gives way as a half-space does.
+  /// have of it already; zero where the body deflects as a half-space does.
   std::span<const double> sunk;
   double held_by_body;  // J: by the whole body under the region's load, beyond the half-space
   PatchWork& work;      // of the solution; overwritten
@@ -31,7 +31,7 @@ struct PatchSolution {
 /// Where a step's solution has its beginning.
 enum class SolutionStart : std::uint32_t {
   kNone,       // there is none before it
-  kOtherGrid,  // in that of other cells or another footing, which held something else
+  kOtherGrid,  // in that of other cells or another support fit, which held something else
   kMovedGrid,  // in the last step's, of which cells have come and gone
   kLastStep
 };
@@ -40,19 +40,19 @@ enum class SolutionStart : std::uint32_t {
 /// tool's holder beyond what the region held: the work of a step is at least what the held energy
 /// grows by. What is lacking is charged as a drag along the step's motion, shared out as by the
 /// stiffness of a region that sticks. Where that drag would be too large the rest is owed.
-/// So a solution that lags behind the tool, as one does that ends after few sweeps, gives no
+/// So a solution that lags behind the tool, as one does that ends after few iterations, gives no
 /// energy. Compare: passivity control, Hannaford and Ryu, IEEE Trans. Robotics and Automation 18
-/// (2002) 1, which knows the work but not what is held. What a grid that was laid anew holds more
+/// (2002) 1, which knows the work but not what is held. What a region holds more after regridding
 /// than the one before it is no lag: it is lent, and taken back off the normal force while the tool
 /// lifts off. Writes PatchEnergy, RegionNormal, RegionFriction.
 ///
-/// What a region's cells hold is told from tractions t that need not be those of what was asked
-/// for: with displacements u by them and r = u - w what these are beyond that, w having been asked
-/// for, the energy of w is t u / 2 - t r + r A^-1 r / 2, A the influences (complementary energy,
-/// whose slope is r; Johnson, Contact Mechanics, 1985, 5.9). Instead of A^-1 there is the local
-/// inverse, kStiffest times: what is still to be done is paid for in advance, and what it may come
-/// to is never less than what it was. A body that gives way as a whole adds its compliance to A, so
-/// that A^-1 is less. Cells that slip hold what they have.
+/// The energy that a region's cells hold is computed from tractions t that need not be those of the
+/// targets w: with u the displacements by them and r = u - w, the energy of w is
+/// t u / 2 - t r + r A^-1 r / 2, A the influences (complementary energy, whose slope is r; Johnson,
+/// Contact Mechanics, 1985, 5.9). Instead of A^-1 there is the local inverse, kStiffest times: so
+/// that the energy of the residual is counted in advance, and never for less than it will be. A
+/// body that deflects as a whole adds its compliance to A, so that A^-1 is less. Cells that slip
+/// hold what they have.
 /// @pre the displacements in the columns are those by the tractions alone, the targets likewise
 void settle_energy(const Model& model, State& state, std::uint32_t region,
                    const PatchSolution& solution, SolutionStart start);

@@ -16,7 +16,8 @@
 namespace torsion {
 namespace {
 
-constexpr double kSmallestFill = 0.74;       // over a new grid's: below it it is laid anew, smaller
+constexpr double kSmallestFill =
+    0.74;  // over a new grid's: below it the region is regridded, smaller
 constexpr double kOtherShape = 1.25;         // of a doubling: so far cells may be from their shape
 constexpr std::uint32_t kSettlingSteps = 8;  // on other axes
 constexpr double kMostly = 0.5;  // share of a rim's cell that has to be in contact for it to count
@@ -152,7 +153,7 @@ bool shift_frame(const Grid& grid, const CellBox& box, CellMove& move) {
   const glm::dvec2 half = 0.5 * cell_size(grid) * glm::dvec2(box.end - box.first);
   const glm::dvec2 growth =
       tabulated_half_size(half / fill_of_new(grid.side)) / grid.frame.half_size;
-  // With a free row or column on either side, or the next step would lay it anew.
+  // With a free row or column on either side, or the next step would regrid.
   const glm::ivec2 room = glm::ivec2(static_cast<int>(grid.side)) - (box.end - box.first) -
                           glm::ivec2(static_cast<int>(patch_spare(grid.side)), 0);
   if (growth.x != growth.y || growth.x <= 0.8 || growth.x >= 1.2 || std::min(room.x, room.y) < 2) {
@@ -271,7 +272,7 @@ void lay_frame(const Grid& grid, const RegionPoints& contact, const GridFit& fit
 
 /// What sticks goes with the tool in this step, too. Cells that only followed a step later would
 /// lie at other depths in between, for which nobody has worked.
-void foresee_carrier(const Model& model, State& state, std::uint32_t region) {
+void extrapolate_carrier(const Model& model, State& state, std::uint32_t region) {
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const double share = state.regions.at<RegionFriction>(region).stick_share;
   const MotionOverBody motion = motion_over_body(model, state, region);
@@ -299,7 +300,7 @@ std::uint32_t patch_spare(std::uint32_t side) {
   return side % 2 == 0 && side >= kCoarsest ? 1 : 0;
 }
 
-void lay_around_loaded(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
+void regrid_around_loaded(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const Grid grid = grid_of(context, region);
   const GridFit fit = fit_of(grid, region, contact);
   if (fit.box.end.x == 0 || !(fit.cut || fit.too_small || fit.other_shape || fit.axes.is_askew())) {
@@ -316,7 +317,7 @@ void lay_around_loaded(StepContext& context, std::uint32_t region, const RegionP
   move_cells(grid, context.patch, move, depth, fit.takes_axes() ? reach : 0.0);
   std::uint32_t& event = context.state.regions.at<RegionWrench>(region).event_now;
   if (event == 0 && !move.keeps_cells()) {
-    event = static_cast<std::uint32_t>(RegionEvent::kGridLaidAnew);
+    event = static_cast<std::uint32_t>(RegionEvent::kRegridded);
   }
   PatchState& state = context.state.regions.at<PatchState>(region);
   state.moved = 1;
@@ -336,7 +337,7 @@ void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints
     place_new_grid(context, region, contact);
     return;
   }
-  lay_around_loaded(context, region, contact);
+  regrid_around_loaded(context, region, contact);
   turn_normal_to(state.regions.at<RegionFrame>(region),
                  state.regions.at<Overlap>(region).mean_normal);
 }
@@ -348,7 +349,7 @@ void find_patch_cells(StepContext& context, std::uint32_t region, const RegionPo
     center_patch(grid, contact, deepest_of_cluster(grid, contact).depth);
     return;
   }
-  foresee_carrier(context.model, context.state, region);
+  extrapolate_carrier(context.model, context.state, region);
   find_cells(grid, contact);
   if (state.resized != 0) {
     look_along_normal(grid, contact);

@@ -20,7 +20,7 @@ struct GridLayout {
 };
 
 /// Share of a new grid's side that the loaded cells take up: no more than what leaves a free row on
-/// either side, or the next step would lay it anew: of a contact in the middle half a cell more on
+/// either side, or the next step would regrid: of a contact in the middle half a cell more on
 /// either side has no cell's centre in it.
 double fill_of_new(std::uint32_t side);
 
@@ -45,7 +45,7 @@ void lay_along_contact(const Grid& grid, const RegionPoints& contact, double dep
                        const glm::dvec2& loaded);
 
 /// Moves the grid's origin along its own plane and back to the body's surface. The material's
-/// motion, which is told at the origin, is told there from then on.
+/// motion, which is given for the origin, is given for the new origin from then on.
 void shift_origin(const Grid& grid, const glm::dvec2& shift);
 
 /// Where the cells of a new grid lie among those of the old one, both counted from the centre of
@@ -99,7 +99,7 @@ glm::dvec2 patch_middle(std::uint32_t side);
 /// middle: 1, or 0 where the grid is too coarse to spare one or odd already.
 std::uint32_t patch_spare(std::uint32_t side);
 
-/// ContactLaw::follow. Moves a region's grid by whole cells, or lays it anew, when the cells that
+/// ContactLaw::follow. Moves a region's grid by whole cells, or regrids, when the cells that
 /// carry pressure come to its edge, leave much of it empty, or when a point of the contact lies
 /// outside that the pressure cannot keep away. What the cells hold goes with their places. A region
 /// without force begins anew.
@@ -110,6 +110,6 @@ void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints
 void find_patch_cells(StepContext& context, std::uint32_t region, const RegionPoints& contact);
 
 /// Lays a region's grid around its loaded cells at once.
-void lay_around_loaded(StepContext& context, std::uint32_t region, const RegionPoints& contact);
+void regrid_around_loaded(StepContext& context, std::uint32_t region, const RegionPoints& contact);
 
 }  // namespace torsion

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "systems/contact/support/footing.hpp"
+#include "systems/contact/support/support_fit.hpp"
 #include "systems/half_space/curved_influence.hpp"
 #include "systems/half_space/layer.hpp"
 #include "systems/patch/grid.hpp"
@@ -75,19 +75,19 @@ void take_layer(const RegionTables& at, double thickness, double poisson_ratio) 
 }
 
 /// On a body with body model compliance, whose ports say how far the curvature has to reach. They
-/// count from the step after the region's first, when it has a footing.
+/// count from the step after the region's first, when it has a support fit.
 void take_bend(const RegionTables& at, double poisson_ratio) {
   const RegionFrame& frame = at.state.regions.at<RegionFrame>(at.region);
   const RegionIdentity& identity = at.state.regions.at<RegionIdentity>(at.region);
-  const Footing& footing = at.state.footings.at<Footing>(block_of(identity));
+  const SupportFit& support_fit = at.state.support_fits.at<SupportFit>(block_of(identity));
   const bool was_bent = at.filled.thickness == 0.0 && at.filled.half_size.x > 0.0;
   const bool same_grid = at.filled.half_size == frame.half_size &&
                          glm::dot(at.filled.tangent_x, frame.tangent_x) > kSameAxes;
   const bool laid =
-      at.state.footings.at<FootingResponse>(block_of(identity)).serial != footing.serial;
+      at.state.support_fits.at<SupportResponse>(block_of(identity)).serial != support_fit.serial;
   const InfluenceTables own = layer_influence_tables(at.own(), at.result.tables.side);
   if (laid || (was_bent && !same_grid)) {
-    const SurfaceBend bend = find_surface_bend(at.model, identity.body, footing, frame,
+    const SurfaceBend bend = find_surface_bend(at.model, identity.body, support_fit, frame,
                                                std::max(frame.half_size.x, frame.half_size.y));
     if (bend.reach == 0.0) {
       at.result.changed = was_bent;
@@ -128,11 +128,11 @@ RegionInfluences region_influences(const Model& model, State& state, std::uint32
   const RegionTables at{
       model, state, region, result, values.subspan(count), state.regions.at<LayerGrid>(region)};
   const std::uint32_t block = block_of(identity);
-  const Footing* const footing =
-      state.footings.empty() ? nullptr : &state.footings.at<Footing>(block);
+  const SupportFit* const support_fit =
+      state.support_fits.empty() ? nullptr : &state.support_fits.at<SupportFit>(block);
   if (thickness > 0.0) {
     take_layer(at, thickness, poisson_ratio);
-  } else if (footing != nullptr && footing->reach > 0.0 && footing->on_layer == 0 &&
+  } else if (support_fit != nullptr && support_fit->reach > 0.0 && support_fit->on_layer == 0 &&
              !state.layer_influences.empty() && may_bend(model, identity.body)) {
     take_bend(at, poisson_ratio);
   } else {

@@ -7,30 +7,30 @@
 namespace torsion {
 namespace {
 
-/// A row's share of what is asked for, at eight cells.
-struct AskedOfRow {
+/// What a row adds to the local inverse's product, at eight cells.
+struct InverseOfRow {
   Wide here;    // in the row itself
   Wide beside;  // in the rows below and above
 };
 
-/// @param wanted  at the first of the cells
-TORSION_LANES AskedOfRow ask_row(const LocalInverse& inverse, const double* wanted) {
-  const Wide middle = lanes_at(wanted).all;
+/// @param values  at the first of the cells
+TORSION_LANES InverseOfRow apply_row(const LocalInverse& inverse, const double* values) {
+  const Wide middle = lanes_at(values).all;
   // Sums in pairs, so that a mirror image has the same bits.
-  const Wide sides = lanes_at(wanted - 1).all + lanes_at(wanted + 1).all;
+  const Wide sides = lanes_at(values - 1).all + lanes_at(values + 1).all;
   return {inverse.here * middle + inverse.along_x * sides,
           inverse.along_y * middle + inverse.corner * sides};
 }
 
 /// The inverse at eight columns of all rows.
-TORSION_LANES void ask_columns(const LocalInverse& inverse, std::uint32_t side,
-                               const double* wanted, double* asked) {
+TORSION_LANES void apply_columns(const LocalInverse& inverse, std::uint32_t side,
+                                 const double* values, double* product) {
   const std::size_t width = std::size_t{side} + 2;
-  AskedOfRow low = ask_row(inverse, wanted - width);
-  AskedOfRow middle = ask_row(inverse, wanted);
+  InverseOfRow low = apply_row(inverse, values - width);
+  InverseOfRow middle = apply_row(inverse, values);
   for (std::size_t row = 0; row < side; ++row) {
-    const AskedOfRow high = ask_row(inverse, wanted + (row + 1) * width);
-    lanes_at(asked + row * side).all = middle.here + (low.beside + high.beside);
+    const InverseOfRow high = apply_row(inverse, values + (row + 1) * width);
+    lanes_at(product + row * side).all = middle.here + (low.beside + high.beside);
     low = middle;
     middle = high;
   }
@@ -110,14 +110,14 @@ void to_border(std::uint32_t side, const double* __restrict cells, double* __res
 
 TORSION_WIDEST
 void apply_local_inverse(const LocalInverse& inverse, double scale, std::uint32_t side,
-                         const double* __restrict wanted, double* __restrict asked) {
+                         const double* __restrict residual, double* __restrict preconditioned) {
   const std::size_t width = std::size_t{side} + 2;
   const LocalInverse by = scaled(inverse, scale);
   for (std::size_t row = 0; side < kLanes && row < side; ++row) {
-    const double* const low = wanted + row * width;
+    const double* const low = residual + row * width;
     const double* const middle = low + width;
     const double* const high = middle + width;
-    double* const to = asked + row * side;
+    double* const to = preconditioned + row * side;
     for (std::size_t i = 0; i < side; ++i) {
       to[i] = by.here * middle[i + 1] + by.along_x * (middle[i] + middle[i + 2]) +
               by.along_y * (low[i + 1] + high[i + 1]) +
@@ -127,13 +127,13 @@ void apply_local_inverse(const LocalInverse& inverse, double scale, std::uint32_
   for (std::size_t i = 0; side >= kLanes && i < side; i += kLanes) {
     // The last eight end with the row: some are asked twice, for the same.
     const std::size_t at = i + kLanes <= side ? i : side - kLanes;
-    ask_columns(by, side, wanted + width + 1 + at, asked + at);
+    apply_columns(by, side, residual + width + 1 + at, preconditioned + at);
   }
 }
 
 TORSION_WIDEST
-double wanted_by_asked(const LocalInverse& inverse, double scale, std::uint32_t side,
-                       const double* __restrict wanted) {
+double quadratic_form(const LocalInverse& inverse, double scale, std::uint32_t side,
+                      const double* __restrict displacement) {
   const std::size_t width = std::size_t{side} + 2;
   const std::size_t count = whole_lanes(side * width);
   // Every pair of neighbours once, and half of each cell itself. The border is zero, so that the
@@ -144,7 +144,7 @@ double wanted_by_asked(const LocalInverse& inverse, double scale, std::uint32_t 
   const double corner = inverse.corner;
   Wide sums{};
   for (std::size_t k = 0; k < count; k += kLanes) {
-    const double* const at = wanted + width + k;
+    const double* const at = displacement + width + k;
     sums +=
         lanes_at(at).all * (here * lanes_at(at).all + along_x * lanes_at(at + 1).all +
                             along_y * lanes_at(at + width).all +
@@ -184,68 +184,71 @@ PressureResidual pressure_residual(std::size_t count, const double* __restrict d
 }
 
 TORSION_WIDEST
-double keep_asked(std::size_t count, const double* __restrict residual, double* __restrict asked) {
+double mask_preconditioned(std::size_t count, const double* __restrict residual,
+                           double* __restrict preconditioned) {
   Wide sums{};
   const Wide none{};
   for (std::size_t k = 0; k < count; k += kLanes) {
     const Wide left = lanes_at(residual + k).all;
-    const Wide all = lanes_at(asked + k).all;
-    const Wide kept = left != 0.0 ? all : none;
-    lanes_at(asked + k).all = kept;
-    sums += left * kept;
+    const Wide all = lanes_at(preconditioned + k).all;
+    const Wide counted = left != 0.0 ? all : none;
+    lanes_at(preconditioned + k).all = counted;
+    sums += left * counted;
   }
   return sum_of(sums);
 }
 
 TORSION_WIDEST
-double mix_pressures(std::size_t count, const double* __restrict residual,
-                     const double* __restrict asked, double kept, double* __restrict step) {
+double next_pressure_direction(std::size_t count, const double* __restrict residual,
+                               const double* __restrict preconditioned, double beta,
+                               double* __restrict direction) {
   Wide sums{};
   const Wide none{};
   for (std::size_t k = 0; k < count; k += kLanes) {
-    const Wide wants = lanes_at(asked + k).all;
-    const Wide mixed = wants + kept * lanes_at(step + k).all;
-    const Wide way = wants != 0.0 ? mixed : none;
-    lanes_at(step + k).all = way;
+    const Wide z = lanes_at(preconditioned + k).all;
+    const Wide mixed = z + beta * lanes_at(direction + k).all;
+    const Wide way = z != 0.0 ? mixed : none;
+    lanes_at(direction + k).all = way;
     sums += lanes_at(residual + k).all * way;
   }
   return sum_of(sums);
 }
 
 TORSION_WIDEST
-SweepChange change_pressures(std::size_t count, double length, const double* __restrict moves,
-                             double* __restrict step, double* __restrict pressure,
-                             double* __restrict depression, double& pull) {
+IterationChange step_pressures(std::size_t count, double alpha, const double* __restrict response,
+                               double* __restrict direction, double* __restrict pressure,
+                               double* __restrict depression, double& tension) {
   Wide most{};
   Wide sums{};
   Wide least{};
   for (std::size_t k = 0; k < count; k += kLanes) {
-    const Wide way = length * lanes_at(step + k).all;
+    const Wide way = alpha * lanes_at(direction + k).all;
     const Wide to = lanes_at(pressure + k).all + way;
-    lanes_at(step + k).all = way;
+    lanes_at(direction + k).all = way;
     lanes_at(pressure + k).all = to;
-    lanes_at(depression + k).all += length * lanes_at(moves + k).all;
+    lanes_at(depression + k).all += alpha * lanes_at(response + k).all;
     const Wide size = way < 0.0 ? -way : way;
     most = size > most ? size : most;
     sums += size;
     least = to < least ? to : least;
   }
-  pull = largest_of(-least);
+  tension = largest_of(-least);
   return {largest_of(most), sum_of(sums)};
 }
 
 TORSION_WIDEST
-void find_pulls(std::size_t count, const double* __restrict pressure, double* __restrict step) {
+void find_tension(std::size_t count, const double* __restrict pressure,
+                  double* __restrict direction) {
   for (std::size_t k = 0; k < count; ++k) {
-    step[k] = larger(-pressure[k], 0.0);
+    direction[k] = larger(-pressure[k], 0.0);
   }
 }
 
 TORSION_WIDEST
-bool lose_cells(std::size_t count, double least_depth, const double* __restrict depth,
-                double* __restrict pressure, double* __restrict traction_x,
-                double* __restrict traction_y, double* __restrict change_pressure,
-                double* __restrict change_x, double* __restrict change_y) {
+bool release_unloaded(std::size_t count, double least_depth, const double* __restrict depth,
+                      double* __restrict pressure, double* __restrict traction_x,
+                      double* __restrict traction_y, double* __restrict change_pressure,
+                      double* __restrict change_x, double* __restrict change_y) {
   const Wide none{};
   Wide lost{};
   for (std::size_t k = 0; k < count; k += kLanes) {

@@ -12,8 +12,8 @@
 
 namespace torsion {
 
-/// How much a sweep changes, Pa.
-struct SweepChange {
+/// How much an iteration changes, Pa.
+struct IterationChange {
   double largest = 0.0;
   double sum = 0.0;  // over the cells, both components
 };
@@ -37,16 +37,16 @@ void multiply(std::size_t count, const double* a, const double* b, double* produ
 /// Cells (side x side) into the middle of ((side + 2) x (side + 2)).
 void to_border(std::uint32_t side, const double* cells, double* bordered);
 
-/// asked = inverse times scale times wanted.
-/// @param wanted  ((side + 2) x (side + 2)), with a border of zeros
-/// @param asked   (side x side) out
+/// The preconditioner: preconditioned = scale times the local inverse times the residual.
+/// @param residual        m, ((side + 2) x (side + 2)), with a border of zeros
+/// @param preconditioned  Pa, (side x side) out
 void apply_local_inverse(const LocalInverse& inverse, double scale, std::uint32_t side,
-                         const double* wanted, double* asked);
+                         const double* residual, double* preconditioned);
 
-/// Sum of what is wanted times what the inverse, times scale, asks for it.
-/// @param wanted  as above, followed by kLanes zeros
-double wanted_by_asked(const LocalInverse& inverse, double scale, std::uint32_t side,
-                       const double* wanted);
+/// u' B u with u the displacement and B scale times the local inverse, Pa m.
+/// @param displacement  as the residual above, followed by kLanes zeros
+double quadratic_form(const LocalInverse& inverse, double scale, std::uint32_t side,
+                      const double* displacement);
 
 // pressures ---------------------------------------------------------------------------------------
 
@@ -62,86 +62,89 @@ struct PressureResidual {
 PressureResidual pressure_residual(std::size_t count, const double* depth, const double* depression,
                                    const double* pressure);
 
-/// asked = 0 where there is no residual.
-/// @return the sum of the residual's squares under the preconditioner
-double keep_asked(std::size_t count, const double* residual, double* asked);
+/// z = 0 where there is no residual: those cells take no part.
+/// @param preconditioned  z, Pa, in and out
+/// @return r' z, Pa m
+double mask_preconditioned(std::size_t count, const double* residual, double* preconditioned);
 
-/// step = what is asked, and `kept` of the last step.
-/// @return the slope of the energy along it, downhill, Pa m
-double mix_pressures(std::size_t count, const double* residual, const double* asked, double kept,
-                     double* step);
+/// The search direction d = z + beta times the last step.
+/// @return r' d, Pa m: the slope of the energy along it, downhill
+double next_pressure_direction(std::size_t count, const double* residual,
+                               const double* preconditioned, double beta, double* direction);
 
-/// Goes `length` of the step, which becomes the change.
-/// @param pull  the largest that there is then, Pa
-SweepChange change_pressures(std::size_t count, double length, const double* moves, double* step,
-                             double* pressure, double* depression, double& pull);
+/// The step: pressure += alpha d, depression += alpha A d; d becomes alpha d.
+/// @param response  A d, m
+/// @param tension   out: the largest negative pressure that there is then, Pa
+IterationChange step_pressures(std::size_t count, double alpha, const double* response,
+                               double* direction, double* pressure, double* depression,
+                               double& tension);
 
-/// step = what takes away the pull.
-void find_pulls(std::size_t count, const double* pressure, double* step);
+/// direction = what takes the tension away.
+void find_tension(std::size_t count, const double* pressure, double* direction);
 
 /// Takes pressure and tractions away where the pressure is not positive or the depth not over the
 /// least.
 /// @param change_pressure, change_x, change_y  Pa, out
 /// @return whether there was any
-bool lose_cells(std::size_t count, double least_depth, const double* depth, double* pressure,
-                double* traction_x, double* traction_y, double* change_pressure, double* change_x,
-                double* change_y);
+bool release_unloaded(std::size_t count, double least_depth, const double* depth, double* pressure,
+                      double* traction_x, double* traction_y, double* change_pressure,
+                      double* change_x, double* change_y);
 
-// The loops of patch/passes.hpp over the tangential tractions.
+// tangential tractions ----------------------------------------------------------------------------
 
 /// All cells of a grid. Those that can carry no load have no limit: they slip, and stay without
 /// traction.
 struct TractionColumns {
   std::size_t count = 0;
   const double *pressure, *friction;
-  double *traction_x, *traction_y;    // Pa
-  const double *target_x, *target_y;  // m
-  double *moved_x, *moved_y;          // m
-  double* slips;                      // 1 or 0
-  double* limit;                      // Pa: of the friction
-  double *residual_x, *residual_y;    // m: what a cell asks to be moved by
-  double *asked_x, *asked_y;          // Pa
-  double *along_x, *along_y;          // unit: of the friction of a cell that slips
-  double* softened;                   // of what turns it: 1 where nothing slips
-  double *step_x, *step_y;            // Pa: the last change
-  double* clips;                      // 1 where a step is cut off at the disc's rim, else 0
-  const double *moves_x, *moves_y;    // m: what it displaces
+  double *traction_x, *traction_y;              // Pa
+  const double *target_x, *target_y;            // m
+  double *moved_x, *moved_y;                    // m
+  double* slips;                                // 1 or 0
+  double* limit;                                // Pa: of the friction
+  double *residual_x, *residual_y;              // m: r, by how much a cell is to be moved
+  double *preconditioned_x, *preconditioned_y;  // Pa: z
+  double *along_x, *along_y;                    // unit: of the friction of a cell that slips
+  double* softened;                             // of what turns it: 1 where nothing slips
+  double *direction_x, *direction_y;            // Pa: d; in between, the last step
+  double* clips;                          // 1 where a step is cut off at the disc's rim, else 0
+  const double *response_x, *response_y;  // m: A d
 };
 
 /// @return true when a traction lies outside its disc
 bool find_limits(const TractionColumns& cells);
 
-/// What is left of every cell's way. Where a cell is at its limit, only the part across its
-/// friction turns it. That part is held back by the slip that there is, |s| / (mu p), on top of the
-/// cell's own compliance: the curvature of the disc (Newton's method on the disc's rim).
+/// The residual: how far every cell is from its target. Of a cell at its limit only the part across
+/// its friction counts, which turns it. That part is reduced by the slip, |s| / (mu p), on top of
+/// the cell's own compliance: the curvature of the disc (Newton's method on the disc's rim).
 /// @param stiffness  Pa/m, of a cell on its own
-void find_ways(const TractionColumns& cells, double stiffness);
+void find_residuals(const TractionColumns& cells, double stiffness);
 
-/// Of displacements or tractions what the cells answer: all of it, or what is across their
-/// friction.
-void keep_answered(const TractionColumns& cells, double* x, double* y);
+/// Of displacements or tractions the part by which cells can change: all of it where they stick,
+/// along the rim of the disc where they slip.
+void project_on_tangents(const TractionColumns& cells, double* x, double* y);
 
-/// Shares of what is asked and of the last step.
-struct Mix {
-  double asked = 1.0;
-  double kept = 0.0;
+/// A search direction is share times z, and beta times the last step.
+struct DirectionShares {
+  double share = 1.0;
+  double beta = 0.0;
 };
 
-/// What a step would do.
+/// What a whole step along the search direction would do.
 struct TractionStep {
-  double slope = 0.0;    // Pa m: of the energy, downhill
+  double slope = 0.0;    // Pa m: r' d, of the energy, downhill
   double slips = 0.0;    // cells with a load that end on their discs' rims
   double clipped = 0.0;  // of those the ones that have stuck
 };
 
-/// Turns what is asked and kept into a step that ends within the discs.
-TractionStep mix_tractions(const TractionColumns& cells, const Mix& mix);
+/// The search direction, cut so that a whole step ends within the discs.
+TractionStep next_traction_direction(const TractionColumns& cells, const DirectionShares& shares);
 
 /// Of the energy along a change of the tractions, downhill, Pa m.
 double slope_along(const TractionColumns& cells, const double* x, const double* y);
 
-/// Goes `length` of the step, which becomes the change.
-SweepChange change_tractions(const TractionColumns& cells, double length);
+/// The step: tractions += alpha d, displacements += alpha A d; d becomes alpha d.
+IterationChange step_tractions(const TractionColumns& cells, double alpha);
 
 /// Sums of squares over the cells, m^2.
 struct TractionResidual {
@@ -156,8 +159,8 @@ struct TractionResidual {
 TractionResidual traction_residual(const TractionColumns& cells, const double* depth,
                                    double stiffness);
 
-/// Cells at their limit whose way left to go leads against their friction do not slip: to let them
-/// go there would give work. What is left is yet to be done.
-void keep_what_is_no_slip(const TractionColumns& cells);
+/// Cells at their limit that are to move against their friction do not slip: that would give work.
+/// Their residual is left to the next step.
+void clear_false_slip(const TractionColumns& cells);
 
 }  // namespace torsion

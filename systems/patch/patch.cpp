@@ -20,25 +20,26 @@
 namespace torsion {
 namespace {
 
-// Of a region that begins or whose grid moved, at most: sweeps of either, of both in all rounds and
-// regions together, and rounds of pressures and tractions in turn. What is left to do then is done
-// in the next steps, of which each has its own sweeps. Where there are more such regions in a step,
-// or many others, they share out what there is, or the step would be long.
-constexpr std::uint32_t kSweepsAnew = 8;
-constexpr std::uint32_t kSweepsOfAll = 16;
-constexpr std::uint32_t kSweepsOfStep = 24;  // with those of the other regions
+// Of a region that begins or whose grid moved, at most: iterations of either, of both in all rounds
+// and regions together, and rounds of pressures and tractions in turn. What is left to do then is
+// done in the next steps, of which each has its own iterations. Where there are more such regions
+// in a step, or many others, they share out what there is, or the step would be long.
+constexpr std::uint32_t kIterationsAnew = 8;
+constexpr std::uint32_t kIterationsOfAll = 16;
+constexpr std::uint32_t kIterationsOfStep = 24;  // with those of the other regions
 constexpr std::uint32_t kRoundsAnew = 8;
 constexpr double kSkipAnew = 1e-5;  // the residual that will do then
-// Of the last step's change. Steps that end early must not foresee more: an error that a step's
-// sweeps leave to the share r comes back as r (1 + s) and -r s of the last two, with s what is
-// foreseen; the roots of x^2 = r (1 + s) x - r s are within 1 for every r < 1 only where s <= 1.
-constexpr double kMostForesight = 1.0;
+// Of the last step's change. Steps that end early must not extrapolate more: an error that a step's
+// iterations leave to the share r comes back as r (1 + s) and -r s of the last two, with s what is
+// extrapolated; the roots of x^2 = r (1 + s) x - r s are within 1 for every r < 1 only where s
+// <= 1.
+constexpr double kMostExtrapolation = 1.0;
 // A contact that rolls: material comes in that no earlier step tells of, and leaves with what is
-// known of it. With two sweeps a step the friction of rolling with spin was 2.3 % off the largest,
-// with these 0.8 %, as with any more (patch_steady_rolling_test.cpp). A contact rolls where the
-// tool tilts over it in a step by so much that its rim's depth changes by this share of the mean,
-// and more.
-constexpr std::uint32_t kSweepsOfRolling = 8;  // at most
+// known of it. With two iterations a step the friction of rolling with spin was 2.3 % off the
+// largest, with these 0.8 %, as with any more (patch_steady_rolling_test.cpp). A contact rolls
+// where the tool tilts over it in a step by so much that its rim's depth changes by this share of
+// the mean, and more.
+constexpr std::uint32_t kIterationsOfRolling = 8;  // at most
 constexpr double kRolls = 2e-3;
 
 /// The motion of this step along that of the last one, as a share of it: 1 in steady motion, -1
@@ -55,12 +56,12 @@ double share_of_last(const Patch& patch, double deepened) {
 }
 
 /// How much of the last step's change to expect again.
-ForeseenShares foreseen_shares(const Patch& patch) {
+ExtrapolationShares extrapolation_shares(const Patch& patch) {
   if (has_support(patch)) {
-    const double share = std::clamp(patch.own.along_last, 0.0, kMostForesight);
+    const double share = std::clamp(patch.own.along_last, 0.0, kMostExtrapolation);
     return {share, share};
   }
-  return best_shares(patch.rows, patch.columns, patch.problem.coupled, kMostForesight);
+  return best_shares(patch.rows, patch.columns, patch.problem.coupled, kMostExtrapolation);
 }
 
 /// Whether the contact rolls in this step (kRolls).
@@ -72,11 +73,11 @@ bool rolls(const Patch& patch) {
 }
 
 /// As a step solves whose pressures have far to go.
-/// @param sweeps  at most
-void solve_longer(Patch& patch, std::uint32_t sweeps) {
-  const std::uint32_t least = patch.model.settings.sweeps;
-  patch.problem.sweeps = std::max(least, std::min(kSweepsAnew, sweeps));
-  patch.problem.sweeps_of_rounds = std::max(least, sweeps);
+/// @param iterations  at most
+void solve_longer(Patch& patch, std::uint32_t iterations) {
+  const std::uint32_t least = patch.model.settings.iterations;
+  patch.problem.iterations = std::max(least, std::min(kIterationsAnew, iterations));
+  patch.problem.iterations_of_rounds = std::max(least, iterations);
   patch.problem.rounds = kRoundsAnew;
   patch.problem.skip = kSkipAnew;
   patch.problem.settled = 0.0;
@@ -84,8 +85,8 @@ void solve_longer(Patch& patch, std::uint32_t sweeps) {
 
 /// After the grid has moved, or at a region's beginning: displacements of the tractions that are
 /// there.
-/// @param sweeps  at most
-void start_anew(Patch& patch, std::uint32_t sweeps) {
+/// @param iterations  at most
+void start_anew(Patch& patch, std::uint32_t iterations) {
   const PatchColumns& columns = patch.columns;
   for (std::size_t cell = 0; cell < patch.rows.tractions.size(); ++cell) {
     if (columns.pressure[cell] <= 0.0 || columns.depth[cell] == kNoContact) {
@@ -108,7 +109,7 @@ void start_anew(Patch& patch, std::uint32_t sweeps) {
     patch.rows.tractions[cell].traction =
         -glm::dvec2(columns.traction_x[cell], columns.traction_y[cell]);
   }
-  solve_longer(patch, sweeps);
+  solve_longer(patch, iterations);
 }
 
 /// A pressure to measure changes by: the mean of what is there, or what the depth will ask for.
@@ -126,7 +127,7 @@ double contact_radius(const Patch& patch, const PatchSums& sums) {
   return std::sqrt(sums.loaded_cells * cell_area(patch.frame, patch.side) / std::numbers::pi);
 }
 
-/// Static friction gives way to dynamic with the path slipped, and comes back with the elastic
+/// Static friction falls to dynamic with the path slipped, and comes back with the elastic
 /// path.
 /// @param radius  m, of the contact
 void update_kinetic_shares(const Patch& patch, double force, double radius) {
@@ -224,33 +225,33 @@ SolutionStart start_of(const Patch& patch) {
   if (patch.own.started == 0) {
     return SolutionStart::kNone;
   }
-  if (patch.own.resized != 0 || patch.problem.support.laid_anew) {
+  if (patch.own.resized != 0 || patch.problem.support.refitted) {
     return SolutionStart::kOtherGrid;
   }
   return patch.own.moved != 0 ? SolutionStart::kMovedGrid : SolutionStart::kLastStep;
 }
 
-/// How many sweeps a region gets in this step at most.
-struct SweepLimits {
+/// How many iterations a region gets in this step at most.
+struct IterationLimits {
   std::uint32_t anew = 0;  // one that is_anew or settles
   std::uint32_t of_rolling = 0;
 };
 
 /// Where the solution of this step starts from, and how long it may take.
-void begin_solution(Patch& patch, const SweepLimits& sweeps) {
+void begin_solution(Patch& patch, const IterationLimits& iterations) {
   if (is_anew(patch.own)) {
-    foresee_cells(patch.rows, {}, patch.columns, patch.problem);
-    start_anew(patch, sweeps.anew);
+    extrapolate_cells(patch.rows, {}, patch.columns, patch.problem);
+    start_anew(patch, iterations.anew);
     set_targets(patch.motion, patch.places, patch.columns);
     return;
   }
   set_targets(patch.motion, patch.places, patch.columns);
-  foresee_cells(patch.rows, foreseen_shares(patch), patch.columns, patch.problem);
-  let_go_cells(patch.problem, patch.columns, patch.work, kNoContact);
+  extrapolate_cells(patch.rows, extrapolation_shares(patch), patch.columns, patch.problem);
+  release_cells(patch.problem, patch.columns, patch.work, kNoContact);
   if (patch.own.settling > 0) {
-    solve_longer(patch, sweeps.anew);
+    solve_longer(patch, iterations.anew);
   } else if (rolls(patch)) {
-    patch.problem.sweeps = std::max(patch.problem.sweeps, sweeps.of_rolling);
+    patch.problem.iterations = std::max(patch.problem.iterations, iterations.of_rolling);
   }
 }
 
@@ -262,7 +263,7 @@ void forget_change(const PatchChange& change) {
   }
 }
 
-void solve_region(StepContext& context, std::uint32_t region, const SweepLimits& sweeps) {
+void solve_region(StepContext& context, std::uint32_t region, const IterationLimits& iterations) {
   const RegionCarrier carrier = context.state.regions.at<RegionCarrier>(region);
   Patch patch = patch_of(context, region);
   const std::uint32_t settling = patch.own.settling;
@@ -275,7 +276,7 @@ void solve_region(StepContext& context, std::uint32_t region, const SweepLimits&
   const double depth = largest(whole_lanes(patch.columns.depth.size()), patch.columns.depth.data());
   const double deepened = depth - patch.own.depth;
   patch.own.along_last = share_of_last(patch, deepened);
-  begin_solution(patch, sweeps);
+  begin_solution(patch, iterations);
   if (has_support(patch)) {
     find_support(patch);
     take_off_support(patch.rows.surface.known, patch.support.x, patch.support.y, patch.columns);
@@ -303,7 +304,7 @@ void solve_region(StepContext& context, std::uint32_t region, const SweepLimits&
                .along_last = patch.own.along_last,
                .depth = depth,
                .residual = outcome.residual,
-               .sweeps = outcome.sweeps,
+               .iterations = outcome.iterations,
                .started = 1,
                .settling = settling > 0 ? settling - 1 : 0};
   summarize(patch, sums);
@@ -320,7 +321,7 @@ bool is_patch(const Model& model, const State& state, std::uint32_t region) {
   return model.bodies.at<BodyModels>(body).contact == ContactModel::kPatch;
 }
 
-SweepLimits sweep_limits(const Model& model, const State& state) {
+IterationLimits iteration_limits(const Model& model, const State& state) {
   std::uint32_t all = 0;
   std::uint32_t anew = 0;
   for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
@@ -330,10 +331,10 @@ SweepLimits sweep_limits(const Model& model, const State& state) {
       anew += is_anew(own) || own.settling > 0 ? 1U : 0U;
     }
   }
-  const std::uint32_t of_others = (all - anew) * model.settings.sweeps;
-  const std::uint32_t left = kSweepsOfStep - std::min(kSweepsOfStep, of_others);
-  return {std::min(kSweepsOfAll, left) / std::max(anew, 1U),
-          std::min(kSweepsOfRolling, kSweepsOfStep / std::max(all, 1U))};
+  const std::uint32_t of_others = (all - anew) * model.settings.iterations;
+  const std::uint32_t left = kIterationsOfStep - std::min(kIterationsOfStep, of_others);
+  return {std::min(kIterationsOfAll, left) / std::max(anew, 1U),
+          std::min(kIterationsOfRolling, kIterationsOfStep / std::max(all, 1U))};
 }
 
 void forget_cells(const Model& model, State& state, std::uint32_t block) {
@@ -345,16 +346,16 @@ void forget_cells(const Model& model, State& state, std::uint32_t block) {
 void patch_forces(StepContext& context) {
   const Model& model = context.model;
   State& state = context.state;
-  const SweepLimits sweeps = sweep_limits(model, state);
+  const IterationLimits iterations = iteration_limits(model, state);
   for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
     if (is_patch(model, state, region)) {
-      solve_region(context, region, sweeps);
+      solve_region(context, region, iterations);
     }
   }
 }
 
 constexpr ColumnSet kPatchWrites =
-    columns<PatchState, PatchEnergy, LayerGrid, Influence, FootingResponse, RegionCarrier,
+    columns<PatchState, PatchEnergy, LayerGrid, Influence, SupportResponse, RegionCarrier,
             CellTraction, RegionNormal, RegionFriction, Contact>();
 constexpr System<StepContext> kPatchSolve[] = {
     {"patch_forces", "elastic half-space cell by cell: pressure, friction and torque",

@@ -10,11 +10,11 @@
 namespace torsion {
 namespace {
 
-// A body that gives way takes more sweeps: its motions have compliances of their own, beside those
-// that the local inverse knows.
+// A body that deflects takes more iterations: its motions have compliances of their own, beside
+// those that the local inverse knows.
 constexpr std::uint32_t kSweepsOnSoftBody = 4;  // times the settings'
 constexpr std::uint32_t kRoundsOnSoftBody = 3;  // at most: pressing moves it sideways, too
-// Where the body as a whole gives way, what a step leaves undone builds up, under a hand that is
+// Where the body as a whole deflects, what a step leaves undone builds up, under a hand that is
 // not steady the more so: by ends as early as elsewhere, played-back recordings went 7 % astray.
 constexpr double kSettledOnBody = 0.01;  // PatchProblem::settled
 
@@ -50,9 +50,9 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
   cell_centers(frame, settings.grid_side, places.x, places.y);
   problem.support = patch_support(model, state, region, context.patch.disc_stiffness,
                                   {places.x, places.y}, context.patch.support_terms);
-  problem.sweeps = settings.sweeps;
+  problem.iterations = settings.iterations;
   if (problem.support.soft) {
-    problem.sweeps *= kSweepsOnSoftBody;
+    problem.iterations *= kSweepsOnSoftBody;
     problem.rounds = kRoundsOnSoftBody;
   }
   if (problem.support.response != nullptr) {

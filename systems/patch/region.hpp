@@ -28,14 +28,14 @@ struct Patch {
   PatchProblem problem;
 };
 
-/// The region's problem for this step, with the sweeps of the settings.
+/// The region's problem for this step, with the iterations of the settings.
 Patch patch_of(StepContext& context, std::uint32_t region);
 
-/// Whether the body as a whole gives way under the region's load.
+/// Whether the body as a whole deflects under the region's load.
 bool has_support(const Patch& patch);
 
 /// The body's own motion at every cell beyond what the tool's overlap has of it already; zero where
-/// it gives way as a half-space does.
+/// it deflects as a half-space does.
 /// @return the energy that it holds of its own motion, J
 double find_support(const Patch& patch);
 

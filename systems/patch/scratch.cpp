@@ -20,7 +20,7 @@ void PatchScratch::reserve(const Model& model, const State& state) {
       &places.root,      &places.from_x,      &places.from_y,      &support.x,
       &support.y,        &support.z};
   lay_columns(cells, all, column_memory);
-  if (!state.footings.empty()) {
+  if (!state.support_fits.empty()) {
     support_terms.assign(kSupportTerms * whole_lanes(cells), 0.0);
     disc_stiffness = make_disc_stiffness();
   }

@@ -65,10 +65,10 @@ std::uint32_t copied_from(const State& state, const PatchState& copy) {
 }
 
 /// Lays the grid around what is left, at once: in the next step that would be a second event.
-void lay_around_rest(StepContext& context, std::uint32_t region) {
+void regrid_around_rest(StepContext& context, std::uint32_t region) {
   const Grid grid = grid_of(context, region);
   const RegionPoints& contact = context.scratch.region_points[block_of(grid.identity)];
-  lay_around_loaded(context, region, contact);
+  regrid_around_loaded(context, region, contact);
   find_cells(grid, contact);
   context.state.regions.at<Overlap>(region) = summarize_cells(grid);
   // They are held where they will have moved to without the other region's tractions.
@@ -81,8 +81,8 @@ void share_out(StepContext& context, std::uint32_t from, std::uint32_t region) {
   halve_shared(state, from, region);
   const double left = keep_covered(state, from);
   const double taken = keep_covered(state, region);
-  lay_around_rest(context, from);
-  lay_around_rest(context, region);
+  regrid_around_rest(context, from);
+  regrid_around_rest(context, region);
   const BodyLaw& body = body_law_of(model, state.regions.at<RegionIdentity>(from).body);
   if (body.split != nullptr) {
     body.split(model, state, from, region);

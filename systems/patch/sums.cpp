@@ -20,19 +20,19 @@ void sum_influences(const PatchProblem& problem, const InfluenceSources& sources
                 nullptr, displacement.data());
 }
 
-/// moves_x, moves_y = displacement along the surface by what has been gathered.
+/// response_x, response_y = displacement along the surface by what has been gathered.
 void sum_tractions(const PatchProblem& problem, const InfluenceSources& sources, PatchWork& work) {
   const InfluenceTables& tables = problem.influences;
   const GridBlock block = block_of(tables);
   for (std::size_t k = 0; k < std::size_t{2} * sources.count; ++k) {
     work.scales[k] = work.scales_x[k] + work.scales_y[k];
   }
-  const double* const both = work.moves_both.data();
-  sum_influences(problem, sources, InfluenceKind::kXY, work.scales, work.moves_both);
+  const double* const both = work.response_both.data();
+  sum_influences(problem, sources, InfluenceKind::kXY, work.scales, work.response_both);
   sum_influence(block, sources, tables.of(InfluenceKind::kXXLessXY), work.scales_x.data(), both,
-                work.moves_x.data());
+                work.response_x.data());
   sum_influence(block, sources, tables.of(InfluenceKind::kYYLessXY), work.scales_y.data(), both,
-                work.moves_y.data());
+                work.response_y.data());
 }
 
 /// Two rows of changes of one component, one above the other.
@@ -100,19 +100,20 @@ void move_as_one(const PatchSupport& support, std::size_t motion, double* x, dou
   }
 }
 
-void ask_for(const PatchProblem& problem, const LocalInverse& inverse, const double* wanted,
-             PatchWork& work, double* asked) {
+void precondition(const PatchProblem& problem, const LocalInverse& inverse, const double* residual,
+                  PatchWork& work, double* preconditioned) {
   const std::uint32_t side = problem.influences.side;
   const std::span<const double>& root = problem.rims.root;
   // With A the influences and D the softness at rims, whose diagonals are alike but for the roots
   // R: R B R for the inverse of A + D as B for that of A.
   if (!root.empty()) {
-    multiply(root.size(), root.data(), wanted, asked);
+    multiply(root.size(), root.data(), residual, preconditioned);
   }
-  to_border(side, root.empty() ? wanted : asked, work.bordered.data());
-  apply_local_inverse(inverse, 1.0 / problem.compliance, side, work.bordered.data(), asked);
+  to_border(side, root.empty() ? residual : preconditioned, work.bordered.data());
+  apply_local_inverse(inverse, 1.0 / problem.compliance, side, work.bordered.data(),
+                      preconditioned);
   if (!root.empty()) {
-    multiply(root.size(), root.data(), asked, asked);
+    multiply(root.size(), root.data(), preconditioned, preconditioned);
   }
 }
 
@@ -130,27 +131,27 @@ void add_sideways(const PatchProblem& problem, const PatchColumns& columns,
                   std::span<const double> change, PatchWork& work) {
   const InfluenceSources sources = gather_sources(problem, change, {}, work);
   // Minus: by reciprocity (influence.hpp).
-  sum_influences(problem, sources, InfluenceKind::kZX, work.scales_x, work.moves_x);
-  sum_influences(problem, sources, InfluenceKind::kZY, work.scales_x, work.moves_y);
-  add(columns.moved_x, -1.0, work.moves_x);
-  add(columns.moved_y, -1.0, work.moves_y);
+  sum_influences(problem, sources, InfluenceKind::kZX, work.scales_x, work.response_x);
+  sum_influences(problem, sources, InfluenceKind::kZY, work.scales_x, work.response_y);
+  add(columns.moved_x, -1.0, work.response_x);
+  add(columns.moved_y, -1.0, work.response_y);
 }
 
 void add_depression(const PatchProblem& problem, const PatchColumns& columns,
                     std::span<const double> change_x, std::span<const double> change_y,
                     PatchWork& work) {
   const InfluenceSources sources = gather_sources(problem, change_x, change_y, work);
-  sum_influences(problem, sources, InfluenceKind::kZX, work.scales_x, work.moves_x);
-  sum_influences(problem, sources, InfluenceKind::kZY, work.scales_y, work.moves_y);
-  add(columns.depression, 1.0, work.moves_x);
-  add(columns.depression, 1.0, work.moves_y);
+  sum_influences(problem, sources, InfluenceKind::kZX, work.scales_x, work.response_x);
+  sum_influences(problem, sources, InfluenceKind::kZY, work.scales_y, work.response_y);
+  add(columns.depression, 1.0, work.response_x);
+  add(columns.depression, 1.0, work.response_y);
 }
 
 void add_pressure(const PatchProblem& problem, const PatchColumns& columns,
                   std::span<const double> change, PatchWork& work) {
   const InfluenceSources sources = gather_sources(problem, change, {}, work);
-  sum_influences(problem, sources, InfluenceKind::kZZ, work.scales_x, work.moves_x);
-  add(columns.depression, 1.0, work.moves_x);
+  sum_influences(problem, sources, InfluenceKind::kZZ, work.scales_x, work.response_x);
+  add(columns.depression, 1.0, work.response_x);
   add_rims(problem, InfluenceKind::kZZ, 1.0, change, columns.depression);
   if (problem.coupled) {
     add_sideways(problem, columns, change, work);
@@ -161,8 +162,8 @@ void add_tractions(const PatchProblem& problem, const PatchColumns& columns,
                    std::span<const double> change_x, std::span<const double> change_y,
                    PatchWork& work) {
   sum_tractions(problem, gather_sources(problem, change_x, change_y, work), work);
-  add(columns.moved_x, 1.0, work.moves_x);
-  add(columns.moved_y, 1.0, work.moves_y);
+  add(columns.moved_x, 1.0, work.response_x);
+  add(columns.moved_y, 1.0, work.response_y);
   add_rims(problem, InfluenceKind::kXX, 1.0, change_x, columns.moved_x);
   add_rims(problem, InfluenceKind::kYY, 1.0, change_y, columns.moved_y);
   if (problem.coupled) {
@@ -171,17 +172,18 @@ void add_tractions(const PatchProblem& problem, const PatchColumns& columns,
 }
 
 void move_by_pressure(const PatchProblem& problem, PatchWork& work) {
-  sum_influences(problem, gather_sources(problem, work.step_x, {}, work), InfluenceKind::kZZ,
-                 work.scales_x, work.moves_x);
-  add_rims(problem, InfluenceKind::kZZ, 1.0, work.step_x, work.moves_x);
-  add_support(problem.support, {{}, {}, work.step_x}, {{}, {}, work.moves_x});
+  sum_influences(problem, gather_sources(problem, work.direction_x, {}, work), InfluenceKind::kZZ,
+                 work.scales_x, work.response_x);
+  add_rims(problem, InfluenceKind::kZZ, 1.0, work.direction_x, work.response_x);
+  add_support(problem.support, {{}, {}, work.direction_x}, {{}, {}, work.response_x});
 }
 
 void move_by_traction(const PatchProblem& problem, PatchWork& work) {
-  sum_tractions(problem, gather_sources(problem, work.step_x, work.step_y, work), work);
-  add_rims(problem, InfluenceKind::kXX, 1.0, work.step_x, work.moves_x);
-  add_rims(problem, InfluenceKind::kYY, 1.0, work.step_y, work.moves_y);
-  add_support(problem.support, {work.step_x, work.step_y, {}}, {work.moves_x, work.moves_y, {}});
+  sum_tractions(problem, gather_sources(problem, work.direction_x, work.direction_y, work), work);
+  add_rims(problem, InfluenceKind::kXX, 1.0, work.direction_x, work.response_x);
+  add_rims(problem, InfluenceKind::kYY, 1.0, work.direction_y, work.response_y);
+  add_support(problem.support, {work.direction_x, work.direction_y, {}},
+              {work.response_x, work.response_y, {}});
 }
 
 }  // namespace torsion

@@ -11,8 +11,9 @@
 
 namespace torsion {
 
-/// True when a sweep changes so little that it can be the last.
-inline bool ends(const PatchProblem& problem, const SweepChange& change, double whole) {
+/// True when an iteration changes so little that it can be the last.
+inline bool has_converged(const PatchProblem& problem, const IterationChange& change,
+                          double whole) {
   return change.largest <= problem.skip * problem.reference ||
          change.sum <= problem.settled * whole;
 }
@@ -32,11 +33,11 @@ void move_as_one(const PatchSupport& support, std::size_t motion, double* x, dou
 void add_rims(const PatchProblem& problem, InfluenceKind kind, double sign,
               std::span<const double> traction, std::span<double> displacement);
 
-/// What tractions displacements ask for by the local inverse.
-/// @param wanted  m, (side x side)
-/// @param asked   Pa, (side x side) out
-void ask_for(const PatchProblem& problem, const LocalInverse& inverse, const double* wanted,
-             PatchWork& work, double* asked);
+/// The preconditioner: z = B r with B the local inverse of the influences.
+/// @param residual        r, m, (side x side)
+/// @param preconditioned  z, Pa, (side x side) out
+void precondition(const PatchProblem& problem, const LocalInverse& inverse, const double* residual,
+                  PatchWork& work, double* preconditioned);
 
 /// Adds to the displacements what changes of the pressure do.
 void add_pressure(const PatchProblem& problem, const PatchColumns& columns,
@@ -57,18 +58,20 @@ void add_depression(const PatchProblem& problem, const PatchColumns& columns,
                     std::span<const double> change_x, std::span<const double> change_y,
                     PatchWork& work);
 
-/// work.moves_x = depression by work.step_x.
+/// A d: work.response_x = depression by work.direction_x.
 void move_by_pressure(const PatchProblem& problem, PatchWork& work);
 
-/// work.moves_x, moves_y = displacement along the surface by work.step_x, step_y.
+/// A d: work.response_x, response_y = displacement along the surface by work.direction_x,
+/// direction_y.
 void move_by_traction(const PatchProblem& problem, PatchWork& work);
 
-/// Sweeps over the pressures until they change by less than what ends it.
-PatchOutcome relax_pressures(const PatchProblem& problem, const PatchColumns& columns,
+/// Conjugate gradients for the pressures until they have converged, or for as many iterations as
+/// there may be.
+PatchOutcome solve_pressures(const PatchProblem& problem, const PatchColumns& columns,
                              PatchWork& work);
 
-/// Sweeps over the tangential tractions, likewise.
-PatchOutcome relax_tractions(const PatchProblem& problem, const PatchColumns& columns,
+/// Projected conjugate gradients for the tangential tractions, likewise.
+PatchOutcome solve_tractions(const PatchProblem& problem, const PatchColumns& columns,
                              PatchWork& work);
 
 /// PatchOutcome::residual of the one and of the other; 0 where there is no overlap or no friction.

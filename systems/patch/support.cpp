@@ -8,7 +8,7 @@
 #include <glm/mat2x2.hpp>
 
 #include "systems/contact/support/contact_load.hpp"
-#include "systems/contact/support/footing.hpp"
+#include "systems/contact/support/support_fit.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
 #include "systems/math/wide_lanes.hpp"
@@ -118,15 +118,17 @@ void find_terms(const glm::dvec2& origin, const glm::dmat2& turn, std::size_t ce
 }
 
 /// The terms at the centres of the region's cells.
-void find_columns(const Footing& footing, const RegionFrame& frame, std::size_t cells,
+void find_columns(const SupportFit& support_fit, const RegionFrame& frame, std::size_t cells,
                   const PatchSupport& support) {
-  const glm::dvec3 from = frame.origin - footing.origin;
-  const glm::dvec2 origin(glm::dot(footing.tangent_x, from), glm::dot(footing.tangent_y, from));
-  const glm::dmat2 turn(
-      glm::dot(footing.tangent_x, frame.tangent_x), glm::dot(footing.tangent_y, frame.tangent_x),
-      glm::dot(footing.tangent_x, frame.tangent_y), glm::dot(footing.tangent_y, frame.tangent_y));
-  find_terms(origin / footing.reach, turn / footing.reach, support.cells, support.place_x.data(),
-             support.place_y.data(), support.terms.data());
+  const glm::dvec3 from = frame.origin - support_fit.origin;
+  const glm::dvec2 origin(glm::dot(support_fit.tangent_x, from),
+                          glm::dot(support_fit.tangent_y, from));
+  const glm::dmat2 turn(glm::dot(support_fit.tangent_x, frame.tangent_x),
+                        glm::dot(support_fit.tangent_y, frame.tangent_x),
+                        glm::dot(support_fit.tangent_x, frame.tangent_y),
+                        glm::dot(support_fit.tangent_y, frame.tangent_y));
+  find_terms(origin / support_fit.reach, turn / support_fit.reach, support.cells,
+             support.place_x.data(), support.place_y.data(), support.terms.data());
   for (std::size_t k = 0; cells < support.cells && k < kSupportTerms; ++k) {
     std::fill_n(&support.terms[k * support.cells + cells], support.cells - cells, 0.0);
   }
@@ -156,8 +158,8 @@ glm::dmat3 between(const std::array<double, 36>& compliance, const Wrenches& wre
 }
 
 /// 6 x 6: what of a body yields under a region when the others have answered.
-std::array<double, 36> yielding_of(const Footing& footing, const RegionReaction& reaction) {
-  std::array<double, 36> motion = footing.own;
+std::array<double, 36> yielding_of(const SupportFit& support_fit, const RegionReaction& reaction) {
+  std::array<double, 36> motion = support_fit.own;
   for (std::size_t k = 0; reaction.active != 0 && k < motion.size(); ++k) {
     motion[k] -= reaction.motion[k];
   }
@@ -168,13 +170,13 @@ std::array<double, 36> yielding_of(const Footing& footing, const RegionReaction&
 /// @param change  the tractions are a change of those that they have answered to
 void add_answer(const PatchSupport& support, const SupportPolynomials& moments, bool change,
                 SupportPolynomials& polynomials) {
-  const Footing& footing = *support.footing;
+  const SupportFit& support_fit = *support.support_fit;
   const RegionReaction& reaction = *support.reaction;
   const auto moment = [&moments](std::size_t k) {
     return glm::dvec3(moments[k], moments[kAxisColumn + k], moments[2 * kAxisColumn + k]);
   };
-  const glm::dvec3 arm_x = footing.reach * footing.tangent_x;
-  const glm::dvec3 arm_y = footing.reach * footing.tangent_y;
+  const glm::dvec3 arm_x = support_fit.reach * support_fit.tangent_x;
+  const glm::dvec3 arm_y = support_fit.reach * support_fit.tangent_y;
   const glm::dvec3 force = moment(0);
   const glm::dvec3 couple = glm::cross(arm_x, moment(1)) + glm::cross(arm_y, moment(2));
   const std::array<double, 6> wrench{force.x, force.y, force.z, couple.x, couple.y, couple.z};
@@ -195,12 +197,12 @@ void add_answer(const PatchSupport& support, const SupportPolynomials& moments, 
   }
 }
 
-/// By how much the body gives way beside its contact: the sum of its compliances over those of the
+/// By how much the body deflects beside its contact: the sum of its compliances over those of the
 /// contact.
-double yielding_ratio(const Model& model, const RegionIdentity& region, const Footing& footing,
-                      const std::array<double, 36>& yielding) {
+double yielding_ratio(const Model& model, const RegionIdentity& region,
+                      const SupportFit& support_fit, const std::array<double, 36>& yielding) {
   const Elasticity& elasticity = model.bodies.at<Elasticity>(region.body);
-  const double a = footing.radius;
+  const double a = support_fit.radius;
   // Those of a contact: at most that of a disc pressed, 1 / (2 E* a), and tilted, 3 / (4 E* a^3).
   // Johnson, Contact Mechanics, 1985, (3.36) and 3.5.
   const double force = 2.0 * elasticity.contact_modulus() * a;
@@ -212,9 +214,9 @@ double yielding_ratio(const Model& model, const RegionIdentity& region, const Fo
   return sum;
 }
 
-void find_yielding(const Footing& footing, const std::array<double, 36>& yielding,
+void find_yielding(const SupportFit& support_fit, const std::array<double, 36>& yielding,
                    const RegionFrame& frame, PatchSupport& support) {
-  const glm::dvec3 arm = frame.origin - footing.center;
+  const glm::dvec3 arm = frame.origin - support_fit.center;
   const glm::dvec3& x = support.to_body[0];
   const glm::dvec3& y = support.to_body[1];
   const glm::dvec3& z = support.to_body[2];
@@ -234,19 +236,19 @@ PatchSupport patch_support(const Model& model, State& state, std::uint32_t regio
                            std::span<double> terms) {
   PatchSupport support;
   const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
-  if (state.footings.empty()) {
+  if (state.support_fits.empty()) {
     return support;
   }
   const std::uint32_t block = identity.cells.first / identity.cells.count;
-  const Footing& footing = state.footings.at<Footing>(block);
-  if (footing.reach == 0.0 || footing.on_layer != 0) {
+  const SupportFit& support_fit = state.support_fits.at<SupportFit>(block);
+  if (support_fit.reach == 0.0 || support_fit.on_layer != 0) {
     return support;
   }
-  FootingResponse& response = state.footings.at<FootingResponse>(block);
-  if (response.serial != footing.serial) {
-    find_response(ports_of(model, identity.body), footing, response);
-    make_definite(disc, model.bodies.at<Elasticity>(identity.body), footing, response);
-    support.laid_anew = true;
+  SupportResponse& response = state.support_fits.at<SupportResponse>(block);
+  if (response.serial != support_fit.serial) {
+    find_response(ports_of(model, identity.body), support_fit, response);
+    make_definite(disc, model.bodies.at<Elasticity>(identity.body), support_fit, response);
+    support.refitted = true;
   }
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const std::uint32_t side = model.settings.grid_side;
@@ -254,17 +256,17 @@ PatchSupport patch_support(const Model& model, State& state, std::uint32_t regio
   support.to_body = {frame.tangent_x, frame.tangent_y, -frame.normal};
   support.area = cell_area(frame, side);
   support.cells = whole_lanes(centers.x.size());
-  support.footing = &footing;
+  support.support_fit = &support_fit;
   const RegionReaction& reaction = state.regions.at<RegionReaction>(region);
   support.reaction = reaction.active != 0 ? &reaction : nullptr;
-  const std::array<double, 36> yielding = yielding_of(footing, reaction);
-  support.soft = yielding_ratio(model, identity, footing, yielding) > kSoft;
+  const std::array<double, 36> yielding = yielding_of(support_fit, reaction);
+  support.soft = yielding_ratio(model, identity, support_fit, yielding) > kSoft;
   support.terms = terms.first(kSupportTerms * support.cells);
   support.place_x = centers.x;
   support.place_y = centers.y;
-  find_columns(footing, frame, centers.x.size(), support);
+  find_columns(support_fit, frame, centers.x.size(), support);
   if (support.soft) {
-    find_yielding(footing, yielding, frame, support);
+    find_yielding(support_fit, yielding, frame, support);
   }
   return support;
 }
@@ -306,13 +308,14 @@ void add_support(const PatchSupport& support, const PatchField& tractions,
 
 SupportPolynomials known_support(const State& state, std::uint32_t region) {
   const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
-  const Footing& footing = state.footings.at<Footing>(block_of(identity));
+  const SupportFit& support_fit = state.support_fits.at<SupportFit>(block_of(identity));
   const RegionSupport& known = state.regions.at<RegionSupport>(region);
   const glm::dvec3 rotation = known.rotation - known.rotation_by_others;
-  const std::array<glm::dvec3, 3> terms{known.translation - known.translation_by_others +
-                                            glm::cross(rotation, footing.origin - known.about),
-                                        glm::cross(rotation, footing.tangent_x) * footing.reach,
-                                        glm::cross(rotation, footing.tangent_y) * footing.reach};
+  const std::array<glm::dvec3, 3> terms{
+      known.translation - known.translation_by_others +
+          glm::cross(rotation, support_fit.origin - known.about),
+      glm::cross(rotation, support_fit.tangent_x) * support_fit.reach,
+      glm::cross(rotation, support_fit.tangent_y) * support_fit.reach};
   SupportPolynomials polynomials{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < terms.size(); ++k) {

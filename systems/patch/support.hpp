@@ -31,28 +31,28 @@ DiscStiffness make_disc_stiffness();
 /// leave no compliance at all, and the contact's equations have no solution below it.
 inline constexpr double kLeastResponse = -0.75;
 
-/// Makes the response M of a footing such that the whole surface under it, half-space and body, is
-/// a compliance: S^(1/2) M S^(1/2) >= kLeastResponse, with S of a disc that holds the contact, so
-/// that t' (A + Q M Q') t >= (1 + kLeastResponse) t' A t for all tractions t. Where it is, not a
+/// Makes the response M of a support fit such that the whole surface under it, half-space and body,
+/// is a compliance: S^(1/2) M S^(1/2) >= kLeastResponse, with S of a disc that holds the contact,
+/// so that t' (A + Q M Q') t >= (1 + kLeastResponse) t' A t for all tractions t. Where it is, not a
 /// bit changes. What finite elements and the fit to ports say of thin walls and of contacts wider
 /// than the ports' distance may break it. Takes nothing from the heap.
 /// @return true if it had to be changed
-bool make_definite(const DiscStiffness& disc, const Elasticity& elasticity, const Footing& footing,
-                   FootingResponse& response);
+bool make_definite(const DiscStiffness& disc, const Elasticity& elasticity,
+                   const SupportFit& support_fit, SupportResponse& response);
 
 // What the whole body's own compliance adds to the displacements of a grid's cells.
 
 /// A linear map from tractions of the cells to displacements of them, of as many dimensions as
-/// there are terms: displacement = Q M Q' force, with Q the terms at the cells and M the footing's
-/// response. Tractions and displacements are those of PatchColumns: on the body, z into it.
+/// there are terms: displacement = Q M Q' force, with Q the terms at the cells and M the support
+/// fit's response. Tractions and displacements are those of PatchColumns: on the body, z into it.
 struct PatchSupport {
-  const FootingResponse* response = nullptr;  // null: the body gives way as a half-space does
-  const Footing* footing = nullptr;
+  const SupportResponse* response = nullptr;  // null: the body deflects as a half-space does
+  const SupportFit* support_fit = nullptr;
   const RegionReaction* reaction = nullptr;  // null: other regions do not answer within the step
   glm::dmat3 to_body{1.0};                   // from x, y, z of the columns
   double area = 0.0;                         // m^2, of a cell
-  bool soft = false;                         // gives way by much beside the contact itself
-  bool laid_anew = false;                    // the response is not that of the last step
+  bool soft = false;                         // deflects by much beside the contact itself
+  bool refitted = false;                     // the response is not that of the last step
   std::size_t cells = 0;    // rows of a term: those of the cells and zeros up to whole lanes, which
                             // all columns that tractions come from or displacements go to have, too
   std::span<double> terms;  // (kSupportTerms x cells)
@@ -83,7 +83,7 @@ struct SupportMotion {
   double energy = 0.0;               // J
 };
 
-/// The region's, or none. Finds the footing's response anew when it has been laid anew.
+/// The region's, or none. Finds the support's response again when that has been refitted.
 /// @param terms  (kSupportTerms x whole lanes of cells) out
 PatchSupport patch_support(const Model& model, State& state, std::uint32_t region,
                            const DiscStiffness& disc, const PatchCenters& centers,

@@ -59,32 +59,34 @@ void across(std::size_t count, const double* __restrict slips, const double* __r
 
 /// What every cell comes to, and whether that is on the rim of its disc.
 TORSION_WIDEST
-void mix_ways(std::size_t count, const Mix& mix, const double* __restrict traction_x,
-              const double* __restrict traction_y, const double* __restrict limits,
-              const double* __restrict slips, const double* __restrict asked_x,
-              const double* __restrict asked_y, const double* __restrict along_x,
-              const double* __restrict along_y, const double* __restrict softened,
-              double* __restrict step_x, double* __restrict step_y, double* __restrict clips) {
-  const double share = mix.asked;
-  const double kept = mix.kept;
+void mix_directions(std::size_t count, const DirectionShares& shares,
+                    const double* __restrict traction_x, const double* __restrict traction_y,
+                    const double* __restrict limits, const double* __restrict slips,
+                    const double* __restrict preconditioned_x,
+                    const double* __restrict preconditioned_y, const double* __restrict along_x,
+                    const double* __restrict along_y, const double* __restrict softened,
+                    double* __restrict direction_x, double* __restrict direction_y,
+                    double* __restrict clips) {
+  const double share = shares.share;
+  const double beta = shares.beta;
   for (std::size_t k = 0; k < count; ++k) {
     const bool slip = slips[k] != 0.0;
     const double limit = limits[k];
-    const double new_x = share * asked_x[k];
-    const double new_y = share * asked_y[k];
+    const double new_x = share * preconditioned_x[k];
+    const double new_y = share * preconditioned_y[k];
     const double across = softened[k] * (along_x[k] * new_y - along_y[k] * new_x) +
-                          kept * (along_x[k] * step_y[k] - along_y[k] * step_x[k]);
+                          beta * (along_x[k] * direction_y[k] - along_y[k] * direction_x[k]);
     const double from_x = slip ? limit * along_x[k] - across * along_y[k]
-                               : traction_x[k] + (new_x + kept * step_x[k]);
+                               : traction_x[k] + (new_x + beta * direction_x[k]);
     const double from_y = slip ? limit * along_y[k] + across * along_x[k]
-                               : traction_y[k] + (new_y + kept * step_y[k]);
+                               : traction_y[k] + (new_y + beta * direction_y[k]);
     const double square = from_x * from_x + from_y * from_y;
     const bool outside = square > limit * limit;
     const double scale = limit / std::sqrt(larger(square, kLeastSum));
     const double to_x = (slip | outside) ? from_x * scale : from_x;
     const double to_y = (slip | outside) ? from_y * scale : from_y;
-    step_x[k] = to_x - traction_x[k];
-    step_y[k] = to_y - traction_y[k];
+    direction_x[k] = to_x - traction_x[k];
+    direction_y[k] = to_y - traction_y[k];
     clips[k] = outside ? 1.0 : 0.0;
   }
 }
@@ -100,9 +102,10 @@ void add_up_step(const TractionColumns& cells, TractionStep& __restrict step) {
     const Wide left_y = lanes_at(cells.target_y + k).all - lanes_at(cells.moved_y + k).all;
     const Wide slips = lanes_at(cells.slips + k).all;
     const Wide clips = lanes_at(cells.clips + k).all;
-    const Wide ends = slips > clips ? slips : clips;
-    slope += left_x * lanes_at(cells.step_x + k).all + left_y * lanes_at(cells.step_y + k).all;
-    slipped += lanes_at(cells.limit + k).all > 0.0 ? ends : none;
+    const Wide has_converged = slips > clips ? slips : clips;
+    slope +=
+        left_x * lanes_at(cells.direction_x + k).all + left_y * lanes_at(cells.direction_y + k).all;
+    slipped += lanes_at(cells.limit + k).all > 0.0 ? has_converged : none;
     clipped += (1.0 - slips) * clips;
   }
   step = {sum_of(slope), sum_of(slipped), sum_of(clipped)};
@@ -138,11 +141,11 @@ double limits(std::size_t count, const double* __restrict pressure,
 }
 
 TORSION_WIDEST
-void change_both(const TractionColumns& cells, double length, SweepChange& __restrict change) {
+void change_both(const TractionColumns& cells, double alpha, IterationChange& __restrict change) {
   Wide most{};
   Wide sums{};
-  const auto go = [&most, &sums, length](double* step, double* to) {
-    const Wide way = length * lanes_at(step).all;
+  const auto go = [&most, &sums, alpha](double* step, double* to) {
+    const Wide way = alpha * lanes_at(step).all;
     lanes_at(step).all = way;
     lanes_at(to).all += way;
     const Wide size = way < 0.0 ? -way : way;
@@ -150,8 +153,8 @@ void change_both(const TractionColumns& cells, double length, SweepChange& __res
     sums += size;
   };
   for (std::size_t k = 0; k < cells.count; k += kLanes) {
-    go(cells.step_x + k, cells.traction_x + k);
-    go(cells.step_y + k, cells.traction_y + k);
+    go(cells.direction_x + k, cells.traction_x + k);
+    go(cells.direction_y + k, cells.traction_y + k);
   }
   change = {largest_of(most), sum_of(sums)};
 }
@@ -209,20 +212,20 @@ bool find_limits(const TractionColumns& cells) {
                 cells.limit) > 0.0;
 }
 
-void find_ways(const TractionColumns& cells, double stiffness) {
+void find_residuals(const TractionColumns& cells, double stiffness) {
   ways(cells.count, stiffness, cells.traction_x, cells.traction_y, cells.target_x, cells.target_y,
        cells.moved_x, cells.moved_y, cells.limit, cells.slips, cells.residual_x, cells.residual_y,
        cells.along_x, cells.along_y, cells.softened);
 }
 
-void keep_answered(const TractionColumns& cells, double* x, double* y) {
+void project_on_tangents(const TractionColumns& cells, double* x, double* y) {
   across(cells.count, cells.slips, cells.along_x, cells.along_y, cells.softened, x, y);
 }
 
-TractionStep mix_tractions(const TractionColumns& cells, const Mix& mix) {
-  mix_ways(cells.count, mix, cells.traction_x, cells.traction_y, cells.limit, cells.slips,
-           cells.asked_x, cells.asked_y, cells.along_x, cells.along_y, cells.softened, cells.step_x,
-           cells.step_y, cells.clips);
+TractionStep next_traction_direction(const TractionColumns& cells, const DirectionShares& shares) {
+  mix_directions(cells.count, shares, cells.traction_x, cells.traction_y, cells.limit, cells.slips,
+                 cells.preconditioned_x, cells.preconditioned_y, cells.along_x, cells.along_y,
+                 cells.softened, cells.direction_x, cells.direction_y, cells.clips);
   TractionStep step;
   add_up_step(cells, step);
   return step;
@@ -232,11 +235,11 @@ double slope_along(const TractionColumns& cells, const double* x, const double* 
   return slope_of(cells, x, y);
 }
 
-SweepChange change_tractions(const TractionColumns& cells, double length) {
-  SweepChange change;
-  change_both(cells, length, change);
-  add_scaled(cells.count, length, cells.moves_x, cells.moved_x);
-  add_scaled(cells.count, length, cells.moves_y, cells.moved_y);
+IterationChange step_tractions(const TractionColumns& cells, double alpha) {
+  IterationChange change;
+  change_both(cells, alpha, change);
+  add_scaled(cells.count, alpha, cells.response_x, cells.moved_x);
+  add_scaled(cells.count, alpha, cells.response_y, cells.moved_y);
   return change;
 }
 
@@ -249,7 +252,7 @@ TractionResidual traction_residual(const TractionColumns& cells, const double* d
           slip_scale(cells.count, cells.pressure, cells.friction, depth)};
 }
 
-void keep_what_is_no_slip(const TractionColumns& cells) {
+void clear_false_slip(const TractionColumns& cells) {
   keep_slips(cells.count, cells.traction_x, cells.traction_y, cells.target_x, cells.target_y,
              cells.moved_x, cells.moved_y, cells.slips);
 }

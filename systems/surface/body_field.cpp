@@ -281,7 +281,7 @@ double freedom(const BodyField& field, const glm::dvec3& point) {
 }
 
 ContactShare share_of_contact(const BodyTurn& turn, const glm::dvec3& point) {
-  constexpr double kReach = 1.3;  // of the polynomial that grows, in radii (footing.cpp)
+  constexpr double kReach = 1.3;  // of the polynomial that grows, in radii (support fit.cpp)
   const double distance = glm::distance(point, turn.point);
   const double grown = std::min(distance, kReach * turn.radius);
   return {1.0 - smooth_step(distance / turn.radius - 1.0),

@@ -47,7 +47,8 @@ void add_rings(const RingProfiles& profiles, const RingTurns& rings, TurnFit& fi
   }
 }
 
-/// Neighbours' differences, and a little of the discs themselves, lest nothing tell two apart.
+/// Neighbours' differences, and a little of the discs themselves, so that two alike are still told
+/// apart.
 void add_calm(double weight, TurnFit& fit) {
   constexpr double kOfItself = 1e-6;
   for (std::size_t j = 0; j < kFieldDiscs; ++j) {

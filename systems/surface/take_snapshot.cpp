@@ -12,7 +12,7 @@
 #include "systems/contact/law.hpp"
 #include "systems/contact/scratch.hpp"
 #include "systems/contact/support/contact_load.hpp"
-#include "systems/contact/support/footing.hpp"
+#include "systems/contact/support/support_fit.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
 #include "systems/math/smooth_step.hpp"
@@ -43,23 +43,24 @@ glm::dvec3 vector_at(const AnchorColumn& column, std::size_t anchor) {
   return {column[3 * anchor], column[3 * anchor + 1], column[3 * anchor + 2]};
 }
 
-/// Adds what forces at a footing's ports do to the anchors, which are the first of the ports: the
-/// compliance is symmetric, so that the row of a port's axis has what a force there does to all.
-void move_anchors(const PortCompliance& body, const Footing& footing, const PortVectors& forces,
-                  std::span<AnchorMotion> anchors, AnchorTurns& turns) {
+/// Adds what forces at a support fit's ports do to the anchors, which are the first of the ports:
+/// the compliance is symmetric, so that the row of a port's axis has what a force there does to
+/// all.
+void move_anchors(const PortCompliance& body, const SupportFit& support_fit,
+                  const PortVectors& forces, std::span<AnchorMotion> anchors, AnchorTurns& turns) {
   const std::size_t side = 3 * body.ports.size();
   const std::size_t count = 3 * anchors.size();
   const ComplianceValue* const turns_by_force = &body.values[side * side];
   AnchorColumn moved{};
   AnchorColumn turned{};
-  for (std::size_t p = 0; p < footing.count; ++p) {
-    const std::size_t row = 3 * std::size_t{footing.ports[p]};
+  for (std::size_t p = 0; p < support_fit.count; ++p) {
+    const std::size_t row = 3 * std::size_t{support_fit.ports[p]};
     add_rows(count, forces[p], &body.values[row * side], side, moved.data());
     add_rows(count, forces[p], &turns_by_force[row * count], count, turned.data());
   }
   for (std::size_t anchor = 0; anchor < anchors.size(); ++anchor) {
     anchors[anchor].displacement += vector_at(moved, anchor);
-    turns.turn[anchor] = glm::dot(footing.normal, vector_at(turned, anchor));
+    turns.turn[anchor] = glm::dot(support_fit.normal, vector_at(turned, anchor));
   }
 }
 
@@ -104,12 +105,12 @@ void move_anchors_of(const Model& model, const State& state, std::uint32_t body,
     if (identity.body != body) {
       continue;
     }
-    const Footing& footing = state.footings.at<Footing>(block_of(identity));
+    const SupportFit& support_fit = state.support_fits.at<SupportFit>(block_of(identity));
     PortVectors forces;
-    forces_at_ports(footing, contact_load(model, state, region, footing).moments, forces);
+    forces_at_ports(support_fit, contact_load(model, state, region, support_fit).moments, forces);
     AnchorTurns& turns = snapshot.region_fields.at<AnchorTurns>(region);
     find_support_turn(model, state, region, turns);
-    move_anchors(ports_of(model, body), footing, forces, anchors, turns);
+    move_anchors(ports_of(model, body), support_fit, forces, anchors, turns);
   }
 }
 

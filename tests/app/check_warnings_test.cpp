@@ -101,7 +101,7 @@ TEST(CheckWarningTest, TheSmallestSceneOfTheManualRunsAsItStandsThere) {
   const Ran ran = run_torsion({"simulate", folder / "small.gltf"});
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
   EXPECT_EQ(ran.out.find("FAULTS"), std::string::npos) << ran.out;
-  // Hertz at 1 mm: 4/3 E* sqrt(R d) d = 23.9 N; the body gives way by some percent of it.
+  // Hertz at 1 mm: 4/3 E* sqrt(R d) d = 23.9 N; the body deflects by some percent of it.
   EXPECT_NE(ran.out.find("largest force 22."), std::string::npos) << ran.out;
 }
 

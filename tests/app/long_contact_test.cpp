@@ -59,7 +59,7 @@ std::vector<double> screwdriver(std::uint32_t side) {
 
 /// That of a box 12 mm long that lies askew to the grid it begins with, pressed half a millimetre
 /// into a half-space and turned by 90 degrees in two seconds.
-std::vector<double> box(double width, std::uint32_t side, std::uint32_t sweeps) {
+std::vector<double> box(double width, std::uint32_t side, std::uint32_t iterations) {
   const glm::dvec3 up(0.0, 1.0, 0.0);
   SceneDescription scene = ball_on_cube();
   scene.bodies[0].elasticity.youngs_modulus = 5e4;
@@ -69,7 +69,7 @@ std::vector<double> box(double width, std::uint32_t side, std::uint32_t sweeps) 
   scene.bodies[0].models.body = BodyModel::kNone;
   scene.tools[0] = make_tool({make_part(ShapeKind::kBox, {0.006, 0.005, 0.5 * width})});
   PrepareOptions options;
-  options.settings = {side, sweeps};
+  options.settings = {side, iterations};
   Hand hand(scene, options);
   hand.step_to({{glm::dvec3(0.0, 0.1051, 0.0), glm::angleAxis(0.3, up)}});
   hand.move({0.0, -6e-4, 0.0}, up, 0.0, 400);

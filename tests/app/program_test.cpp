@@ -82,10 +82,10 @@ TEST(SimulateTest, JsonSummaryGivesTheRun) {
 
 TEST(SimulateTest, SummaryGivesResidualsAndSweepsOfPatch) {
   const Folder folder;
-  const auto run = [&](const char* sweeps) {
+  const auto run = [&](const char* iterations) {
     const Ran ran = run_torsion({"simulate", scene("ball_on_cube"), "--seconds", "1.2",
-                                 "--contact-model", "patch", "--body-model", "none", "--sweeps",
-                                 sweeps, "--json", "--trace", folder / "t.csv"});
+                                 "--contact-model", "patch", "--body-model", "none", "--iterations",
+                                 iterations, "--json", "--trace", folder / "t.csv"});
     EXPECT_EQ(ran.exit_code, 0) << ran.err;
     return json::parse(ran.out).at("patch");
   };
@@ -97,12 +97,12 @@ TEST(SimulateTest, SummaryGivesResidualsAndSweepsOfPatch) {
   EXPECT_GT(region_steps, 0U);
   EXPECT_EQ(few["region_steps"], region_steps);
   const json many = run("20");
-  EXPECT_LE(few["sweeps"]["mean"], many["sweeps"]["mean"]);
-  EXPECT_LE(many["sweeps"]["most"], 20);
-  // More sweeps leave less.
+  EXPECT_LE(few["iterations"]["mean"], many["iterations"]["mean"]);
+  EXPECT_LE(many["iterations"]["most"], 20);
+  // More iterations leave less.
   EXPECT_LT(many["residual"]["p99"], few["residual"]["p99"]);
   for (const json& patch : {few, many}) {
-    EXPECT_LE(patch["sweeps"]["mean"], patch["sweeps"]["most"]);
+    EXPECT_LE(patch["iterations"]["mean"], patch["iterations"]["most"]);
     EXPECT_LE(patch["residual"]["median"], patch["residual"]["p99"]);
     EXPECT_LE(patch["residual"]["p99"], patch["residual"]["largest"]);
   }
@@ -114,7 +114,7 @@ TEST(SimulateTest, SummaryHasAPatchLineOnlyWherePatchRan) {
                                             "0.6",      "--contact-model",     model};
     const Ran ran = run_torsion(words);
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
-    EXPECT_EQ(ran.out.find("patch    sweeps mean") != std::string::npos, model == "patch")
+    EXPECT_EQ(ran.out.find("patch    iterations mean") != std::string::npos, model == "patch")
         << ran.out;
     std::vector<std::string> with_json = words;
     with_json.emplace_back("--json");

@@ -93,7 +93,7 @@ TEST(RecordingTest, MaterialsAndSettingsThatNoSessionCanHaveAreRefused) {
   for (const Settings settings : {Settings{65, 2}, Settings{16, 0}, Settings{16, 101}}) {
     recording = some_recording();
     recording.settings = settings;
-    EXPECT_TRUE(refused(recording)) << settings.grid_side << " " << settings.sweeps;
+    EXPECT_TRUE(refused(recording)) << settings.grid_side << " " << settings.iterations;
   }
 }
 

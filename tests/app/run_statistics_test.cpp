@@ -58,17 +58,19 @@ World world_with_patches() {
 
 TEST(RunStatisticsTest, ResidualsAndSweepsAreThoseOfRegionsWithPatch) {
   World world = world_with_patches();
-  world.state.regions.at<PatchState>(1) = {.residual = 9.0, .sweeps = 90};  // means nothing there
+  world.state.regions.at<PatchState>(1) = {.residual = 9.0,
+                                           .iterations = 90};  // means nothing there
   RunStatistics statistics;
-  // Residuals 0.001 to 0.1 evenly, sweeps 1 in the one region, 2 in the other and once 12.
+  // Residuals 0.001 to 0.1 evenly, iterations 1 in the one region, 2 in the other and once 12.
   for (int i = 1; i <= 100; ++i) {
-    world.state.regions.at<PatchState>(0) = {.residual = 1e-3 * i, .sweeps = 1};
-    world.state.regions.at<PatchState>(2) = {.residual = 1e-3 * i, .sweeps = i == 50 ? 12U : 2U};
+    world.state.regions.at<PatchState>(0) = {.residual = 1e-3 * i, .iterations = 1};
+    world.state.regions.at<PatchState>(2) = {.residual = 1e-3 * i,
+                                             .iterations = i == 50 ? 12U : 2U};
     statistics.add_step(world, 1.0);
   }
   EXPECT_EQ(statistics.patch.region_steps(), 200U);
-  EXPECT_EQ(statistics.patch.most_sweeps, 12U);
-  EXPECT_DOUBLE_EQ(statistics.patch.mean_sweeps(), (100.0 + 99.0 * 2.0 + 12.0) / 200.0);
+  EXPECT_EQ(statistics.patch.most_iterations, 12U);
+  EXPECT_DOUBLE_EQ(statistics.patch.mean_iterations(), (100.0 + 99.0 * 2.0 + 12.0) / 200.0);
   EXPECT_DOUBLE_EQ(statistics.patch.residuals.largest(), 0.1);
   // Even within a bin, as they are but for their coarseness of a hundredth.
   EXPECT_NEAR(statistics.patch.residuals.quantile(0.5), 0.05, 0.05 * 0.05);

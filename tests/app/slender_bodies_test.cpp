@@ -101,7 +101,7 @@ SceneDescription rod_scene(double rod) {
   return scene;
 }
 
-// The end of a rod gives way sideways by L^3 / (3 E I), its contact by (2 - nu) / (8 G a): twenty
+// The end of a rod deflects sideways by L^3 / (3 E I), its contact by (2 - nu) / (8 G a): twenty
 // thousand times less at 1:25. Still the contact turns under the ball until all of it slips, T = 3
 // pi / 16 mu F a (Johnson, Contact Mechanics, 1985, 7.4) with the force that there is; on 16 cells
 // a side a half-space's is within 1 %, and the end's own field takes as much. The force is within

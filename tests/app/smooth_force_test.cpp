@@ -114,7 +114,7 @@ std::vector<glm::dvec3> forces_of(const SmoothRun& run, double rate, std::uint64
 
 class CoarseStepsTest : public testing::TestWithParam<SmoothRun> {};
 
-// A body that gave way a step after its load would let a tool at 100 Hz feel twice the force while
+// A body that deflected a step after its load would let a tool at 100 Hz feel twice the force while
 // it presses (s7_spike_body, 0.9 of the median). Within half of what counts as a stand-out: what is
 // left is a new contact's first step, whose body answers from the next one on, and a grid that
 // comes after it.

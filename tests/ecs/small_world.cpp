@@ -56,8 +56,8 @@ void mend_owners(World& world) {
       world.model.bodies.at<OwnedRows>(row).ports = {0, 3};
       world.model.bodies.at<OwnedRows>(row).compliance = {0, 162};
     }
-    for (Footing& footing : world.state.footings.column<Footing>()) {
-      footing.count = 0;
+    for (SupportFit& support_fit : world.state.support_fits.column<SupportFit>()) {
+      support_fit.count = 0;
     }
     world.model.bodies.at<FixedRegion>(row).volumes = {row, 1};
     auto& region = world.state.regions.at<RegionIdentity>(row);

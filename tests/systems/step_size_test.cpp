@@ -89,7 +89,7 @@ Pose pose_at(int step, int steps) {
 
 struct Curve {
   std::vector<Wrench> wrenches;  // at every pose that the coarse path has
-  double softness = 0.0;         // how far the body gives way along the surface, over the contact
+  double softness = 0.0;         // how far the body deflects along the surface, over the contact
 };
 
 /// The body's compliance along its surface times the contact's stiffness without slip (Mindlin).
@@ -167,7 +167,7 @@ Extent extent_of(const Load& load, const std::vector<Wrench>& wrenches) {
 
 class StepSizeTest : public testing::TestWithParam<StepCase> {};
 
-// The issue asks for half a per cent of the largest loads. mdr sees a body that gives way from
+// The issue asks for half a per cent of the largest loads. mdr sees a body that deflects from
 // where it was a step before, and finds the body's motion by one Newton step with the contact's
 // stiffness K as if nothing slipped. In steady motion with a stiffness k, 0 <= k <= K, over a body
 // of compliance C that is behind by C k (1 + C K) / (1 + C k) of what a step adds to the force: by

@@ -19,7 +19,7 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6 * kMaxRegionsPerBody, 1>;
 
 /// No compliance of a body takes more than this of the contacts' own away (region_stands.cpp); what
-/// footings of other steps make of it must not either.
+/// support fits of other steps make of it must not either.
 constexpr double kLeastPivot = 0.25;
 
 /// The material's motion at `point` as the region's support has it.
@@ -51,7 +51,7 @@ Vector6 support_by_others(const RegionSupport& support, const glm::dvec3& point)
 /// The rest, by its own load.
 Vector6 own_support(const CompliantBody& body, const Stand& stand) {
   const RegionSupport& support = body.state.regions.at<RegionSupport>(stand.region);
-  const glm::dvec3& center = footing_of(body, stand).center;
+  const glm::dvec3& center = support_fit_of(body, stand).center;
   return support_at(support, center) - support_by_others(support, center);
 }
 
@@ -59,14 +59,14 @@ Vector6 own_support(const CompliantBody& body, const Stand& stand) {
 /// own equations what its load does (patch/support.hpp), stands where that has moved it.
 Vector6 support_now(const CompliantBody& body, const Stand& stand) {
   const RegionSupport& support = body.state.regions.at<RegionSupport>(stand.region);
-  const glm::dvec3& center = footing_of(body, stand).center;
+  const glm::dvec3& center = support_fit_of(body, stand).center;
   return stand.solved ? Vector6(stand.motion + support_by_others(support, center))
                       : support_at(support, center);
 }
 
-/// How a load's wrench about its footing's centre changes by a translation of the material under
-/// it: the tool stands elsewhere on it, so that the load has the couple force x translation more.
-/// Nothing for a contact model that does not say where on the material its load lies.
+/// How a load's wrench about its support fit's centre changes by a translation of the material
+/// under it: the tool stands elsewhere on it, so that the load has the couple force x translation
+/// more. Nothing for a contact model that does not say where on the material its load lies.
 Matrix6 wrench_by_place(const Stand& stand) {
   Matrix6 wrench = Matrix6::Zero();
   if (stand.solved) {
@@ -87,18 +87,18 @@ struct NewtonStep {
 };
 
 /// What the other regions are to have to do with such a region's motion: Newton's change du is that
-/// by them less what its own load gives way by it, (I + C K) du, less what the others' answer to
+/// by them less what its own load deflects by it, (I + C K) du, less what the others' answer to
 /// its own change will be (RegionReaction), and less what its own load's place does (add_sway).
 /// @param scaled  y of fill_equations
 void move_by_others(const CompliantBody& body, std::size_t i, const NewtonStep& newton,
                     const Vector6& scaled) {
   const Stand& stand = body.stands[i];
   const StiffnessRoot& root = newton.roots[i];
-  const Footing& footing = footing_of(body, stand);
+  const SupportFit& support_fit = support_fit_of(body, stand);
   RegionSupport& support = body.state.regions.at<RegionSupport>(stand.region);
-  Vector6 by_others = support_by_others(support, footing.center) + root.inverse * scaled;
-  if (footing.on_layer == 0) {
-    const Eigen::Map<const Matrix6> own(footing.own.data());
+  Vector6 by_others = support_by_others(support, support_fit.center) + root.inverse * scaled;
+  if (support_fit.on_layer == 0) {
+    const Eigen::Map<const Matrix6> own(support_fit.own.data());
     by_others += own * (root.root * scaled);
     if (newton.sways_together) {
       by_others -= own * (wrench_by_place(stand) * (newton.moved[i] + root.inverse * scaled));
@@ -115,9 +115,9 @@ void move_by_others(const CompliantBody& body, std::size_t i, const NewtonStep& 
 /// How a wrench on one region moves it or another one, as Newton's matrix has it.
 Matrix6 compliance_between(const CompliantBody& body, const Stand& to, const Stand& from) {
   if (to.region == from.region) {
-    const Footing& footing = footing_of(body, to);
-    return footing.on_layer == 0 ? Matrix6(Eigen::Map<const Matrix6>(footing.own.data()))
-                                 : Matrix6(Matrix6::Zero());
+    const SupportFit& support_fit = support_fit_of(body, to);
+    return support_fit.on_layer == 0 ? Matrix6(Eigen::Map<const Matrix6>(support_fit.own.data()))
+                                     : Matrix6(Matrix6::Zero());
   }
   const Eigen::Map<const Matrix6> stored(coupling_between(body, to, from).motion.data());
   return to.block > from.block ? Matrix6(stored) : Matrix6(stored.transpose());
@@ -127,13 +127,13 @@ void move_supports(const CompliantBody& body, const Eigen::Map<Eigen::VectorXd>&
                    const NewtonStep& newton) {
   for (std::size_t i = 0; i < body.count; ++i) {
     const Stand& stand = body.stands[i];
-    const glm::dvec3& center = footing_of(body, stand).center;
+    const glm::dvec3& center = support_fit_of(body, stand).center;
     RegionSupport& support = body.state.regions.at<RegionSupport>(stand.region);
     const Vector6 before = support_at(support, center);
     const Vector6 scaled = change.segment<6>(static_cast<Eigen::Index>(6 * i));
-    // Where it is to be seen next. For contact model patch that foresees how its own load changes,
-    // which its equations then find: seen from where all of the others' change but nothing of its
-    // own answer has moved it, it would lie far from the tool on a body that sways much.
+    // Where it is to be seen next. For contact model patch that extrapolates how its own load
+    // changes, which its equations then find: seen from where all of the others' change but nothing
+    // of its own answer has moved it, it would lie far from the tool on a body that sways much.
     const Vector6 after = support_now(body, stand) + newton.roots[i].inverse * scaled;
     if (stand.solved) {
       move_by_others(body, i, newton, scaled);
@@ -159,12 +159,12 @@ void fill_equations(const CompliantBody& body,
                     Eigen::Map<RowMatrix>& matrix, Eigen::Map<Eigen::VectorXd>& change) {
   for (std::size_t i = 0; i < body.count; ++i) {
     const Stand& stand = body.stands[i];
-    const Footing& footing = footing_of(body, stand);
+    const SupportFit& support_fit = support_fit_of(body, stand);
     const auto at = static_cast<Eigen::Index>(6 * i);
     auto own = matrix.block<6, 6>(at, at);
     own.setIdentity();
-    if (footing.on_layer == 0) {
-      own += roots[i].root * Eigen::Map<const Matrix6>(footing.own.data()) * roots[i].root;
+    if (support_fit.on_layer == 0) {
+      own += roots[i].root * Eigen::Map<const Matrix6>(support_fit.own.data()) * roots[i].root;
     }
     change.segment<6>(at) += stand.motion - support_now(body, stand);
     for (std::size_t j = i + 1; j < body.count; ++j) {
@@ -188,13 +188,13 @@ void fill_equations(const CompliantBody& body,
 /// step. By one Newton step, with w the load and C the compliance: u + du = C w(u + du), where the
 /// wrench is w's own and G du more (wrench_by_place). Never farther than C w itself.
 void sway(const CompliantBody& body, Stand& stand) {
-  const Footing& footing = footing_of(body, stand);
-  if (!stand.solved || footing.on_layer != 0) {
+  const SupportFit& support_fit = support_fit_of(body, stand);
+  if (!stand.solved || support_fit.on_layer != 0) {
     return;
   }
   const Vector6 now = own_support(body, stand);
   const Vector6 plain = stand.motion - now;
-  const Eigen::Map<const Matrix6> own(footing.own.data());
+  const Eigen::Map<const Matrix6> own(support_fit.own.data());
   const Matrix6 newton = Matrix6::Identity() - own * wrench_by_place(stand);
   const Vector6 step = solve_lu(newton, plain);
   if (step.allFinite() && step.head<3>().norm() <= plain.head<3>().norm()) {
@@ -202,22 +202,22 @@ void sway(const CompliantBody& body, Stand& stand) {
   }
 }
 
-/// Whether the body gives way under two regions at least by so much, beside the contacts, that the
+/// Whether the body deflects under two regions at least by so much, beside the contacts, that the
 /// one feels within a step how the other answers.
 bool answers_within_a_step(const CompliantBody& body, const ContactLaw& law,
                            const std::array<StiffnessRoot, kMaxRegionsPerBody>& roots) {
   std::size_t soft = 0;
   for (std::size_t i = 0; i < body.count; ++i) {
-    const Footing& footing = footing_of(body, body.stands[i]);
-    const Eigen::Map<const Matrix6> own(footing.own.data());
+    const SupportFit& support_fit = support_fit_of(body, body.stands[i]);
+    const Eigen::Map<const Matrix6> own(support_fit.own.data());
     const double share = (roots[i].root * own * roots[i].root).trace();
-    soft += footing.on_layer == 0 && share > law.answers_from ? 1U : 0U;
+    soft += support_fit.on_layer == 0 && share > law.answers_from ? 1U : 0U;
   }
   return soft >= 2;
 }
 
 /// Solves with Newton's symmetric matrix. Couplings between regions that lie in each other's reach
-/// are found through footings of different steps and sizes, and may come to more than what they
+/// are found through support fits of different steps and sizes, and may come to more than what they
 /// couple; the matrix then has no solution that means anything, of whatever size. It is solved with
 /// half of them, a quarter, none: the blocks on the diagonal are definite on their own.
 /// @param matrix  its part right of the diagonal; couplings become what they are solved with
@@ -256,9 +256,9 @@ void find_reactions(const CompliantBody& body,
       matrix, copy, [&inverse] { inverse.setIdentity(); }, inverse);
   for (std::size_t i = 0; i < body.count; ++i) {
     const Stand& stand = body.stands[i];
-    const Footing& footing = footing_of(body, stand);
+    const SupportFit& support_fit = support_fit_of(body, stand);
     RegionReaction& reaction = body.state.regions.at<RegionReaction>(stand.region);
-    if (footing.on_layer != 0) {
+    if (support_fit.on_layer != 0) {
       continue;
     }
     const auto at = static_cast<Eigen::Index>(6 * i);
@@ -269,7 +269,7 @@ void find_reactions(const CompliantBody& body,
     const Vector6 left =
         (system.values.cwiseMax(1e-12).cwiseInverse().array() - 1.0).cwiseMax(0.0).matrix();
     answered = system.vectors * left.asDiagonal() * system.vectors.transpose();
-    const Eigen::Map<const Matrix6> own(footing.own.data());
+    const Eigen::Map<const Matrix6> own(support_fit.own.data());
     const Matrix6 motion = own - roots[i].inverse * answered * roots[i].inverse;
     if (motion.allFinite()) {
       Eigen::Map<Matrix6>(reaction.motion.data()) = 0.5 * (motion + motion.transpose());
@@ -293,8 +293,8 @@ void add_sway(const CompliantBody& body, const Eigen::Map<RowMatrix>& upper, New
   for (std::size_t j = 0; j < body.count; ++j) {
     const Stand& from = body.stands[j];
     const RegionSupport& support = body.state.regions.at<RegionSupport>(from.region);
-    newton.moved[j] =
-        from.motion - own_support(body, from) + answer_at(support, footing_of(body, from).center);
+    newton.moved[j] = from.motion - own_support(body, from) +
+                      answer_at(support, support_fit_of(body, from).center);
     const Matrix6 by_place = wrench_by_place(from);
     const auto there = static_cast<Eigen::Index>(6 * j);
     for (std::size_t i = 0; i < body.count; ++i) {
@@ -307,7 +307,7 @@ void add_sway(const CompliantBody& body, const Eigen::Map<RowMatrix>& upper, New
   }
 }
 
-/// Where a region's equations have reckoned with the body's answer to its own load
+/// Where a region's equations have accounted for the body's answer to its own load
 /// (contact_load.hpp).
 void take_own_answer(const SupportAnswer& answer, RegionSupport& support,
                      RegionReaction& reaction) {
@@ -319,7 +319,7 @@ void take_own_answer(const SupportAnswer& answer, RegionSupport& support,
   reaction.active = 0;
 }
 
-/// Where a region's equations have reckoned with the others' answer, that has moved it by now.
+/// Where a region's equations have accounted for the others' answer, that has moved it by now.
 void take_answers(StepContext& context, std::uint32_t row) {
   const Model& model = context.model;
   State& state = context.state;
@@ -339,8 +339,8 @@ void take_answers(StepContext& context, std::uint32_t row) {
     if (reaction.active == 0) {
       continue;
     }
-    const Footing& footing = state.footings.at<Footing>(block_of(identity));
-    const Vector6 more = contact_load(model, state, region, footing).wrench -
+    const SupportFit& support_fit = state.support_fits.at<SupportFit>(block_of(identity));
+    const Vector6 more = contact_load(model, state, region, support_fit).wrench -
                          Eigen::Map<const Vector6>(reaction.wrench.data());
     const Vector6 moved = -(Eigen::Map<const Matrix6>(reaction.motion.data()) * more);
     const glm::dvec3 translation(moved[0], moved[1], moved[2]);
@@ -410,7 +410,7 @@ const BodyLaw kComplianceLaw{
 };
 
 void ComplianceScratch::reserve(const State& state) {
-  if (!state.footings.empty()) {
+  if (!state.support_fits.empty()) {
     constexpr std::size_t kRows = std::size_t{6} * kMaxRegionsPerBody;
     matrix.resize(kRows * kRows);
     copy.resize(kRows * kRows);

@@ -22,7 +22,7 @@ struct ComplianceScratch {
 
 /// The body's own compliance in series with its contacts: how far the material under each region
 /// has gone under the tractions of all regions of the body, as a rigid body and beyond. Reads what
-/// the contact models write; writes RegionSupport, SupportField, Footing and RegionCoupling.
+/// the contact models write; writes RegionSupport, SupportField, SupportFit and RegionCoupling.
 ///
 /// The rigid part is one step of a quasi-Newton method for u = C f(u), all regions at once, so
 /// their order does not matter: du = (I + C K)^-1 (C f - u), with K the contacts' stiffness without

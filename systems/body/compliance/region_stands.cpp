@@ -11,7 +11,7 @@
 #include "systems/contact/law.hpp"
 #include "systems/contact/scratch.hpp"
 #include "systems/contact/stick_slip.hpp"
-#include "systems/contact/support/footing.hpp"
+#include "systems/contact/support/support_fit.hpp"
 #include "systems/half_space/curved_influence.hpp"
 #include "systems/half_space/fields.hpp"
 #include "systems/half_space/layer.hpp"
@@ -41,16 +41,17 @@ struct RelativeCompliance {
   }
 };
 
-/// Footing::bend.
-Eigen::Matrix3d motion_by_bend(const CompliantBody& body, const Footing& footing) {
+/// SupportFit::bend.
+Eigen::Matrix3d motion_by_bend(const CompliantBody& body, const SupportFit& support_fit) {
   if (!may_bend(body.model, body.row)) {
     return Eigen::Matrix3d::Zero();
   }
   RegionFrame axes;
-  axes.tangent_x = footing.tangent_x;
-  axes.tangent_y = footing.tangent_y;
-  axes.normal = footing.normal;
-  const SurfaceBend found = find_surface_bend(body.model, body.row, footing, axes, footing.radius);
+  axes.tangent_x = support_fit.tangent_x;
+  axes.tangent_y = support_fit.tangent_y;
+  axes.normal = support_fit.normal;
+  const SurfaceBend found =
+      find_surface_bend(body.model, body.row, support_fit, axes, support_fit.radius);
   if (found.reach == 0.0) {
     return Eigen::Matrix3d::Zero();
   }
@@ -58,7 +59,7 @@ Eigen::Matrix3d motion_by_bend(const CompliantBody& body, const Footing& footing
   const CurvedResponse response = curved_response(found.curvature, elasticity.poisson_ratio);
   std::array<double, kCurvedKinds> mean{};  // kZZ, kXX, kXY, kYY
   for (std::size_t kind = 0; kind < kCurvedKinds; ++kind) {
-    mean[kind] = curved_mean(response[kind], footing.radius, found.reach) /
+    mean[kind] = curved_mean(response[kind], support_fit.radius, found.reach) /
                  (8.0 * std::numbers::pi * elasticity.shear_modulus());
   }
   Eigen::Matrix3d turn;
@@ -71,44 +72,47 @@ Eigen::Matrix3d motion_by_bend(const CompliantBody& body, const Footing& footing
 /// What a region's own wrench does to it: the part that yields goes to Newton's matrix. Where the
 /// rest of the body stiffens the half-space (a layer) Newton's method would overshoot as soon as
 /// the contact slips, and plain iteration converges.
-void find_own_motion(const CompliantBody& body, const Stand& stand, Footing& footing) {
-  Matrix6 motion = motion_between(body.ports, footing, footing);
-  Eigen::Map<Eigen::Matrix3d> bend(footing.bend.data());
-  bend = stand.solved ? Eigen::Matrix3d(Eigen::Matrix3d::Zero()) : motion_by_bend(body, footing);
+void find_own_motion(const CompliantBody& body, const Stand& stand, SupportFit& support_fit) {
+  Matrix6 motion = motion_between(body.ports, support_fit, support_fit);
+  Eigen::Map<Eigen::Matrix3d> bend(support_fit.bend.data());
+  bend =
+      stand.solved ? Eigen::Matrix3d(Eigen::Matrix3d::Zero()) : motion_by_bend(body, support_fit);
   motion.topLeftCorner<3, 3>() += bend;
   const RelativeCompliance relative(body, stand, motion);
   const double least = relative.system.values[0];
-  footing.share = std::min(1.0, kStiffest / std::min(least, -1e-300));
-  footing.on_layer = 0;
-  Eigen::Map<Matrix6>(footing.own.data()) = relative.at_least(0.0);
+  support_fit.share = std::min(1.0, kStiffest / std::min(least, -1e-300));
+  support_fit.on_layer = 0;
+  Eigen::Map<Matrix6>(support_fit.own.data()) = relative.at_least(0.0);
 }
 
 /// On a layer the ports do not count: patch has what the half-space lacks in its own tables
 /// (half_space/layer.hpp), mdr is moved as one.
 void find_motion_on_layer(const CompliantBody& body, const Stand& stand,
-                          const ContactEllipse& contact, double thickness, Footing& footing) {
-  footing.share = 0.0;
-  footing.on_layer = 1;
-  footing.own = {};
+                          const ContactEllipse& contact, double thickness,
+                          SupportFit& support_fit) {
+  support_fit.share = 0.0;
+  support_fit.on_layer = 1;
+  support_fit.own = {};
   if (!law_of(body.model, body.row).by_cells && has_layer_kernel(body.model, body.row)) {
     const Matrix6 motion = layer_motion(body.model, body.row, contact, thickness);
-    Eigen::Map<Matrix6>(footing.own.data()) =
+    Eigen::Map<Matrix6>(support_fit.own.data()) =
         RelativeCompliance(body, stand, motion).at_least(kStiffest);
   }
 }
 
-void lay_footings(const CompliantBody& body) {
+void fit_supports(const CompliantBody& body) {
   const Stand* first_laid = nullptr;
   ContactEllipse contact_of_first;
   for (std::size_t i = 0; i < body.count; ++i) {
     const Stand& stand = body.stands[i];
-    const Footing& footing = footing_of(body, stand);
+    const SupportFit& support_fit = support_fit_of(body, stand);
     const ContactEllipse contact = contact_ellipse(body.model, body.state, stand.region);
-    if (footing.reach == 0.0) {
+    if (support_fit.reach == 0.0) {
       forget_couplings(body.state, stand.block);
       lay_stand(body, stand, contact);
-    } else if (!still_fits(footing, contact) &&
-               (first_laid == nullptr || footing.serial < footing_of(body, *first_laid).serial)) {
+    } else if (!still_fits(support_fit, contact) &&
+               (first_laid == nullptr ||
+                support_fit.serial < support_fit_of(body, *first_laid).serial)) {
       first_laid = &stand;
       contact_of_first = contact;
     }
@@ -120,37 +124,37 @@ void lay_footings(const CompliantBody& body) {
 
 /// The region's own motion and bending by its own load.
 void move_by_own_load(const CompliantBody& body, Stand& stand) {
-  const Footing& footing = footing_of(body, stand);
+  const SupportFit& support_fit = support_fit_of(body, stand);
   SupportField& field = body.state.regions.at<SupportField>(stand.region);
-  stand.load = contact_load(body.model, body.state, stand.region, footing);
-  if (footing.on_layer != 0) {
-    stand.motion = Eigen::Map<const Matrix6>(footing.own.data()) * stand.load.wrench;
+  stand.load = contact_load(body.model, body.state, stand.region, support_fit);
+  if (support_fit.on_layer != 0) {
+    stand.motion = Eigen::Map<const Matrix6>(support_fit.own.data()) * stand.load.wrench;
     field = SupportField{};
     return;
   }
   PortVectors forces;
   PortVectors displacements;
-  forces_at_ports(footing, stand.load.moments, forces);
-  displacements_at_ports(body.ports, footing, forces, displacements);
-  for (std::size_t p = 0; p < footing.count; ++p) {
-    displacements[p] *= footing.share;
+  forces_at_ports(support_fit, stand.load.moments, forces);
+  displacements_at_ports(body.ports, support_fit, forces, displacements);
+  for (std::size_t p = 0; p < support_fit.count; ++p) {
+    displacements[p] *= support_fit.share;
   }
-  stand.motion = rigid_motion(footing, displacements);
-  field = bending(footing, displacements, stand.motion);
+  stand.motion = rigid_motion(support_fit, displacements);
+  field = bending(support_fit, displacements, stand.motion);
   stand.motion.head<3>() +=
-      Eigen::Map<const Eigen::Matrix3d>(footing.bend.data()) * stand.load.wrench.head<3>();
+      Eigen::Map<const Eigen::Matrix3d>(support_fit.bend.data()) * stand.load.wrench.head<3>();
 }
 
 }  // namespace
 
-Footing& footing_of(const CompliantBody& body, const Stand& stand) {
-  return body.state.footings.at<Footing>(stand.block);
+SupportFit& support_fit_of(const CompliantBody& body, const Stand& stand) {
+  return body.state.support_fits.at<SupportFit>(stand.block);
 }
 
 StiffnessRoot stiffness_root(const CompliantBody& body, const Stand& stand) {
   const RegionFrame& frame = body.state.regions.at<RegionFrame>(stand.region);
   const StuckStiffness stuck =
-      stuck_stiffness(body.model, body.state, stand.region, footing_of(body, stand).radius);
+      stuck_stiffness(body.model, body.state, stand.region, support_fit_of(body, stand).radius);
   Vector6 root;
   root << stuck.along_tangents, stuck.along_tangents, stuck.along_normal, stuck.about_tangents.x,
       stuck.about_tangents.y, stuck.about_normal;
@@ -168,14 +172,14 @@ StiffnessRoot stiffness_root(const CompliantBody& body, const Stand& stand) {
 void lay_stand(const CompliantBody& body, const Stand& stand, const ContactEllipse& contact) {
   const Model& model = body.model;
   State& state = body.state;
-  Footing& footing = footing_of(body, stand);
-  lay_footing(body.ports, contact, footing);
-  footing.serial = state.clock.step * state.footings.size() + stand.block + 1;
+  SupportFit& support_fit = support_fit_of(body, stand);
+  fit_support(body.ports, contact, support_fit);
+  support_fit.serial = state.clock.step * state.support_fits.size() + stand.block + 1;
   const double thickness = layer_thickness(model, body.row, contact.normal, contact.center);
   if (thickness > 0.0) {
-    find_motion_on_layer(body, stand, contact, thickness, footing);
+    find_motion_on_layer(body, stand, contact, thickness, support_fit);
   } else {
-    find_own_motion(body, stand, footing);
+    find_own_motion(body, stand, support_fit);
   }
 }
 
@@ -191,7 +195,7 @@ void find_stands(CompliantBody& body) {
       stand.solved = law_of(model, body.row).by_cells;
     }
   }
-  lay_footings(body);
+  fit_supports(body);
   for (std::size_t i = 0; i < body.count; ++i) {
     move_by_own_load(body, body.stands[i]);
   }
@@ -201,8 +205,8 @@ namespace {
 
 /// The same on a layer, forces and displacements alone: there a contact moves nothing farther away
 /// than some thicknesses.
-Matrix6 on_layer(const CompliantBody& body, const Matrix6& half_space, const Footing& to,
-                 const Footing& from, double thickness) {
+Matrix6 on_layer(const CompliantBody& body, const Matrix6& half_space, const SupportFit& to,
+                 const SupportFit& from, double thickness) {
   Matrix6 motion = Matrix6::Zero();
   if (has_layer_kernel(body.model, body.row)) {
     const glm::dmat3 layer =
@@ -222,7 +226,7 @@ std::uint32_t coupling_row(std::uint32_t one, std::uint32_t other) {
   return high * (high - 1) / 2 + std::min(one, other);
 }
 
-bool is_found(const RegionCoupling& coupling, const Footing& to, const Footing& from) {
+bool is_found(const RegionCoupling& coupling, const SupportFit& to, const SupportFit& from) {
   return coupling.serial_to == to.serial && coupling.serial_from == from.serial;
 }
 
@@ -232,14 +236,14 @@ bool is_found(const RegionCoupling& coupling, const Footing& to, const Footing& 
 /// the middle of one may lie within the disc of another: as far as the larger one's rim at least,
 /// where two regions do less to each other than each does to itself. With q = (1 - nu^2) / (pi E)
 /// point loads at distance d sink by q / d, discs by (pi / 2) q / a.
-glm::dvec3 apart(const Footing& there, const Footing& here, bool by_cells) {
+glm::dvec3 apart(const SupportFit& there, const SupportFit& here, bool by_cells) {
   const glm::dvec3 way = there.center - here.center;
   const double distance = glm::length(way);
   const double least = by_cells ? std::max(there.radius, here.radius) : there.radius + here.radius;
   return distance < least ? here.center + way * (least / distance) : there.center;
 }
 
-void find_coupling(const CompliantBody& body, const Footing& there, const Footing& here,
+void find_coupling(const CompliantBody& body, const SupportFit& there, const SupportFit& here,
                    RegionCoupling& coupling) {
   coupling.serial_to = there.serial;
   coupling.serial_from = here.serial;
@@ -255,8 +259,8 @@ std::size_t find_some_couplings(const CompliantBody& body, bool found_before, st
       const Stand& to = body.stands[ordered ? i : j];
       const Stand& from = body.stands[ordered ? j : i];
       RegionCoupling& coupling = coupling_between(body, to, from);
-      const Footing& there = footing_of(body, to);
-      const Footing& here = footing_of(body, from);
+      const SupportFit& there = support_fit_of(body, to);
+      const SupportFit& here = support_fit_of(body, from);
       if ((coupling.serial_to != 0) == found_before && !is_found(coupling, there, here)) {
         find_coupling(body, there, here, coupling);
         --most;
@@ -269,14 +273,14 @@ std::size_t find_some_couplings(const CompliantBody& body, bool found_before, st
 }  // namespace
 
 void forget_couplings(State& state, std::uint32_t block) {
-  for (std::uint32_t other = 0; other < state.footings.size(); ++other) {
+  for (std::uint32_t other = 0; other < state.support_fits.size(); ++other) {
     if (other != block) {
       state.couplings.at<RegionCoupling>(coupling_row(block, other)) = RegionCoupling{};
     }
   }
 }
 
-Matrix6 motion_of(const CompliantBody& body, const Footing& there, const Footing& here) {
+Matrix6 motion_of(const CompliantBody& body, const SupportFit& there, const SupportFit& here) {
   Matrix6 motion = there.share * here.share * motion_between(body.ports, there, here);
   if (there.center != here.center) {
     const bool by_cells = law_of(body.model, body.row).by_cells;

@@ -7,16 +7,16 @@
 #include "ecs/model.hpp"
 #include "ecs/state.hpp"
 #include "systems/contact/support/contact_load.hpp"
-#include "systems/contact/support/footing.hpp"
+#include "systems/contact/support/support_fit.hpp"
 
 namespace torsion {
 
 /// A region on a body with body model compliance.
 struct Stand {
   std::uint32_t region = 0;
-  std::uint32_t block = 0;  // of cells, and row of its footing
+  std::uint32_t block = 0;  // of cells, and row of its support fit
   ContactLoad load;
-  Vector6 motion = Vector6::Zero();  // at the footing's centre, by this region's own load
+  Vector6 motion = Vector6::Zero();  // at the support fit's centre, by this region's own load
   bool solved = false;               // its contact model knows what that is: contact model patch
 };
 
@@ -30,37 +30,37 @@ struct CompliantBody {
   std::size_t count = 0;
 };
 
-Footing& footing_of(const CompliantBody& body, const Stand& stand);
+SupportFit& support_fit_of(const CompliantBody& body, const Stand& stand);
 
-/// Square root of the stiffness of a contact that sticks against motions at its footing's centre,
-/// 6 x 6, body axes, and its inverse.
+/// Square root of the stiffness of a contact that sticks against motions at its support fit's
+/// centre, 6 x 6, body axes, and its inverse.
 struct StiffnessRoot {
   Matrix6 root;
   Matrix6 inverse;
 };
 StiffnessRoot stiffness_root(const CompliantBody& body, const Stand& stand);
 
-/// Lays the region's footing, and finds what its own wrench does to it.
+/// Lays the region's support fit, and finds what its own wrench does to it.
 void lay_stand(const CompliantBody& body, const Stand& stand, const ContactEllipse& contact);
 
-/// Takes the regions of the body, lays footings, and moves the regions by their own loads. That a
-/// step has a bounded cost, of the footings that no longer fit one is laid anew in a step, that
-/// which was laid first; the others serve a step longer. A new region's is laid at once.
+/// Takes the regions of the body, lays support fits, and moves the regions by their own loads. That
+/// a step has a bounded cost, of the support fits that no longer fit one is refitted in a step,
+/// that which was laid first; the others serve a step longer. A new region's is laid at once.
 void find_stands(CompliantBody& body);
 
 // What a body's regions do to each other.
 
 /// So many couplings between regions are found anew in a step at most, for each body: all of one
-/// footing's.
+/// support fit's.
 inline constexpr std::size_t kCouplingsAStep = kMaxRegionsPerBody;
 
 /// What a wrench on `here` does to `there`, half-space included.
-Matrix6 motion_of(const CompliantBody& body, const Footing& there, const Footing& here);
+Matrix6 motion_of(const CompliantBody& body, const SupportFit& there, const SupportFit& here);
 
-/// A new region knows nothing of what the last one with its footing did to others.
+/// A new region knows nothing of what the last one with its support fit did to others.
 void forget_couplings(State& state, std::uint32_t block);
 
-/// Finds couplings anew between regions whose footings have been laid since, kCouplingsAStep at
+/// Finds couplings anew between regions whose supports have been refitted since, kCouplingsAStep at
 /// most, of new regions first; the others stay as they are a step longer.
 void find_couplings(const CompliantBody& body);
 
@@ -86,7 +86,7 @@ void begin_support(const Model& model, State& state, std::uint32_t region);
 void begin_split_support(const Model& model, State& state, std::uint32_t from,
                          std::uint32_t region);
 
-/// BodyLaw::split. Writes Footing of the new one, and RegionSupport and RegionReaction.
+/// BodyLaw::split. Writes SupportFit of the new one, and RegionSupport and RegionReaction.
 void split_support(const Model& model, State& state, std::uint32_t from, std::uint32_t region);
 
 /// BodyLaw::join. Writes RegionSupport and RegionReaction.

@@ -17,7 +17,8 @@ struct ToEachOther {
   Matrix6 known;  // of that, what it did as the one region's own load
 };
 
-ToEachOther to_each_other(const CompliantBody& body, const Footing& there, const Footing& here) {
+ToEachOther to_each_other(const CompliantBody& body, const SupportFit& there,
+                          const SupportFit& here) {
   ToEachOther both{motion_of(body, there, here), Matrix6::Zero()};
   if (here.on_layer == 0) {
     both.known = there.share * here.share * motion_between(body.ports, there, here);
@@ -64,16 +65,16 @@ void begin_support(const Model& model, State& state, std::uint32_t region) {
   RegionSupport& support = state.regions.at<RegionSupport>(region);
   support = RegionSupport{};
   const CompliantBody body{model, state, row, ports_of(model, row)};
-  Footing there;
+  SupportFit there;
   Vector6 motion = Vector6::Zero();
   for (std::uint32_t other = 0; other < state.regions.size(); ++other) {
     const RegionIdentity& identity = state.regions.at<RegionIdentity>(other);
-    const Footing& here = state.footings.at<Footing>(block_of(identity));
+    const SupportFit& here = state.support_fits.at<SupportFit>(block_of(identity));
     if (identity.body != row || other == region || here.reach == 0.0) {
       continue;
     }
     if (there.reach == 0.0) {
-      lay_footing(body.ports, disc_of_grid(state.regions.at<RegionFrame>(region)), there);
+      fit_support(body.ports, disc_of_grid(state.regions.at<RegionFrame>(region)), there);
       there.share = 1.0;
     }
     motion += motion_of(body, there, here) * contact_load(model, state, other, here).wrench;
@@ -91,13 +92,13 @@ void begin_split_support(const Model& model, State& state, std::uint32_t from,
   RegionSupport& old = state.regions.at<RegionSupport>(from);
   RegionSupport& fresh = state.regions.at<RegionSupport>(region);
   fresh = old;
-  const Footing& here = state.footings.at<Footing>(block_of(identity));
+  const SupportFit& here = state.support_fits.at<SupportFit>(block_of(identity));
   if (law_of(model, identity.body).by_cells || here.reach == 0.0) {
     return;
   }
   const CompliantBody body{model, state, identity.body, ports_of(model, identity.body)};
-  Footing there;
-  lay_footing(body.ports, disc_of_grid(state.regions.at<RegionFrame>(region)), there);
+  SupportFit there;
+  fit_support(body.ports, disc_of_grid(state.regions.at<RegionFrame>(region)), there);
   there.share = here.share;
   const ToEachOther both = to_each_other(body, there, here);
   const double relative = there.radius / here.radius;
@@ -111,14 +112,14 @@ void begin_split_support(const Model& model, State& state, std::uint32_t from,
   left.tail<3>() -= Eigen::Vector3d(couple.x, couple.y, couple.z);
   move_by_part(both.motion, both.known, left, there.center, fresh);
   move_by_part(both.motion.transpose(), both.known.transpose(), taken, here.center, old);
-  // What each has given way to by its own load (contact_load.hpp).
+  // How far each has been moved by its own load (contact_load.hpp).
   Eigen::Map<Vector6>(state.regions.at<RegionReaction>(from).wrench.data()) -= load - left;
   Eigen::Map<Vector6>(state.regions.at<RegionReaction>(region).wrench.data()) = taken;
 }
 
 void split_support(const Model& model, State& state, std::uint32_t from, std::uint32_t region) {
   const RegionIdentity& identity = state.regions.at<RegionIdentity>(from);
-  const Footing& here = state.footings.at<Footing>(block_of(identity));
+  const SupportFit& here = state.support_fits.at<SupportFit>(block_of(identity));
   if (here.reach == 0.0) {
     return;
   }
@@ -126,7 +127,7 @@ void split_support(const Model& model, State& state, std::uint32_t from, std::ui
   const Stand stand = solved_stand(state, region);
   forget_couplings(state, stand.block);
   lay_stand(body, stand, contact_ellipse(model, state, region));
-  const Footing& there = footing_of(body, stand);
+  const SupportFit& there = support_fit_of(body, stand);
   const ToEachOther both = to_each_other(body, there, here);
   RegionSupport& old = state.regions.at<RegionSupport>(from);
   RegionSupport& fresh = state.regions.at<RegionSupport>(region);
@@ -144,9 +145,9 @@ void split_support(const Model& model, State& state, std::uint32_t from, std::ui
 
 void join_support(const Model& model, State& state, std::uint32_t ended, std::uint32_t heir) {
   const RegionIdentity& identity = state.regions.at<RegionIdentity>(heir);
-  const Footing& here = state.footings.at<Footing>(block_of(identity));
-  const Footing& there =
-      state.footings.at<Footing>(block_of(state.regions.at<RegionIdentity>(ended)));
+  const SupportFit& here = state.support_fits.at<SupportFit>(block_of(identity));
+  const SupportFit& there =
+      state.support_fits.at<SupportFit>(block_of(state.regions.at<RegionIdentity>(ended)));
   if (here.reach == 0.0 || there.reach == 0.0) {
     return;
   }

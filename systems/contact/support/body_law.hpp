@@ -11,7 +11,7 @@ namespace torsion {
 /// One body model: how the material under a region has been moved by what presses on the body.
 struct BodyLaw {
   BodyModel model = BodyModel::kAuto;
-  /// The body as a whole gives way under its contacts, and moves the material under each
+  /// The body as a whole deflects under its contacts, and moves the material under each
   /// (RegionSupport).
   bool moves_as_a_whole = false;
 

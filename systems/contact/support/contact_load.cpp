@@ -11,7 +11,7 @@
 #include "systems/contact/law.hpp"
 #include "systems/contact/region_grid.hpp"
 #include "systems/contact/support/body_law.hpp"
-#include "systems/contact/support/footing.hpp"
+#include "systems/contact/support/support_fit.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
 #include "systems/math/linear_algebra.hpp"
@@ -111,7 +111,7 @@ void add_wrench(ContactLoad& load, const glm::dvec3& arm, const glm::dvec3& forc
 /// One row of loaded cells.
 struct LoadedRow {
   std::size_t count = 0;
-  // A place in the footing's coordinates, and the traction on the tool, Pa, grid.
+  // A place in the support fit's coordinates, and the traction on the tool, Pa, grid.
   std::array<double, kMaxGridSide> x, y, along_x, along_y, pressure;
 };
 
@@ -147,14 +147,14 @@ struct PlainSums {
 };
 
 ContactLoad load_of_cells(const Model& model, const State& state, std::uint32_t region,
-                          const Footing& footing) {
+                          const SupportFit& support_fit) {
   const LoadedCells cells = cells_of(model, state, region);
   const RegionFrame& frame = cells.frame;
-  const glm::dvec2 origin = plain_coordinates_in(footing, frame.origin);
-  const glm::dvec2 by_x(glm::dot(footing.tangent_x, frame.tangent_x) / footing.reach,
-                        glm::dot(footing.tangent_y, frame.tangent_x) / footing.reach);
-  const glm::dvec2 by_y(glm::dot(footing.tangent_x, frame.tangent_y) / footing.reach,
-                        glm::dot(footing.tangent_y, frame.tangent_y) / footing.reach);
+  const glm::dvec2 origin = plain_coordinates_in(support_fit, frame.origin);
+  const glm::dvec2 by_x(glm::dot(support_fit.tangent_x, frame.tangent_x) / support_fit.reach,
+                        glm::dot(support_fit.tangent_y, frame.tangent_x) / support_fit.reach);
+  const glm::dvec2 by_y(glm::dot(support_fit.tangent_x, frame.tangent_y) / support_fit.reach,
+                        glm::dot(support_fit.tangent_y, frame.tangent_y) / support_fit.reach);
   PlainSums plain;
   TermSums sums;
   LoadedRow row;
@@ -188,7 +188,7 @@ ContactLoad load_of_cells(const Model& model, const State& state, std::uint32_t 
   for (std::size_t k = 0; k < kSupportTerms; ++k) {
     load.moments[k] = on_material(sums.along_x[k], sums.along_y[k], sums.pressure[k]);
   }
-  add_wrench(load, frame.origin - footing.center,
+  add_wrench(load, frame.origin - support_fit.center,
              on_material(plain.along.x, plain.along.y, plain.pressure));
   const glm::dvec3 couple =
       on_material(plain.pressure_times_place.y, -plain.pressure_times_place.x, plain.turning);
@@ -197,7 +197,7 @@ ContactLoad load_of_cells(const Model& model, const State& state, std::uint32_t 
 }
 
 /// Force and couple spread over the region's disc.
-ContactLoad load_of_disc(const State& state, std::uint32_t region, const Footing& footing) {
+ContactLoad load_of_disc(const State& state, std::uint32_t region, const SupportFit& support_fit) {
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const RegionFriction& friction = state.regions.at<RegionFriction>(region);
   const ContactEllipse disc = disc_of(state, region);
@@ -212,11 +212,11 @@ ContactLoad load_of_disc(const State& state, std::uint32_t region, const Footing
   for (const DiscPoint& point : disc_points()) {
     const glm::dvec3 arm = disc.axis_1 * point.place.x + disc.axis_2 * point.place.y;
     const glm::dvec3 here = point.ball_share * (force + turning * glm::cross(frame.normal, arm));
-    const auto terms = support_terms(coordinates_in(footing, disc.center + arm));
+    const auto terms = support_terms(coordinates_in(support_fit, disc.center + arm));
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
       load.moments[k] += terms[k] * here;
     }
-    add_wrench(load, disc.center + arm - footing.center, here);
+    add_wrench(load, disc.center + arm - support_fit.center, here);
   }
   return load;
 }
@@ -234,33 +234,34 @@ ContactEllipse contact_ellipse(const Model& model, const State& state, std::uint
 }
 
 ContactLoad contact_load(const Model& model, const State& state, std::uint32_t region,
-                         const Footing& footing) {
-  return by_cells(model, state, region) ? load_of_cells(model, state, region, footing)
-                                        : load_of_disc(state, region, footing);
+                         const SupportFit& support_fit) {
+  return by_cells(model, state, region) ? load_of_cells(model, state, region, support_fit)
+                                        : load_of_disc(state, region, support_fit);
 }
 
 namespace {
 
 // Of what the loads move, in the step in which they are found. The rest is compliance's, a step
-// later, which takes energy; an answer that went too far, of a footing that no longer quite fits,
-// would be taken back, which feeds some.
+// later, which takes energy; an answer that went too far, of a support fit that no longer quite
+// fits, would be taken back, which feeds some.
 constexpr double kFirst = 0.9;
 
 using LoadColumns = Eigen::Matrix<double, 6, 4>;  // wrenches by loads
 
-/// The footing whose compliance the region's support comes from, or null.
-const Footing* footing_under(const Model& model, const State& state, std::uint32_t region) {
+/// The support fit whose compliance the region's support comes from, or null.
+const SupportFit* support_fit_under(const Model& model, const State& state, std::uint32_t region) {
   const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
   if (!body_law_of(model, identity.body).moves_as_a_whole) {
     return nullptr;
   }
-  const Footing& footing = state.footings.at<Footing>(block_of(identity));
-  return footing.reach > 0.0 && footing.on_layer == 0 ? &footing : nullptr;
+  const SupportFit& support_fit = state.support_fits.at<SupportFit>(block_of(identity));
+  return support_fit.reach > 0.0 && support_fit.on_layer == 0 ? &support_fit : nullptr;
 }
 
-/// Each load of 1 as a wrench about the footing's centre.
-LoadColumns unit_loads(const RegionFrame& frame, const Footing& footing, const glm::dvec3& point) {
-  const glm::dvec3 arm = point - footing.center;
+/// Each load of 1 as a wrench about the support fit's centre.
+LoadColumns unit_loads(const RegionFrame& frame, const SupportFit& support_fit,
+                       const glm::dvec3& point) {
+  const glm::dvec3 arm = point - support_fit.center;
   LoadColumns columns = LoadColumns::Zero();
   const auto set_force = [&](Eigen::Index column, const glm::dvec3& force) {
     const glm::dvec3 couple = glm::cross(arm, force);
@@ -274,9 +275,9 @@ LoadColumns unit_loads(const RegionFrame& frame, const Footing& footing, const g
 }
 
 /// What the region's own loads move it by: less what the others' answers take back.
-Matrix6 yielding(const State& state, std::uint32_t region, const Footing& footing) {
+Matrix6 yielding(const State& state, std::uint32_t region, const SupportFit& support_fit) {
   const RegionReaction& reaction = state.regions.at<RegionReaction>(region);
-  Matrix6 motion = Eigen::Map<const Matrix6>(footing.own.data());
+  Matrix6 motion = Eigen::Map<const Matrix6>(support_fit.own.data());
   if (reaction.active != 0) {
     motion -= Eigen::Map<const Matrix6>(reaction.motion.data());
   }
@@ -288,13 +289,13 @@ Matrix6 yielding(const State& state, std::uint32_t region, const Footing& footin
 OwnAnswer own_answer(const Model& model, const State& state, std::uint32_t region,
                      const glm::dvec3& point) {
   OwnAnswer answer;
-  const Footing* const footing = footing_under(model, state, region);
-  if (footing == nullptr) {
+  const SupportFit* const support_fit = support_fit_under(model, state, region);
+  if (support_fit == nullptr) {
     return answer;
   }
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
-  answer.wrenches = unit_loads(frame, *footing, point);
-  answer.motions.noalias() = yielding(state, region, *footing) * answer.wrenches;
+  answer.wrenches = unit_loads(frame, *support_fit, point);
+  answer.motions.noalias() = yielding(state, region, *support_fit) * answer.wrenches;
   const Eigen::Matrix4d compliance = answer.wrenches.transpose() * answer.motions;
   const auto& wrench = state.regions.at<RegionReaction>(region).wrench;
   const glm::dvec3 force(wrench[0], wrench[1], wrench[2]);
@@ -302,7 +303,7 @@ OwnAnswer own_answer(const Model& model, const State& state, std::uint32_t regio
   answer.any = true;
   answer.point = point;
   answer.known = {glm::dot(force, frame.tangent_x), glm::dot(force, frame.tangent_y),
-                  glm::dot(couple - glm::cross(point - footing->center, force), frame.normal),
+                  glm::dot(couple - glm::cross(point - support_fit->center, force), frame.normal),
                   -glm::dot(force, frame.normal)};
   for (int column = 0; column < 4; ++column) {
     for (int row = 0; row < 4; ++row) {
@@ -314,17 +315,17 @@ OwnAnswer own_answer(const Model& model, const State& state, std::uint32_t regio
 
 SupportAnswer support_answer(const Model& model, const State& state, std::uint32_t region,
                              const OwnAnswer& answer, const ContactLoads& more,
-                             const ContactLoads& reckoned) {
+                             const ContactLoads& accounted) {
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
-  const Footing& footing = *footing_under(model, state, region);
+  const SupportFit& support_fit = *support_fit_under(model, state, region);
   const glm::dvec3& about = state.regions.at<RegionSupport>(region).about;
   const Eigen::Vector4d loads(more.x, more.y, more.z, more.w);
   const Vector6 motion = answer.motions * loads;
   SupportAnswer found;
   found.rotation = {motion[3], motion[4], motion[5]};
   found.translation = glm::dvec3(motion[0], motion[1], motion[2]) +
-                      glm::cross(found.rotation, about - footing.center);
-  const ContactLoads left = answer.compliance * more - reckoned;
+                      glm::cross(found.rotation, about - support_fit.center);
+  const ContactLoads left = answer.compliance * more - accounted;
   found.rotation_left = left.z * frame.normal;
   found.translation_left = left.x * frame.tangent_x + left.y * frame.tangent_y +
                            glm::cross(found.rotation_left, about - answer.point);

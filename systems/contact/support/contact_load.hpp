@@ -8,14 +8,14 @@
 
 #include "ecs/state.hpp"
 #include "systems/contact/scratch.hpp"
-#include "systems/contact/support/footing.hpp"
+#include "systems/contact/support/support_fit.hpp"
 
 namespace torsion {
 
 /// What a region's contact does to the material.
 struct ContactLoad {
-  SupportMoments moments{};          // N: of its forces, in a footing's SupportField
-  Vector6 wrench = Vector6::Zero();  // N, N m about the footing's centre
+  SupportMoments moments{};          // N: of its forces, in a support fit's SupportField
+  Vector6 wrench = Vector6::Zero();  // N, N m about the support fit's centre
 };
 
 PortCompliance ports_of(const Model& model, std::uint32_t body);
@@ -26,9 +26,9 @@ ContactEllipse contact_ellipse(const Model& model, const State& state, std::uint
 
 /// Contact model patch: cell by cell. The others: force and couple as a ball spreads them.
 ContactLoad contact_load(const Model& model, const State& state, std::uint32_t region,
-                         const Footing& footing);
+                         const SupportFit& support_fit);
 
-// How a compliant body gives way under a region within the step in which the region's loads are
+// How a compliant body deflects under a region within the step in which the region's loads are
 // found. Contact model patch has that in its own equations (patch/support.hpp); this is for those
 // that know a contact as a whole.
 
@@ -37,11 +37,11 @@ ContactLoad contact_load(const Model& model, const State& state, std::uint32_t r
 using ContactLoads = glm::dvec4;
 
 struct OwnAnswer {
-  bool any = false;            // else the body does not give way, or not so that it is known
+  bool any = false;            // else the body does not deflect, or not so that it is known
   glm::dvec3 point{0.0};       // m, body: where the loads act
   glm::dmat4 compliance{0.0};  // motions by loads: the others' answers are in it, where they matter
-  ContactLoads known{0.0};     // to which the body has given way already
-  // Of loads of 1, about the footing's centre: wrenches, and what they move.
+  ContactLoads known{0.0};     // to which the body has deflected already
+  // Of loads of 1, about the support fit's centre: wrenches, and what they move.
   Eigen::Matrix<double, 6, 4> wrenches, motions;
 };
 
@@ -49,10 +49,10 @@ struct OwnAnswer {
 OwnAnswer own_answer(const Model& model, const State& state, std::uint32_t region,
                      const glm::dvec3& point);
 
-/// What becomes of the region's support when the body has given way to so much more.
-/// @param reckoned  motion of the material that the contact has taken
+/// What becomes of the region's support when the body has deflected under so much more load.
+/// @param accounted  motion of the material that the contact has accounted for
 SupportAnswer support_answer(const Model& model, const State& state, std::uint32_t region,
                              const OwnAnswer& answer, const ContactLoads& more,
-                             const ContactLoads& reckoned);
+                             const ContactLoads& accounted);
 
 }  // namespace torsion

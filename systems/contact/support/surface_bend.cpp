@@ -3,7 +3,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "systems/contact/support/footing.hpp"
+#include "systems/contact/support/support_fit.hpp"
 #include "systems/geometry/bounds.hpp"
 #include "systems/geometry/distance.hpp"
 #include "systems/math/frames.hpp"
@@ -30,18 +30,19 @@ double port_spacing(const Model& model, std::uint32_t body) {
 
 /// The mean logarithm of the distance between the forces at the ports that a force on the contact
 /// is, and their displacements that its own is.
-double mean_reach(const Model& model, std::uint32_t body, const Footing& footing) {
+double mean_reach(const Model& model, std::uint32_t body, const SupportFit& support_fit) {
   const auto ports = model.ports.rows<CompliancePort>(model.bodies.at<OwnedRows>(body).ports);
   const double nearest = kElementsSee * port_spacing(model, body);
   const double least = nearest * nearest * nearest * nearest;
-  const auto share = [&footing](std::size_t port) {
-    return glm::dot(footing.unit_forces[0][port], glm::dvec3(1.0, 0.0, 0.0));
+  const auto share = [&support_fit](std::size_t port) {
+    return glm::dot(support_fit.unit_forces[0][port], glm::dvec3(1.0, 0.0, 0.0));
   };
   double sum = 0.0;
-  for (std::size_t i = 0; i < footing.count; ++i) {
+  for (std::size_t i = 0; i < support_fit.count; ++i) {
     sum += share(i) * share(i) * std::log(nearest);
     for (std::size_t j = 0; j < i; ++j) {
-      const glm::dvec3 way = ports[footing.ports[i]].position - ports[footing.ports[j]].position;
+      const glm::dvec3 way =
+          ports[support_fit.ports[i]].position - ports[support_fit.ports[j]].position;
       const double square = glm::dot(way, way);
       sum += share(i) * share(j) * 0.5 * std::log(square * square + least);
     }
@@ -51,17 +52,17 @@ double mean_reach(const Model& model, std::uint32_t body, const Footing& footing
 
 }  // namespace
 
-SurfaceBend find_surface_bend(const Model& model, std::uint32_t body, const Footing& footing,
+SurfaceBend find_surface_bend(const Model& model, std::uint32_t body, const SupportFit& support_fit,
                               const RegionFrame& axes, double across) {
   SurfaceBend bend;
-  const double reach = mean_reach(model, body, footing);
+  const double reach = mean_reach(model, body, support_fit);
   const double span = std::max(kSpan * reach, across);
   const Range parts = model.bodies.at<OwnedRows>(body).parts;
   const auto slope = [&](const glm::dvec3& direction) {
-    const glm::dvec3 before =
-        glm::normalize(signed_distance(model, parts, footing.center - span * direction).gradient);
-    const glm::dvec3 after =
-        glm::normalize(signed_distance(model, parts, footing.center + span * direction).gradient);
+    const glm::dvec3 before = glm::normalize(
+        signed_distance(model, parts, support_fit.center - span * direction).gradient);
+    const glm::dvec3 after = glm::normalize(
+        signed_distance(model, parts, support_fit.center + span * direction).gradient);
     const bool gentle =
         std::min(glm::dot(before, axes.normal), glm::dot(after, axes.normal)) > kEdge;
     const glm::dvec3 change = (after - before) / (2.0 * span);

@@ -230,7 +230,7 @@ std::vector<std::uint8_t> nodes_that_slide(const ElasticSolid& solid, const Soli
 void even_out(const ElasticSolid& solid, const std::vector<std::uint8_t>& sides, SolidGrid& grid) {
   constexpr int kSweeps = 12;
   const std::vector<std::uint8_t> slides = nodes_that_slide(solid, grid);
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+  for (int iteration = 0; iteration < kSweeps; ++iteration) {
     const std::vector<glm::dvec3> on_faces = means_of_neighbours(
         grid.nodes, grid.faces, [](std::size_t apart) { return apart == 1 || apart == 3; });
     for (std::size_t n = 0; n < grid.nodes.size(); ++n) {

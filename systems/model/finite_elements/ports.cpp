@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "systems/contact/support/footing.hpp"
+#include "systems/contact/support/support_fit.hpp"
 #include "systems/model/finite_elements/compliance.hpp"
 #include "systems/model/finite_elements/solid_surface.hpp"
 

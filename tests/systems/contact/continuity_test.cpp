@@ -126,7 +126,7 @@ TEST_P(HalfSpaceContinuityTest, RegionsMeetAndPart) {
   expect_continuous(scene({{-0.008, 0.0, 0.0}, {0.008, 2e-5, 0.0}}), press, 2.0, 3);
 }
 
-/// Presses the feet into a body that gives way until they meet, and lets go.
+/// Presses the feet into a body that deflects until they meet, and lets go.
 void expect_continuous_meeting(SceneDescription scene, std::uint64_t regions) {
   scene.bodies[0].models.body = BodyModel::kCompliance;
   const Path press = [](double t) {
@@ -136,7 +136,7 @@ void expect_continuous_meeting(SceneDescription scene, std::uint64_t regions) {
 }
 
 TEST_P(HalfSpaceContinuityTest, RegionsMeetAndPartOnABodyThatGivesWay) {
-  // Where two footings become one, so do the body's answers to them.
+  // Where two support fits become one, so do the body's answers to them.
   expect_continuous_meeting(scene({{-0.008, 0.0, 0.0}, {0.008, 2e-5, 0.0}}), 3);
 }
 

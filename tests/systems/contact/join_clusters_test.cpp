@@ -37,7 +37,7 @@ PartDescription torus(double ring, double tube) {
   return part;
 }
 
-/// A tool over the top face of a block, y = 0.1 m, of which only the contact gives way.
+/// A tool over the top face of a block, y = 0.1 m, of which only the contact deflects.
 Hand over_block(PartDescription part, ContactModel contact, std::uint32_t side, const Pose& pose) {
   SceneDescription scene = ball_on_cube();
   scene.bodies[0].elasticity.youngs_modulus = 1e5;

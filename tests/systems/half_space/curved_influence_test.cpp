@@ -111,7 +111,7 @@ std::array<Waves, 3> taken_off(int axis, const SurfaceCurvature& curvature, doub
   };
   const Waves x = traction(slope[0], slope[1]);
   const Waves y = traction(slope[1], slope[2]);
-  // The half-space gives way by (1 - nu) / k along the wave, 1 / k across it, and sinks by
+  // The half-space deflects by (1 - nu) / k along the wave, 1 / k across it, and sinks by
   // -i (1 - 2 nu) / (2 k) times what is along it.
   const Waves along = make_waves([&](int m) { return times_cosine(x, m) + times_sine(y, m); });
   return {make_waves([&](int m) { return x.at(m) - nu * times_cosine(along, m); }),
@@ -169,7 +169,7 @@ TEST(CurvedInfluenceTest, ClosedFormIsThePerturbationOfTheBoundary) {
 }
 
 TEST(CurvedInfluenceTest, ASphereTwistsAsItsModes) {
-  // A sphere's toroidal modes give way by R / (G (n - 1)), whatever nu (Love, Theory of Elasticity,
+  // A sphere's toroidal modes deflect by R / (G (n - 1)), whatever nu (Love, Theory of Elasticity,
   // 1927, 182). With k = (n + 1/2) / R that is 1 / (G k), the half-space's, and 3 / (2 G R k^2).
   // A ring that is sheared around sees motion across the wave alone: of a force on it along the
   // angle, it goes round by 3 / (2 R) times the integral of J1(k)^2 / k dk / (2 pi), 1 / (4 pi).

@@ -141,7 +141,7 @@ DiscForces press_and_turn(const InfluenceTables& tables) {
   problem.reference = 0.05;
   problem.skip = 1e-7;
   problem.settled = 0.0;
-  problem.sweeps = 2000;
+  problem.iterations = 2000;
   PatchWork work;
   work.reserve(Grid::kSide);
   solve_patch(problem, grid.columns, work);

@@ -146,7 +146,7 @@ TEST(ChooseModelsTest, ALongContactGetsMoreCells) {
   EXPECT_EQ(side_for({0.02, 0.02, 0.004}), 20U);
 }
 
-// Its bed is as deep as the body: with a body model that would give way twice.
+// Its bed is as deep as the body: with a body model that would deflect twice.
 TEST(ChooseModelsTest, WinklerGetsNoBodyModelUnlessOneIsAskedFor) {
   const ExpectedContact by_hand;
   BodyModels scene;

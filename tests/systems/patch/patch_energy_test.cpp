@@ -12,7 +12,7 @@
 #include "systems/patch/energy.hpp"
 #include "tests/support/dense_algebra.hpp"
 #include "tests/support/studies.hpp"
-#include "tests/systems/patch/asked_by_inverse.hpp"
+#include "tests/systems/patch/local_inverse_at.hpp"
 #include "tests/systems/patch/worked_ball.hpp"
 
 // The holder's work on the contact model `patch`.
@@ -148,7 +148,7 @@ TEST_P(PatchEnergyTest, DeepAndShallowAgainCostsWhatTheRegionHoldsMore) {
     least = std::min(least, (ball.work - (ball.held() - before)) / ball.throughput);
   }
   // The mean of two forces is off by (h / d)^2 / 16 of a power law of 3/2. And of each of three
-  // grids or fewer a way, what it changes, half a percent of the force, is let out a step late.
+  // grids or fewer a way, what it changes, half a percent of the force, is output a step late.
   const double step = (1.0 - kShallow) / kStepsOfWay / kShallow;
   EXPECT_GE(least, -step * step / 16.0 - 3.0 * 0.005 / kStepsOfWay);
 }
@@ -315,7 +315,7 @@ Eigen::MatrixXd local_inverses_of(const InfluenceTables& tables) {
     for (int from = 0; from < cells; ++from) {
       for (int to = 0; to < cells; ++to) {
         all(block * cells + to, block * cells + from) =
-            test::asked_at(inverse, from % side - to % side, from / side - to / side);
+            test::local_inverse_at(inverse, from % side - to % side, from / side - to / side);
       }
     }
     ++block;

@@ -36,13 +36,13 @@ struct BallCase {
 // of the radius, of its cube and of the force); 0.4 % for carrying the springs along as the contact
 // grows (mdr_layers_test.cpp). That sliding and spinning share one return map is a model, not
 // exact: 1.2 %. The normal force has the sphere's next term: (a / R)^4 of the one after.
-// patch: the staircase of the rim, 1 % at 12 and at 16 cells across in two sweeps, 0.4 % at 24 in
-// eight (patch_torsion_test.cpp); a contact that shrinks loses it cell by cell.
+// patch: the staircase of the rim, 1 % at 12 and at 16 cells across in two iterations, 0.4 % at 24
+// in eight (patch_torsion_test.cpp); a contact that shrinks loses it cell by cell.
 const BallCase kBallCases[] = {
     {"mdr", {.model = ContactModel::kMdr}, 1e-5, 0.0015, 0.0025, 0.006, 0.012},
     {"patch12", {.side = 12}, 0.008, 0.012, 0.02, 0.02, 0.015},
     {"patch16", {.side = 16}, 0.005, 0.012, 0.015, 0.018, 0.01},
-    {"patch24", {.side = 24, .sweeps = 8}, 0.005, 0.005, 0.0065, 0.007, 0.006},
+    {"patch24", {.side = 24, .iterations = 8}, 0.005, 0.005, 0.0065, 0.007, 0.006},
 };
 
 void PrintTo(const BallCase& model, std::ostream* out) {
@@ -89,11 +89,11 @@ TEST_P(BallTest, SlideAndWayBackFollowCattaneoAndMindlin) {
 }
 
 TEST(PatchManyCellsTest, TwoSweepsStayCalmWhereSlipTurnsBack) {
-  // Nearly everything slips, then all sticks again: tractions that were foreseen outside their
+  // Nearly everything slips, then all sticks again: tractions that were extrapolated outside their
   // discs come back into them, in steps that must not overshoot the more the more cells there are.
   // 1 %: the staircase of the rim at 24 cells and more, 0.4 %, on its way back.
   for (const std::uint32_t side : {24U, 32U}) {
-    PressedBall ball({.side = side, .sweeps = 2});
+    PressedBall ball({.side = side, .iterations = 2});
     ball.press(kBallDepth, 600);
     const reference::CattaneoMindlin exact = ball.mindlin();
     const double limit = reference::full_slip_force(exact);
@@ -236,7 +236,7 @@ TEST(PatchAgainstMdrTest, BothModelsAgreeOnTheWholeOfAMotion) {
   // scalar limit differ from cells that slip place by place: by up to 13 % of the largest force and
   // 7 % of the largest couple while they turn.
   PressedBall springs(BallScene{.model = ContactModel::kMdr});
-  PressedBall cells(BallScene{.side = 24, .sweeps = 8});
+  PressedBall cells(BallScene{.side = 24, .iterations = 8});
   struct Move {
     double depth;  // of kBallDepth
     glm::dvec2 way;

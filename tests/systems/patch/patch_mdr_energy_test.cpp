@@ -57,7 +57,7 @@ const EnergyCase kEnergyCases[] = {
     {"mdr", {.model = ContactModel::kMdr}, 1e-5},
     {"patch12", {.side = 12}, 1e-3},
     {"patch16", {.side = 16}, 1e-3},
-    {"patch12of20Sweeps", {.side = 12, .sweeps = 20}, 1e-3},
+    {"patch12of20Sweeps", {.side = 12, .iterations = 20}, 1e-3},
     {"compressible", {.poisson = 0.3, .side = 12}, 1e-3},
 };
 

@@ -51,7 +51,7 @@ const ShapeCase kShapeCases[] = {
     {"mdr", {.model = ContactModel::kMdr}, 0.003, 0.012, 0.025, 0.05, 0.02, 1e-3},
     {"patch12", {.side = 12}, 0.008, 0.01, 0.06, 0.13, 0.02, 0.03},
     {"patch16", {.side = 16}, 0.008, 0.01, 0.04, 0.07, 0.02, 0.03},
-    {"patch24", {.side = 24, .sweeps = 8}, 0.004, 0.01, 0.025, 0.05, 0.02, 0.01},
+    {"patch24", {.side = 24, .iterations = 8}, 0.004, 0.01, 0.025, 0.05, 0.02, 0.01},
 };
 
 class ShapeTest : public testing::TestWithParam<ShapeCase> {};
@@ -135,7 +135,7 @@ TEST(EllipseTest, MdrTurnsLongContactsAsCellsDo) {
   // Axes 1.7 : 1 and 3.6 : 1: mdr's slip curve of an ellipse is a fit, cells know nothing of it.
   // 1.2 % of the fit and 1 % of 24 cells across, which are 7 across the minor axis.
   const BallScene springs{.model = ContactModel::kMdr};
-  const BallScene cells{.side = 24, .sweeps = 20};
+  const BallScene cells{.side = 24, .iterations = 20};
   for (const glm::dvec3& half : {glm::dvec3(0.06, 0.03, 0.04), glm::dvec3(0.08, 0.03, 0.03)}) {
     const double depth = 3e-4;
     const PartDescription part = make_part(ShapeKind::kEllipsoid, half);

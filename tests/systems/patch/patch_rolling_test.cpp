@@ -63,7 +63,7 @@ class RollingBall {
 
 struct RollingCase {
   std::uint32_t side;
-  std::uint32_t sweeps;
+  std::uint32_t iterations;
   // Bounds as of a ball that unloads in place (patch_mdr_ball_test.cpp).
   double force;     // settled, relative
   double friction;  // over the largest force and couple
@@ -73,7 +73,7 @@ class PatchRollingTest : public testing::TestWithParam<RollingCase> {
  protected:
   [[nodiscard]] static BallScene scene(double friction = kBallFriction) {
     return {.side = GetParam().side,
-            .sweeps = GetParam().sweeps,
+            .iterations = GetParam().iterations,
             .static_friction = friction,
             .dynamic_friction = friction};
   }
@@ -146,7 +146,7 @@ std::vector<glm::dvec3> slide_and_roll(const BallScene& scene) {
 
 TEST_P(PatchRollingTest, WhatASlideHasBuiltUpIsLeftBehindAsOnAFinerGrid) {
   const std::vector<glm::dvec3> found = slide_and_roll(scene());
-  const std::vector<glm::dvec3> fine = slide_and_roll({.side = 36, .sweeps = 40});
+  const std::vector<glm::dvec3> fine = slide_and_roll({.side = 36, .iterations = 40});
   PressedBall pressed(BallScene{});
   pressed.press(kBallDepth, 1);
   const double limit = reference::full_slip_force(pressed.mindlin());

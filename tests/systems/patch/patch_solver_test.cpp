@@ -37,7 +37,7 @@ class Grid {
     problem.skip = 1e-9;
     problem.settled = 0.0;
     problem.rounds = 100;
-    problem.sweeps = 1000;
+    problem.iterations = 1000;
     for (std::uint32_t cell = 0; cell < kSide * kSide; ++cell) {
       const double x = place_x(cell);
       const double y = place_y(cell);
@@ -113,8 +113,8 @@ TEST(PatchSolverTest, SolutionMeetsTheLawsOfContactAndOfCoulomb) {
     const PatchColumns columns = grid.view();
     int stuck = 0;
     int slipping = 0;
-    // The residual of a Gauss-Seidel sweep is one cell's change; the sum of what is still to come
-    // is some hundred times as much.
+    // The residual of a Gauss-Seidel iteration is one cell's change; the sum of what is still to
+    // come is some hundred times as much.
     const double traction_error = 1e-6 * grid.problem.reference;
     const double way_error = 1e-6 * kDepth;
     for (std::uint32_t cell = 0; cell < kSide * kSide; ++cell) {
@@ -152,10 +152,10 @@ TEST(PatchSolverTest, SolutionMeetsTheLawsOfContactAndOfCoulomb) {
 // cell.
 TEST(PatchSolverTest, TheResidualIsWhatIsLeftOfTheEquations) {
   double before = 1e300;
-  for (const std::uint32_t sweeps : {1U, 2U, 4U, 30U}) {
+  for (const std::uint32_t iterations : {1U, 2U, 4U, 30U}) {
     Grid grid(0.5, false);
     grid.problem.rounds = 1;
-    grid.problem.sweeps = sweeps;
+    grid.problem.iterations = iterations;
     const PatchOutcome outcome = grid.move(8e-5, 0.02);
     const PatchColumns columns = grid.view();
     const InfluenceTables& tables = grid.problem.influences;
@@ -173,14 +173,14 @@ TEST(PatchSolverTest, TheResidualIsWhatIsLeftOfTheEquations) {
       depths += std::pow(std::max(columns.depth[cell], 0.0), 2);
       slips += loaded ? std::pow(kFriction * columns.depth[cell], 2) : 0.0;
       const double limit = kFriction * columns.pressure[cell];
-      const double asked_x =
+      const double preconditioned_x =
           columns.traction_x[cell] + stiffness * (columns.target_x[cell] - columns.moved_x[cell]);
-      const double asked_y =
+      const double preconditioned_y =
           columns.traction_y[cell] + stiffness * (columns.target_y[cell] - columns.moved_y[cell]);
-      double x = asked_x;
-      double y = asked_y;
+      double x = preconditioned_x;
+      double y = preconditioned_y;
       if (std::hypot(x, y) > limit) {
-        const double angle = std::atan2(asked_y, asked_x);
+        const double angle = std::atan2(preconditioned_y, preconditioned_x);
         x = limit * std::cos(angle);
         y = limit * std::sin(angle);
       }
@@ -188,8 +188,8 @@ TEST(PatchSolverTest, TheResidualIsWhatIsLeftOfTheEquations) {
                  std::pow((columns.traction_y[cell] - y) / stiffness, 2);
     }
     const double expected = std::sqrt(std::max(gaps / depths, lacking / slips));
-    EXPECT_NEAR(outcome.residual, expected, 1e-9 * expected + 1e-14) << sweeps;
-    EXPECT_LT(outcome.residual, before) << sweeps;
+    EXPECT_NEAR(outcome.residual, expected, 1e-9 * expected + 1e-14) << iterations;
+    EXPECT_LT(outcome.residual, before) << iterations;
     before = outcome.residual;
   }
 }
@@ -223,7 +223,7 @@ TEST(PatchSolverTest, UnloadingEveryCellLeavesNothing) {
   grid.move(0.0, 0.0);
   grid.move(8e-5, 0.02);
   const PatchColumns columns = grid.view();
-  let_go_cells(grid.problem, columns, grid.work, kDepth);
+  release_cells(grid.problem, columns, grid.work, kDepth);
   for (std::uint32_t cell = 0; cell < kSide * kSide; ++cell) {
     ASSERT_EQ(columns.pressure[cell], 0.0);
     ASSERT_NEAR(columns.depression[cell], 0.0, 1e-11 * kDepth);
@@ -284,7 +284,7 @@ TEST(PatchSolverTest, NoOverlapGivesNothing) {
   for (double& depth : grid.view().depth) {
     depth = -1e30;
   }
-  EXPECT_EQ(grid.move(1e-4, 0.1).sweeps, 0U);
+  EXPECT_EQ(grid.move(1e-4, 0.1).iterations, 0U);
   EXPECT_EQ(grid.force(), 0.0);
 }
 

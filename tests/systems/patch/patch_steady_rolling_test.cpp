@@ -105,9 +105,9 @@ TEST(SteadyRollingReferenceTest, IsNearKalkersCoefficientsAndContact) {
 
 class PatchSteadyRollingTest : public testing::TestWithParam<std::uint32_t> {};
 
-// With the sweeps that the settings have. Both ways round: a ball's points off the middle go slower
-// than its centre, as under a creepage of their own that does not change sign. Bound: as of a
-// contact that slides while it turns (docs/models.md).
+// With the iterations that the settings have. Both ways round: a ball's points off the middle go
+// slower than its centre, as under a creepage of their own that does not change sign. Bound: as of
+// a contact that slides while it turns (docs/models.md).
 TEST_P(PatchSteadyRollingTest, IsNearBoundaryElements) {
   const BallScene scene{.side = GetParam()};
   for (const SteadyRolling& rolling : read_cases()) {

@@ -16,7 +16,7 @@ using test::PressedBall;
 
 struct TorqueBounds {
   std::uint32_t side;
-  std::uint32_t sweeps;
+  std::uint32_t iterations;
   double loading;    // bounds of the torque's error over the largest torque
   double unloading;  // Masing's rule doubles what the first loading has
 };
@@ -66,7 +66,7 @@ TEST_P(PatchTorsionTest, TwistAndUnloadingFollowLubkin) {
   for (const double depth : {1.0, 1.3, 1.5, 1.7, 1.8}) {
     BallScene scene;
     scene.side = resolution.side;
-    scene.sweeps = resolution.sweeps;
+    scene.iterations = resolution.iterations;
     PressedBall ball(scene);
     ball.press(depth * kBallDepth, 300);
     const TorqueErrors errors = twist_and_back(ball);
@@ -80,7 +80,7 @@ TEST_P(PatchTorsionTest, NormalForceIsHertzsOnceSettled) {
   const TorqueBounds& resolution = GetParam();
   BallScene scene;
   scene.side = resolution.side;
-  scene.sweeps = resolution.sweeps;
+  scene.iterations = resolution.iterations;
   PressedBall ball(scene);
   for (int step = 1; step <= 10; ++step) {
     ball.press(kBallDepth * step / 10.0, 30);
@@ -107,7 +107,7 @@ MeanErrors mean_errors(std::uint32_t side) {
   for (const double depth : {1.0, 1.3, 1.7}) {
     BallScene scene;
     scene.side = side;
-    scene.sweeps = 12;  // lag no more than the cells miss
+    scene.iterations = 12;  // lag no more than the cells miss
     PressedBall ball(scene);
     ball.press(depth * kBallDepth, 300);
     ball.press(ball.depth(), 20);

@@ -23,7 +23,7 @@ struct BallScene {
   double poisson = 0.5;
   std::uint32_t side =
       16;  // cells along a side of the grid: 12 puts 50 to 90 in contact, 16 110 to 170
-  std::uint32_t sweeps = 2;
+  std::uint32_t iterations = 2;
   double static_friction = kBallFriction;
   double dynamic_friction = kBallFriction;
   BodyModel body = BodyModel::kNone;
@@ -44,7 +44,7 @@ inline SceneDescription make_ball_scene(const BallScene& ball) {
 inline PrepareOptions options_of(const BallScene& ball) {
   PrepareOptions options;
   options.settings.grid_side = ball.side;
-  options.settings.sweeps = ball.sweeps;
+  options.settings.iterations = ball.iterations;
   return options;
 }
 

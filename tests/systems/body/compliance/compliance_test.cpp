@@ -186,14 +186,14 @@ TEST(ComplianceTest, StaysCalmOnALayerAndOnASoftColumn) {
   }
 }
 
-/// How many footings have been laid, and couplings found, in the last step.
+/// How many support fits have been laid, and couplings found, in the last step.
 struct Laid {
-  std::vector<std::uint64_t> footings;
+  std::vector<std::uint64_t> support_fits;
   std::vector<std::uint64_t> couplings;
 
   explicit Laid(const World& world) {
-    for (const Footing& footing : world.state.footings.column<Footing>()) {
-      footings.push_back(footing.serial);
+    for (const SupportFit& support_fit : world.state.support_fits.column<SupportFit>()) {
+      support_fits.push_back(support_fit.serial);
     }
     for (const RegionCoupling& coupling : world.state.couplings.column<RegionCoupling>()) {
       couplings.push_back(
@@ -211,10 +211,10 @@ struct Laid {
   }
 };
 
-// Nine feet slide over a cube's top, so that all of their footings wear out at once: a step lays
-// one anew and finds the couplings of one, whatever the speed, and the force does not jump when it
-// does. When the feet touch down, each footing is laid at once.
-TEST(ComplianceTest, AStepLaysOneFootingAndTheForceDoesNotJump) {
+// Nine feet slide over a cube's top, so that all of their support fits wear out at once: a step
+// lays one anew and finds the couplings of one, whatever the speed, and the force does not jump
+// when it does. When the feet touch down, each support fit is laid at once.
+TEST(ComplianceTest, AStepRefitsOneSupportAndTheForceDoesNotJump) {
   std::vector<PartDescription> feet;
   for (int i = 0; i < 9; ++i) {
     feet.push_back(test::make_part(
@@ -227,7 +227,7 @@ TEST(ComplianceTest, AStepLaysOneFootingAndTheForceDoesNotJump) {
   Hand hand(scene);
   hand.step_to({{glm::dvec3(0.0, 0.13, 0.0), glm::dquat(1.0, 0.0, 0.0, 0.0)}});
   Laid before(hand.world());
-  std::size_t most_footings = 0;
+  std::size_t most_support_fits = 0;
   std::size_t most_couplings = 0;
   std::size_t laid = 0;
   double jump = 0.0;
@@ -238,19 +238,19 @@ TEST(ComplianceTest, AStepLaysOneFootingAndTheForceDoesNotJump) {
     hand.move(presses ? glm::dvec3(0.0, -1e-5, 0.0) : glm::dvec3(2e-5, 0.0, 1e-5),
               glm::dvec3(0.0, 1.0, 0.0), 0.0, 1);
     const Laid now(hand.world());
-    const std::size_t footings = Laid::newer(now.footings, before.footings);
-    most_footings =
-        std::max(most_footings, footings - (hand.world().state.regions.size() - regions));
+    const std::size_t support_fits = Laid::newer(now.support_fits, before.support_fits);
+    most_support_fits =
+        std::max(most_support_fits, support_fits - (hand.world().state.regions.size() - regions));
     most_couplings = std::max(most_couplings, Laid::newer(now.couplings, before.couplings));
     if (step > 300) {
-      laid += footings;
+      laid += support_fits;
       jump = std::max(jump, glm::distance(hand.wrench().force, force) / glm::length(force));
     }
     force = hand.wrench().force;
     before = now;
   }
   EXPECT_EQ(hand.world().state.regions.size(), 9U);
-  EXPECT_EQ(most_footings, 1U);
+  EXPECT_EQ(most_support_fits, 1U);
   EXPECT_LE(most_couplings, 16U);
   EXPECT_GT(laid, 9U);
   EXPECT_LT(jump, 0.003);

@@ -90,7 +90,7 @@ std::vector<Wrench> press_slide_twist(const MeshCase& each, bool as_mesh) {
   move(glm::dvec3(0.0), 0.05);
   move(glm::dvec3(0.0), -0.03);
   EXPECT_EQ(hand.clock().faults_ever, 0U);
-  // The body gives way by several per cent of the depth: a mesh that did not would be noticed.
+  // The body deflects by several per cent of the depth: a mesh that did not would be noticed.
   EXPECT_LT(hand.world().state.regions.at<RegionSupport>(0).translation.y, -0.03 * kMeshDepth);
   return wrenches;
 }

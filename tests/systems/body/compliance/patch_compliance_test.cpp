@@ -1,4 +1,4 @@
-// Contact model patch on bodies that give way themselves: what their compliance does to every cell
+// Contact model patch on bodies that deflect themselves: what their compliance does to every cell
 // is part of the equations of a step, so that nothing swings between the two models.
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "systems/contact/support/contact_load.hpp"
-#include "systems/contact/support/footing.hpp"
+#include "systems/contact/support/support_fit.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
 #include "tests/support/studies.hpp"
@@ -39,7 +39,7 @@ const Ground kGrounds[] = {{"Layer", {0.02, 0.006, 0.02}, 0.02, 1e-3, 0.5},
                            {"LargeContactOnAColumn", {0.025, 0.1, 0.025}, 0.2, 2e-3, 0.4999},
                            {"Cork", {0.03, 0.03, 0.03}, 0.03, 2e-3, 0.0}};
 
-Hand hand_over(const Ground& ground, std::uint32_t side, std::uint32_t sweeps) {
+Hand hand_over(const Ground& ground, std::uint32_t side, std::uint32_t iterations) {
   SceneDescription scene;
   BodyDescription body = test::make_body(
       {test::make_part(ShapeKind::kBox, ground.half,
@@ -57,7 +57,7 @@ Hand hand_over(const Ground& ground, std::uint32_t side, std::uint32_t sweeps) {
       test::make_tool({test::make_part(ShapeKind::kSphere, glm::dvec3(ground.ball))}));
   PrepareOptions options;
   options.settings.grid_side = side;
-  options.settings.sweeps = sweeps;
+  options.settings.iterations = iterations;
   Hand hand(scene, options);
   hand.step_to(
       {{glm::dvec3(0.0, 2.0 * ground.half.y + ground.ball, 0.0), glm::dquat(1.0, 0.0, 0.0, 0.0)}});
@@ -162,7 +162,7 @@ TEST_P(PatchComplianceTest, AddsInAStepWhatTheStepBeforeAdded) {
   }
 }
 
-// A step's sweeps are enough: twenty times as many press and turn to the same wrench.
+// A step's iterations are enough: twenty times as many press and turn to the same wrench.
 TEST_P(PatchComplianceTest, MoreSweepsEndAtTheSameWrench) {
   if (test::is_left_out(GetParam().side == 12)) {
     GTEST_SKIP() << test::kLeftOut;
@@ -193,15 +193,15 @@ INSTANTIATE_TEST_SUITE_P(Grounds, PatchComplianceTest, testing::ValuesIn(calm_ca
                          });
 
 // The response is what forces at the ports make of moments, to rounding.
-TEST(FootingResponseTest, IsWhatThePortsMakeOfMoments) {
+TEST(SupportResponseTest, IsWhatThePortsMakeOfMoments) {
   Hand hand = hand_over(kGrounds[1], 12, 2);
   hand.move(glm::dvec3(0.0, -1e-3, 0.0), kUp, 0.0, 50);
   const World& world = hand.world();
   const PortCompliance ports = ports_of(world.model, 0);
-  const Footing& footing = world.state.footings.at<Footing>(0);
-  ASSERT_GT(footing.count, 10U);
-  FootingResponse response;
-  find_response(ports, footing, response);
+  const SupportFit& support_fit = world.state.support_fits.at<SupportFit>(0);
+  ASSERT_GT(support_fit.count, 10U);
+  SupportResponse response;
+  find_response(ports, support_fit, response);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> part(-1.0, 1.0);
   SupportMoments moments;
@@ -210,9 +210,9 @@ TEST(FootingResponseTest, IsWhatThePortsMakeOfMoments) {
   }
   PortVectors forces;
   PortVectors displacements;
-  forces_at_ports(footing, moments, forces);
-  displacements_at_ports(ports, footing, forces, displacements);
-  const SupportField field = bending(footing, displacements, Vector6::Zero());
+  forces_at_ports(support_fit, moments, forces);
+  displacements_at_ports(ports, support_fit, forces, displacements);
+  const SupportField field = bending(support_fit, displacements, Vector6::Zero());
   double largest = 0.0;
   double error = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -225,7 +225,7 @@ TEST(FootingResponseTest, IsWhatThePortsMakeOfMoments) {
                  moments[l][static_cast<int>(force)];
         }
       }
-      const double expected = footing.share * field.terms[k][static_cast<int>(axis)];
+      const double expected = support_fit.share * field.terms[k][static_cast<int>(axis)];
       largest = std::max(largest, std::abs(expected));
       error = std::max(error, std::abs(sum - expected));
     }

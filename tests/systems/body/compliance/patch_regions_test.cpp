@@ -77,7 +77,7 @@ void PrintTo(const GroundCase& ground, std::ostream* out) {
 
 class PatchRegionsTest : public testing::TestWithParam<GroundCase> {};
 
-/// Of one tool, whose largest change in a step bounds what a step's sweeps leave over.
+/// Of one tool, whose largest change in a step bounds what a step's iterations leave over.
 struct Swapped {
   double worst = 0.0;  // N: difference of the two orders
   double step = 0.0;   // N: most that a step changes a wrench by
@@ -140,7 +140,7 @@ TEST_P(PatchRegionsTest, TheOrderOfToolsDoesNotMatter) {
 }
 
 // Four heights of the body between them, on a fixed face: nothing of one is left at the other. That
-// a region begins beside another leaves it fewer sweeps in that step, after which its grid may
+// a region begins beside another leaves it fewer iterations in that step, after which its grid may
 // take another size: two grids of 16 cells, half a per cent off each at worst, in the force and in
 // mu of it.
 TEST_P(PatchRegionsTest, TwoFarFeetCarryWhatTwoSingleFeetDo) {

@@ -1,4 +1,4 @@
-// Tools on bodies that give way by far more than their contacts do, and what bounds a force
+// Tools on bodies that deflect by far more than their contacts do, and what bounds a force
 // whatever goes wrong.
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "systems/contact/region_wrenches.hpp"
-#include "systems/contact/support/footing.hpp"
+#include "systems/contact/support/support_fit.hpp"
 #include "systems/half_space/influence.hpp"
 #include "systems/patch/support.hpp"
 #include "systems/scratch.hpp"
@@ -124,13 +124,13 @@ TEST(TapTest, AQuickTapIsFeltAsHertzHasIt) {
 
 /// The whole compliance of squares on a disc under pressure, half-space and body: its least
 /// eigenvalue over the half-space's own, by other squares than the stiffness was made with.
-double least_share(const FootingResponse& response, const Footing& footing,
+double least_share(const SupportResponse& response, const SupportFit& support_fit,
                    const Elasticity& elasticity) {
   constexpr std::uint32_t kSide = 13;
   std::vector<double> values(influence_count(kSide));
   fill_influences(elasticity.poisson_ratio, kSide, values);
   const InfluenceTables tables = influence_tables(values, kSide, 0);
-  const double length = 2.0 * footing.extent / kSide;
+  const double length = 2.0 * support_fit.extent / kSide;
   std::vector<std::array<std::uint32_t, 2>> cells;
   for (std::uint32_t j = 0; j < kSide; ++j) {
     for (std::uint32_t i = 0; i < kSide; ++i) {
@@ -144,7 +144,7 @@ double least_share(const FootingResponse& response, const Footing& footing,
   Eigen::MatrixXd terms(count, static_cast<Eigen::Index>(kSupportTerms));
   for (Eigen::Index row = 0; row < count; ++row) {
     const auto& [i, j] = cells[static_cast<std::size_t>(row)];
-    const glm::dvec2 at = length * (glm::dvec2(i, j) + 0.5 - 0.5 * kSide) / footing.reach;
+    const glm::dvec2 at = length * (glm::dvec2(i, j) + 0.5 - 0.5 * kSide) / support_fit.reach;
     const auto of_cell = support_terms(at);
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
       terms(row, static_cast<Eigen::Index>(k)) = of_cell[k];
@@ -170,18 +170,18 @@ double least_share(const FootingResponse& response, const Footing& footing,
 TEST(DefiniteResponseTest, LeavesAQuarterOfTheHalfSpaceAndTouchesNothingElse) {
   const DiscStiffness disc = make_disc_stiffness();
   const Elasticity elasticity{3e6, 0.5, 1100.0};
-  Footing footing;
-  footing.tangent_x = {1.0, 0.0, 0.0};
-  footing.tangent_y = {0.0, 1.0, 0.0};
-  footing.normal = {0.0, 0.0, 1.0};
-  footing.reach = 0.02;
-  footing.extent = 0.01;
+  SupportFit support_fit;
+  support_fit.tangent_x = {1.0, 0.0, 0.0};
+  support_fit.tangent_y = {0.0, 1.0, 0.0};
+  support_fit.normal = {0.0, 0.0, 1.0};
+  support_fit.reach = 0.02;
+  support_fit.extent = 0.01;
   std::mt19937 random(7);
   std::normal_distribution<double> value;
   for (const double size : {1e-7, 1e-5, 1e-3}) {
     for (const double sign : {1.0, -1.0}) {
       // Of every rank and kind: x x' of random x, all three axes.
-      FootingResponse response;
+      SupportResponse response;
       for (int k = 0; k < 20; ++k) {
         std::array<double, 3 * kSupportTerms> x{};
         std::ranges::generate(x, [&] { return value(random); });
@@ -196,14 +196,14 @@ TEST(DefiniteResponseTest, LeavesAQuarterOfTheHalfSpaceAndTouchesNothingElse) {
           }
         }
       }
-      const FootingResponse before = response;
-      const bool changed = make_definite(disc, elasticity, footing, response);
-      const double least = least_share(response, footing, elasticity);
+      const SupportResponse before = response;
+      const bool changed = make_definite(disc, elasticity, support_fit, response);
+      const double least = least_share(response, support_fit, elasticity);
       // The disc's squares are others than the contact's: 5 %.
       EXPECT_GT(least, 0.95 * (1.0 + kLeastResponse)) << size << " " << sign;
       if (sign > 0.0) {
         EXPECT_FALSE(changed) << size;
-      } else if (least_share(before, footing, elasticity) < 0.0) {
+      } else if (least_share(before, support_fit, elasticity) < 0.0) {
         EXPECT_TRUE(changed) << size;
       }
       if (!changed) {

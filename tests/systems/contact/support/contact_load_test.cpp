@@ -3,7 +3,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/contact/support/footing.hpp"
+#include "systems/contact/support/support_fit.hpp"
 #include "systems/math/frames.hpp"
 #include "tests/support/contact_scenes.hpp"
 
@@ -30,7 +30,7 @@ TEST(ContactLoadTest, MomentsAreTheSumsOverTheCells) {
   const Range rows = world.state.regions.at<RegionIdentity>(0).cells;
   const auto tractions = world.state.cells.rows<CellTraction>(rows);
   const std::uint32_t side = world.model.settings.grid_side;
-  const Footing& footing = world.state.footings.at<Footing>(rows.first / rows.count);
+  const SupportFit& support_fit = world.state.support_fits.at<SupportFit>(rows.first / rows.count);
   SupportMoments moments{};
   glm::dvec3 couple(0.0);
   double friction = 0.0;
@@ -43,15 +43,15 @@ TEST(ContactLoadTest, MomentsAreTheSumsOverTheCells) {
     const glm::dvec3 force =
         -cell_area(frame, side) * (frame.normal * tractions[cell].pressure +
                                    tangent_to_body(frame, tractions[cell].traction));
-    const auto terms = support_terms(coordinates_in(footing, point));
+    const auto terms = support_terms(coordinates_in(support_fit, point));
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
       moments[k] += terms[k] * force;
     }
-    couple += glm::cross(point - footing.center, force);
+    couple += glm::cross(point - support_fit.center, force);
     friction += glm::length(tractions[cell].traction);
   }
   ASSERT_GT(friction, 0.0);
-  const ContactLoad load = contact_load(world.model, world.state, 0, footing);
+  const ContactLoad load = contact_load(world.model, world.state, 0, support_fit);
   const double force = glm::length(moments[0]);
   for (std::size_t k = 0; k < kSupportTerms; ++k) {
     EXPECT_LT(glm::distance(load.moments[k], moments[k]), 1e-12 * force) << k;

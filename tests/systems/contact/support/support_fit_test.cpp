@@ -1,6 +1,6 @@
 // How a region stands on a body's ports: what the fit must reproduce, whatever the ports.
 
-#include "systems/contact/support/footing.hpp"
+#include "systems/contact/support/support_fit.hpp"
 
 #include <cmath>
 #include <random>
@@ -35,11 +35,11 @@ ContactEllipse ellipse_at(const glm::dvec3& center, double a, double b) {
   return {center, a * way, b * glm::cross(kNormal, way), kNormal, std::sqrt(a * b)};
 }
 
-PortVectors displacements_of(const Body& body, const Footing& footing,
+PortVectors displacements_of(const Body& body, const SupportFit& support_fit,
                              const glm::dvec3& translation, const glm::dvec3& rotation) {
   PortVectors displacements{};
-  for (std::size_t p = 0; p < footing.count; ++p) {
-    const glm::dvec3 arm = body.ports[footing.ports[p]].position - footing.center;
+  for (std::size_t p = 0; p < support_fit.count; ++p) {
+    const glm::dvec3 arm = body.ports[support_fit.ports[p]].position - support_fit.center;
     displacements[p] = translation + glm::cross(rotation, arm);
   }
   return displacements;
@@ -47,38 +47,38 @@ PortVectors displacements_of(const Body& body, const Footing& footing,
 
 // Constants and slopes are not kept small, so least squares has them exactly, for contacts small
 // and large against the ports' distance and off the middle of the ports.
-TEST(FootingTest, RigidMotionsAreRigid) {
+TEST(SupportFitTest, RigidMotionsAreRigid) {
   const Body body(60);
   const glm::dvec3 translation(0.3, -0.2, 0.5);
   const glm::dvec3 rotation(-0.1, 0.4, 0.7);
   for (const double size : {0.01, 0.2, 0.7}) {
-    Footing footing;
-    lay_footing(body.compliance(), ellipse_at({0.2, -0.1, 0.0}, size, 0.4 * size), footing);
-    ASSERT_GE(footing.count, 6U);
-    const PortVectors displacements = displacements_of(body, footing, translation, rotation);
-    const Vector6 rigid = rigid_motion(footing, displacements);
+    SupportFit support_fit;
+    fit_support(body.compliance(), ellipse_at({0.2, -0.1, 0.0}, size, 0.4 * size), support_fit);
+    ASSERT_GE(support_fit.count, 6U);
+    const PortVectors displacements = displacements_of(body, support_fit, translation, rotation);
+    const Vector6 rigid = rigid_motion(support_fit, displacements);
     for (int axis = 0; axis < 3; ++axis) {
       EXPECT_NEAR(rigid[axis], translation[axis], 1e-7);
       EXPECT_NEAR(rigid[3 + axis], rotation[axis], 1e-6 / size);
     }
-    for (const glm::dvec3& term : bending(footing, displacements, rigid).terms) {
+    for (const glm::dvec3& term : bending(support_fit, displacements, rigid).terms) {
       EXPECT_LT(glm::length(term), 1e-6);
     }
   }
 }
 
 // The forces at the ports have the force and the couple of what they stand for.
-TEST(FootingTest, UnitForcesAtThePortsAreUnitWrenches) {
+TEST(SupportFitTest, UnitForcesAtThePortsAreUnitWrenches) {
   const Body body(60);
-  Footing footing;
-  lay_footing(body.compliance(), ellipse_at({-0.3, 0.2, 0.0}, 0.3, 0.1), footing);
+  SupportFit support_fit;
+  fit_support(body.compliance(), ellipse_at({-0.3, 0.2, 0.0}, 0.3, 0.1), support_fit);
   for (std::size_t c = 0; c < 6; ++c) {
     glm::dvec3 force(0.0);
     glm::dvec3 couple(0.0);
-    for (std::size_t p = 0; p < footing.count; ++p) {
-      force += footing.unit_forces[c][p];
-      couple += glm::cross(body.ports[footing.ports[p]].position - footing.center,
-                           footing.unit_forces[c][p]);
+    for (std::size_t p = 0; p < support_fit.count; ++p) {
+      force += support_fit.unit_forces[c][p];
+      couple += glm::cross(body.ports[support_fit.ports[p]].position - support_fit.center,
+                           support_fit.unit_forces[c][p]);
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto at = static_cast<int>(axis);
@@ -90,7 +90,7 @@ TEST(FootingTest, UnitForcesAtThePortsAreUnitWrenches) {
 
 // Betti: what one region does to another is what that does to it, transposed, for any symmetric
 // compliance of the ports.
-TEST(FootingTest, WhatRegionsDoToEachOtherIsReciprocal) {
+TEST(SupportFitTest, WhatRegionsDoToEachOtherIsReciprocal) {
   Body body(60);
   const std::size_t side = 3 * body.ports.size();
   std::mt19937 random(5);
@@ -100,10 +100,10 @@ TEST(FootingTest, WhatRegionsDoToEachOtherIsReciprocal) {
       body.values[i * side + j].value = body.values[j * side + i].value = value(random);
     }
   }
-  Footing first;
-  Footing second;
-  lay_footing(body.compliance(), ellipse_at({0.5, 0.3, 0.0}, 0.2, 0.1), first);
-  lay_footing(body.compliance(), ellipse_at({-0.4, -0.4, 0.0}, 0.3, 0.2), second);
+  SupportFit first;
+  SupportFit second;
+  fit_support(body.compliance(), ellipse_at({0.5, 0.3, 0.0}, 0.2, 0.1), first);
+  fit_support(body.compliance(), ellipse_at({-0.4, -0.4, 0.0}, 0.3, 0.2), second);
   const Matrix6 one = motion_between(body.compliance(), first, second);
   const Matrix6 other = motion_between(body.compliance(), second, first);
   EXPECT_LT((one - other.transpose()).norm(), 1e-12 * one.norm());
@@ -111,7 +111,7 @@ TEST(FootingTest, WhatRegionsDoToEachOtherIsReciprocal) {
 
 // A compliance that is a polynomial of the fourth degree of both places is known exactly once the
 // contact is large against the ports' distance: u(x) = k(x) sum of k(y) f(y).
-TEST(FootingTest, BendingOfAQuarticIsFound) {
+TEST(SupportFitTest, BendingOfAQuarticIsFound) {
   Body body(120);
   const auto quartic = [](const glm::dvec3& at) {
     return 1.0 + at.x - 2.0 * at.y * at.y + at.x * at.x * at.y + 3.0 * std::pow(at.x, 4.0);
@@ -125,22 +125,22 @@ TEST(FootingTest, BendingOfAQuarticIsFound) {
       }
     }
   }
-  Footing footing;
-  lay_footing(body.compliance(), ellipse_at(glm::dvec3(0.0), 0.6, 0.5), footing);
+  SupportFit support_fit;
+  fit_support(body.compliance(), ellipse_at(glm::dvec3(0.0), 0.6, 0.5), support_fit);
   // Unit force at one place of the contact.
   const glm::dvec3 loaded(0.3, -0.2, 0.0);
   SupportMoments moments{};
-  const auto terms = support_terms(coordinates_in(footing, loaded));
+  const auto terms = support_terms(coordinates_in(support_fit, loaded));
   for (std::size_t k = 0; k < kSupportTerms; ++k) {
     moments[k] = kNormal * terms[k];
   }
   PortVectors forces;
   PortVectors displacements;
-  forces_at_ports(footing, moments, forces);
-  displacements_at_ports(body.compliance(), footing, forces, displacements);
-  const SupportField field = bending(footing, displacements, Vector6::Zero());
+  forces_at_ports(support_fit, moments, forces);
+  displacements_at_ports(body.compliance(), support_fit, forces, displacements);
+  const SupportField field = bending(support_fit, displacements, Vector6::Zero());
   for (const glm::dvec3& seen : {glm::dvec3(0.0), glm::dvec3(-0.4, 0.3, 0.0)}) {
-    const auto at = support_terms(coordinates_in(footing, seen));
+    const auto at = support_terms(coordinates_in(support_fit, seen));
     double moved = 0.0;
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
       moved += at[k] * field.terms[k].z;

@@ -79,51 +79,54 @@ DiscForces spread_wrench(const ContactEllipse& contact, double DiscPoint::*share
 
 /// Forces on the material, as moments of a SupportField's terms, N.
 using SupportMoments = std::array<glm::dvec3, kSupportTerms>;
-/// Forces at a footing's ports, N, or displacements of them, m; the first `count` rows count.
-using PortVectors = std::array<glm::dvec3, kFootingPorts>;
+/// Forces at a support fit's ports, N, or displacements of them, m; the first `count` rows count.
+using PortVectors = std::array<glm::dvec3, kSupportPorts>;
 
 /// How far a port is from a point of the surface as a contact there sees it, m: the more its
 /// surface is turned away the farther, and kNeverSeen across an edge.
 inline constexpr double kNeverSeen = 1e300;
 double seen_distance(const CompliancePort& port, const glm::dvec3& point, const glm::dvec3& normal);
 
-/// Whether a footing still serves for a contact, or has to be laid anew.
-bool still_fits(const Footing& footing, const ContactEllipse& contact);
+/// Whether a support fit still serves for a contact, or has to be found again.
+bool still_fits(const SupportFit& support_fit, const ContactEllipse& contact);
 
-/// Lays a footing: finds ports around the contact (by the distance as seen along the surface),
+/// Lays a support fit: finds ports around the contact (by the distance as seen along the surface),
 /// fits a SupportField to displacements at them by least squares, weighted to zero at its reach,
 /// and finds the forces at them that unit wrenches on the contact are. Where ports are few the
 /// higher terms are kept small; rigid motions are reproduced exactly.
-void lay_footing(const PortCompliance& body, const ContactEllipse& contact, Footing& footing);
+void fit_support(const PortCompliance& body, const ContactEllipse& contact,
+                 SupportFit& support_fit);
 
-/// Coordinates along the surface of a point of the body, over the footing's reach.
-glm::dvec2 plain_coordinates_in(const Footing& footing, const glm::dvec3& point);
+/// Coordinates along the surface of a point of the body, over the support fit's reach.
+glm::dvec2 plain_coordinates_in(const SupportFit& support_fit, const glm::dvec3& point);
 
 /// The same in its SupportField, at most 1 (support_coordinates).
-glm::dvec2 coordinates_in(const Footing& footing, const glm::dvec3& point);
+glm::dvec2 coordinates_in(const SupportFit& support_fit, const glm::dvec3& point);
 
 /// Forces at the ports that do the same work as the moments in any SupportField that is fitted to
 /// the ports' displacements.
-void forces_at_ports(const Footing& footing, const SupportMoments& moments, PortVectors& forces);
+void forces_at_ports(const SupportFit& support_fit, const SupportMoments& moments,
+                     PortVectors& forces);
 
 /// Displacements at the ports by forces at them.
-void displacements_at_ports(const PortCompliance& body, const Footing& footing,
+void displacements_at_ports(const PortCompliance& body, const SupportFit& support_fit,
                             const PortVectors& forces, PortVectors& displacements);
 
 /// The mean rigid motion at the contact's centre, weighted as a rigid disc spreads its load: the
-/// motion of a disc that would slip in no mean.
-Vector6 rigid_motion(const Footing& footing, const PortVectors& displacements);
+/// motion of a disc with zero mean slip.
+Vector6 rigid_motion(const SupportFit& support_fit, const PortVectors& displacements);
 
 /// What is left of the displacements beyond that rigid motion.
-SupportField bending(const Footing& footing, const PortVectors& displacements,
+SupportField bending(const SupportFit& support_fit, const PortVectors& displacements,
                      const Vector6& rigid);
 
 /// Rigid motion at `to` by unit wrenches at `from`, through the ports.
-Matrix6 motion_between(const PortCompliance& body, const Footing& to, const Footing& from);
+Matrix6 motion_between(const PortCompliance& body, const SupportFit& to, const SupportFit& from);
 
 /// response = fit times the ports' compliance times the fit transposed: the terms of the polynomial
-/// in which a footing moves by unit moments.
-void find_response(const PortCompliance& body, const Footing& footing, FootingResponse& response);
+/// in which a support fit moves by unit moments.
+void find_response(const PortCompliance& body, const SupportFit& support_fit,
+                   SupportResponse& response);
 
 /// How a body bends away from the half-space that its contact is taken for, and up to where the
 /// contact has to know.
@@ -135,9 +138,9 @@ struct SurfaceBend {
 /// Of the surface around a contact. What the curvature adds to a half-space's response goes with
 /// the logarithm of the distance (curved_influence.hpp), so that the ports, and the elements
 /// between them, know only the part at their own distances. `reach` is the distance at which they
-/// have it: the mean, in logarithms, over what the footing makes of the ports.
+/// have it: the mean, in logarithms, over what the support fit makes of the ports.
 /// @param across  m: of the contact
-SurfaceBend find_surface_bend(const Model& model, std::uint32_t body, const Footing& footing,
+SurfaceBend find_surface_bend(const Model& model, std::uint32_t body, const SupportFit& support_fit,
                               const RegionFrame& axes, double across);
 
 /// Whether any surface of the body may be curved at all.

@@ -1,4 +1,4 @@
-#include "systems/contact/support/footing.hpp"
+#include "systems/contact/support/support_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,10 +24,10 @@ glm::dvec3 displacement_at(const SupportField& field, const glm::dvec3& point) {
 
 namespace {
 
-constexpr std::size_t kLeastPorts = 14;  // that a footing has, if the body has them
+constexpr std::size_t kLeastPorts = 14;  // that a support fit has, if the body has them
 constexpr double kBeyond = 1.3;          // reach over the contact's longer half axis
 constexpr double kLeastFacing = 0.4;     // cosine between a port's normal and the contact's
-constexpr double kMoved = 0.04;          // of its reach: a footing moved farther is laid anew
+constexpr double kMoved = 0.04;          // of its reach: a contact moved farther is fitted again
 constexpr double kGrown = 1.12;          // likewise the contact's radius
 constexpr double kTurned = 0.9997;       // likewise the cosine of the normal
 /// Against wiggles where ports are few, over the sum of the weights: by degree. Constants and
@@ -62,33 +62,34 @@ double distance_to_enough(const PortCompliance& body, const ContactEllipse& cont
 
 /// Ports within reach, those that are spread widest first (choose_ports), and their weights.
 void find_ports(const PortCompliance& body, const ContactEllipse& contact, double size,
-                Footing& footing, std::array<double, kFootingPorts>& weights) {
-  footing.count = 0;
-  for (std::uint32_t port = 0; port < body.ports.size() && footing.count < kFootingPorts; ++port) {
+                SupportFit& support_fit, std::array<double, kSupportPorts>& weights) {
+  support_fit.count = 0;
+  for (std::uint32_t port = 0; port < body.ports.size() && support_fit.count < kSupportPorts;
+       ++port) {
     const double share =
-        seen_distance(body.ports[port], contact.center, contact.normal) / footing.reach;
+        seen_distance(body.ports[port], contact.center, contact.normal) / support_fit.reach;
     if (share < 1.0) {
       const double inner = 1.0 - share * share;
-      weights[footing.count] = inner * inner / (share * share + 0.5 * size * size);
-      footing.ports[footing.count++] = port;
+      weights[support_fit.count] = inner * inner / (share * share + 0.5 * size * size);
+      support_fit.ports[support_fit.count++] = port;
     }
   }
 }
 
 /// Weighted least squares: terms = (A' W A + stiffer)^-1 A' W displacements.
-void fit_terms(const PortCompliance& body, const std::array<double, kFootingPorts>& weights,
-               double size, Footing& footing) {
+void fit_terms(const PortCompliance& body, const std::array<double, kSupportPorts>& weights,
+               double size, SupportFit& support_fit) {
   constexpr std::size_t kStride = kSupportTerms + 1;  // even, for vectors
   std::array<double, kSupportTerms * kStride> normal{};
-  footing.fit = {};
+  support_fit.fit = {};
   double sum = 0.0;
-  for (std::size_t p = 0; p < footing.count; ++p) {
+  for (std::size_t p = 0; p < support_fit.count; ++p) {
     const auto terms =
-        support_terms(coordinates_in(footing, body.ports[footing.ports[p]].position));
+        support_terms(coordinates_in(support_fit, body.ports[support_fit.ports[p]].position));
     sum += weights[p];
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
       const double weighted = weights[p] * terms[k];
-      footing.fit[k][p] = weighted;
+      support_fit.fit[k][p] = weighted;
       for (std::size_t l = 0; l < kSupportTerms; ++l) {
         normal[k * kStride + l] += weighted * terms[l];
       }
@@ -98,12 +99,12 @@ void fit_terms(const PortCompliance& body, const std::array<double, kFootingPort
     // The last part only keeps what no port speaks of at zero.
     normal[k * (kStride + 1)] += sum * (stiffer(kSupportDegrees[k], size) + 1e-12);
   }
-  solve_symmetric(kSupportTerms, kStride, normal.data(), kFootingPorts, footing.fit[0].data(),
+  solve_symmetric(kSupportTerms, kStride, normal.data(), kSupportPorts, support_fit.fit[0].data(),
                   1e-13 * sum);
 }
 
 /// Moments of a unit force or couple on the contact along each axis, spread as by a rigid disc.
-std::array<SupportMoments, 6> moments_of_wrenches(const Footing& footing,
+std::array<SupportMoments, 6> moments_of_wrenches(const SupportFit& support_fit,
                                                   const ContactEllipse& contact) {
   std::array<DiscForces, 6> spread;
   for (std::size_t c = 0; c < 6; ++c) {
@@ -116,7 +117,7 @@ std::array<SupportMoments, 6> moments_of_wrenches(const Footing& footing,
   for (std::size_t q = 0; q < kDiscPoints; ++q) {
     const glm::dvec2 place = disc_points()[q].place;
     const glm::dvec3 arm = contact.axis_1 * place.x + contact.axis_2 * place.y;
-    const auto terms = support_terms(coordinates_in(footing, contact.center + arm));
+    const auto terms = support_terms(coordinates_in(support_fit, contact.center + arm));
     for (std::size_t c = 0; c < 6; ++c) {
       for (std::size_t k = 0; k < kSupportTerms; ++k) {
         moments[c][k] += spread[c][q] * terms[k];
@@ -181,64 +182,67 @@ DiscForces spread_wrench(const ContactEllipse& contact, double DiscPoint::*share
   return forces;
 }
 
-bool still_fits(const Footing& footing, const ContactEllipse& contact) {
-  return footing.reach > 0.0 &&
-         glm::distance(footing.center, contact.center) < kMoved * footing.reach &&
-         contact.radius < kGrown * footing.radius && footing.radius < kGrown * contact.radius &&
-         glm::dot(footing.normal, contact.normal) > kTurned;
+bool still_fits(const SupportFit& support_fit, const ContactEllipse& contact) {
+  return support_fit.reach > 0.0 &&
+         glm::distance(support_fit.center, contact.center) < kMoved * support_fit.reach &&
+         contact.radius < kGrown * support_fit.radius &&
+         support_fit.radius < kGrown * contact.radius &&
+         glm::dot(support_fit.normal, contact.normal) > kTurned;
 }
 
-glm::dvec2 plain_coordinates_in(const Footing& footing, const glm::dvec3& point) {
-  const glm::dvec3 from = point - footing.origin;
-  return glm::dvec2(glm::dot(footing.tangent_x, from), glm::dot(footing.tangent_y, from)) /
-         footing.reach;
+glm::dvec2 plain_coordinates_in(const SupportFit& support_fit, const glm::dvec3& point) {
+  const glm::dvec3 from = point - support_fit.origin;
+  return glm::dvec2(glm::dot(support_fit.tangent_x, from), glm::dot(support_fit.tangent_y, from)) /
+         support_fit.reach;
 }
 
-glm::dvec2 coordinates_in(const Footing& footing, const glm::dvec3& point) {
-  return support_coordinates(plain_coordinates_in(footing, point));
+glm::dvec2 coordinates_in(const SupportFit& support_fit, const glm::dvec3& point) {
+  return support_coordinates(plain_coordinates_in(support_fit, point));
 }
 
-void lay_footing(const PortCompliance& body, const ContactEllipse& contact, Footing& footing) {
-  footing.origin = contact.center;
-  footing.center = contact.center;
-  footing.radius = contact.radius;
-  footing.normal = contact.normal;
+void fit_support(const PortCompliance& body, const ContactEllipse& contact,
+                 SupportFit& support_fit) {
+  support_fit.origin = contact.center;
+  support_fit.center = contact.center;
+  support_fit.radius = contact.radius;
+  support_fit.normal = contact.normal;
   const glm::dvec3 other =
       std::abs(contact.normal.x) < 0.6 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
-  footing.tangent_x = glm::normalize(glm::cross(contact.normal, other));
-  footing.tangent_y = glm::cross(contact.normal, footing.tangent_x);
+  support_fit.tangent_x = glm::normalize(glm::cross(contact.normal, other));
+  support_fit.tangent_y = glm::cross(contact.normal, support_fit.tangent_x);
   const double longer = std::max(glm::length(contact.axis_1), glm::length(contact.axis_2));
-  footing.extent = longer;
-  footing.reach = std::max(distance_to_enough(body, contact), kBeyond * longer);
-  std::array<double, kFootingPorts> weights{};
-  const double size = std::max(kBeyond * longer / footing.reach, 0.05);
-  find_ports(body, contact, size, footing, weights);
-  fit_terms(body, weights, size, footing);
-  const std::array<SupportMoments, 6> moments = moments_of_wrenches(footing, contact);
+  support_fit.extent = longer;
+  support_fit.reach = std::max(distance_to_enough(body, contact), kBeyond * longer);
+  std::array<double, kSupportPorts> weights{};
+  const double size = std::max(kBeyond * longer / support_fit.reach, 0.05);
+  find_ports(body, contact, size, support_fit, weights);
+  fit_terms(body, weights, size, support_fit);
+  const std::array<SupportMoments, 6> moments = moments_of_wrenches(support_fit, contact);
   for (std::size_t c = 0; c < 6; ++c) {
-    forces_at_ports(footing, moments[c], footing.unit_forces[c]);
+    forces_at_ports(support_fit, moments[c], support_fit.unit_forces[c]);
   }
 }
 
-void forces_at_ports(const Footing& footing, const SupportMoments& moments, PortVectors& forces) {
-  for (std::size_t p = 0; p < footing.count; ++p) {
+void forces_at_ports(const SupportFit& support_fit, const SupportMoments& moments,
+                     PortVectors& forces) {
+  for (std::size_t p = 0; p < support_fit.count; ++p) {
     forces[p] = glm::dvec3(0.0);
   }
   for (std::size_t k = 0; k < kSupportTerms; ++k) {
-    for (std::size_t p = 0; p < footing.count; ++p) {
-      forces[p] += footing.fit[k][p] * moments[k];
+    for (std::size_t p = 0; p < support_fit.count; ++p) {
+      forces[p] += support_fit.fit[k][p] * moments[k];
     }
   }
 }
 
-void displacements_at_ports(const PortCompliance& body, const Footing& footing,
+void displacements_at_ports(const PortCompliance& body, const SupportFit& support_fit,
                             const PortVectors& forces, PortVectors& displacements) {
   const std::size_t side = 3 * body.ports.size();
-  for (std::size_t to = 0; to < footing.count; ++to) {
-    const ComplianceValue* const rows = &body.values[3 * std::size_t{footing.ports[to]} * side];
+  for (std::size_t to = 0; to < support_fit.count; ++to) {
+    const ComplianceValue* const rows = &body.values[3 * std::size_t{support_fit.ports[to]} * side];
     glm::dvec3 sum(0.0);
-    for (std::size_t from = 0; from < footing.count; ++from) {
-      const ComplianceValue* const at = rows + 3 * std::size_t{footing.ports[from]};
+    for (std::size_t from = 0; from < support_fit.count; ++from) {
+      const ComplianceValue* const at = rows + 3 * std::size_t{support_fit.ports[from]};
       const glm::dvec3& f = forces[from];
       sum += glm::dvec3(
           at[0].value * f.x + at[1].value * f.y + at[2].value * f.z,
@@ -249,50 +253,50 @@ void displacements_at_ports(const PortCompliance& body, const Footing& footing,
   }
 }
 
-Vector6 rigid_motion(const Footing& footing, const PortVectors& displacements) {
+Vector6 rigid_motion(const SupportFit& support_fit, const PortVectors& displacements) {
   Vector6 motion;
   for (std::size_t c = 0; c < 6; ++c) {
     double sum = 0.0;
-    for (std::size_t p = 0; p < footing.count; ++p) {
-      sum += glm::dot(footing.unit_forces[c][p], displacements[p]);
+    for (std::size_t p = 0; p < support_fit.count; ++p) {
+      sum += glm::dot(support_fit.unit_forces[c][p], displacements[p]);
     }
     motion[static_cast<Eigen::Index>(c)] = sum;
   }
   return motion;
 }
 
-SupportField bending(const Footing& footing, const PortVectors& displacements,
+SupportField bending(const SupportFit& support_fit, const PortVectors& displacements,
                      const Vector6& rigid) {
   SupportField field;
-  field.origin = footing.origin;
-  field.along_x = footing.tangent_x / footing.reach;
-  field.along_y = footing.tangent_y / footing.reach;
+  field.origin = support_fit.origin;
+  field.along_x = support_fit.tangent_x / support_fit.reach;
+  field.along_y = support_fit.tangent_y / support_fit.reach;
   for (std::size_t k = 0; k < kSupportTerms; ++k) {
-    for (std::size_t p = 0; p < footing.count; ++p) {
-      field.terms[k] += footing.fit[k][p] * displacements[p];
+    for (std::size_t p = 0; p < support_fit.count; ++p) {
+      field.terms[k] += support_fit.fit[k][p] * displacements[p];
     }
   }
   const glm::dvec3 translation(rigid[0], rigid[1], rigid[2]);
   const glm::dvec3 rotation(rigid[3], rigid[4], rigid[5]);
-  field.terms[0] -= translation + glm::cross(rotation, footing.origin - footing.center);
-  field.terms[1] -= glm::cross(rotation, footing.tangent_x) * footing.reach;
-  field.terms[2] -= glm::cross(rotation, footing.tangent_y) * footing.reach;
+  field.terms[0] -= translation + glm::cross(rotation, support_fit.origin - support_fit.center);
+  field.terms[1] -= glm::cross(rotation, support_fit.tangent_x) * support_fit.reach;
+  field.terms[2] -= glm::cross(rotation, support_fit.tangent_y) * support_fit.reach;
   return field;
 }
 
-Matrix6 motion_between(const PortCompliance& body, const Footing& to, const Footing& from) {
+Matrix6 motion_between(const PortCompliance& body, const SupportFit& to, const SupportFit& from) {
   using RowMatrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   using Columns = Eigen::Matrix<double, 3, 6>;
   static_assert(sizeof(ComplianceValue) == sizeof(double));
-  const auto forces_of = [](const Footing& footing, std::size_t port) {
+  const auto forces_of = [](const SupportFit& support_fit, std::size_t port) {
     Columns forces;
     for (std::size_t c = 0; c < 6; ++c) {
-      const glm::dvec3& force = footing.unit_forces[c][port];
+      const glm::dvec3& force = support_fit.unit_forces[c][port];
       forces.col(static_cast<Eigen::Index>(c)) << force.x, force.y, force.z;
     }
     return forces;
   };
-  std::array<Columns, kFootingPorts> forces;
+  std::array<Columns, kSupportPorts> forces;
   for (std::size_t j = 0; j < from.count; ++j) {
     forces[j] = forces_of(from, j);
   }
@@ -325,11 +329,11 @@ void add_terms(double scale, const TermRow& __restrict from, double* __restrict 
 }
 
 /// The fit with the terms of each port together.
-std::array<TermRow, kFootingPorts> terms_by_port(const Footing& footing) {
-  std::array<TermRow, kFootingPorts> terms{};
+std::array<TermRow, kSupportPorts> terms_by_port(const SupportFit& support_fit) {
+  std::array<TermRow, kSupportPorts> terms{};
   for (std::size_t k = 0; k < kSupportTerms; ++k) {
-    for (std::size_t p = 0; p < footing.count; ++p) {
-      terms[p][k] = footing.fit[k][p];
+    for (std::size_t p = 0; p < support_fit.count; ++p) {
+      terms[p][k] = support_fit.fit[k][p];
     }
   }
   return terms;
@@ -337,21 +341,22 @@ std::array<TermRow, kFootingPorts> terms_by_port(const Footing& footing) {
 
 }  // namespace
 
-void find_response(const PortCompliance& body, const Footing& footing, FootingResponse& response) {
-  response.serial = footing.serial;
+void find_response(const PortCompliance& body, const SupportFit& support_fit,
+                   SupportResponse& response) {
+  response.serial = support_fit.serial;
   response.terms.fill(0.0);
-  const std::array<TermRow, kFootingPorts> fit = terms_by_port(footing);
+  const std::array<TermRow, kSupportPorts> fit = terms_by_port(support_fit);
   const std::size_t side = 3 * body.ports.size();
   for (std::size_t force = 0; force < 3; ++force) {
-    for (std::size_t to = 0; to < footing.count; ++to) {
+    for (std::size_t to = 0; to < support_fit.count; ++to) {
       // What unit moments of this axis do to the port, along each axis.
       std::array<TermRow, 3> moved{};
-      for (std::size_t from = 0; from < footing.count; ++from) {
+      for (std::size_t from = 0; from < support_fit.count; ++from) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          const double value = body.values[(3 * std::size_t{footing.ports[to]} + axis) * side +
-                                           3 * std::size_t{footing.ports[from]} + force]
+          const double value = body.values[(3 * std::size_t{support_fit.ports[to]} + axis) * side +
+                                           3 * std::size_t{support_fit.ports[from]} + force]
                                    .value;
-          add_terms(footing.share * value, fit[from], moved[axis].data());
+          add_terms(support_fit.share * value, fit[from], moved[axis].data());
         }
       }
       for (std::size_t moment = 0; moment < kSupportTerms; ++moment) {

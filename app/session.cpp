@@ -66,8 +66,7 @@ std::vector<std::vector<Pose>> expected_poses(const SceneDescription& scene) {
 }
 
 double next_time(const World& world) {
-  const Clock& clock = world.state.clock;
-  return static_cast<double>(clock.step) * clock.dt;
+  return static_cast<double>(world.state.clock.step) * world.model.dt;
 }
 
 void set_scripted_poses(Session& session) {
@@ -83,7 +82,7 @@ void step_scripted(Session& session) {
 }
 
 std::uint64_t steps_in(const Session& session, double seconds) {
-  const double dt = session.simulation.world.state.clock.dt;
+  const double dt = session.simulation.world.model.dt;
   return static_cast<std::uint64_t>(std::llround(seconds / dt));
 }
 

@@ -12,7 +12,7 @@ namespace torsion {
 namespace {
 
 double simulated_time(const Session& session, const RunStatistics& statistics) {
-  return static_cast<double>(statistics.steps) * session.simulation.world.state.clock.dt;
+  return static_cast<double>(statistics.steps) * session.simulation.world.model.dt;
 }
 
 /// Rows [from us, to us, count].

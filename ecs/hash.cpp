@@ -43,6 +43,7 @@ std::uint64_t hash(const Model& model) {
   XXH3_INITSTATE(&state);
   XXH3_64bits_reset(&state);
   add_struct(state, model.settings);
+  add_struct(state, model.dt);
   add_tables(state, model.tables());
   return XXH3_64bits_digest(&state);
 }

@@ -40,13 +40,14 @@ struct Settings {
   std::uint32_t grid_side = 16;  // cells along one side of a region's grid, 1 to kMaxGridSide; 16
                                  // gives about 200 in a round contact
   std::uint32_t iterations = 2;  // over the cells of a region with contact model patch in one step,
-                                 // 1 to kMostSweeps
+                                 // 1 to kMostIterations
 };
 
 /// What a step knows that is constant once a scene has been prepared. What a column means is said
 /// at its struct in ecs/components.hpp.
 struct Model {
   Settings settings;
+  double dt = 1e-3;  // s, of a step
   Table<Pose, Elasticity, Friction, FixedRegion, BodyModels, OwnedRows, Bounds> bodies;
   Table<MassProperties, OwnedRows, Bounds> tools;
   Table<ShapePart> parts;

@@ -23,7 +23,6 @@ enum class Fault : std::uint32_t {
 /// The clock and the state of the run. Written by: the step itself.
 struct Clock {
   double time = 0.0;  // s: the last step took the poses of this time; step k takes those of k dt
-  double dt = 1e-3;   // s
   std::uint64_t step = 0;  // of the next step
   std::uint64_t regions_formed = 0;
   std::uint32_t faults = 0;       // Fault bits of the last step

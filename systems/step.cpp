@@ -133,7 +133,7 @@ void step(const Model& model, State& state, std::span<const Pose> tool_poses, Sc
 #endif
   Clock& clock = state.clock;
   clock.faults_ever |= clock.faults;
-  clock.time = static_cast<double>(clock.step) * clock.dt;
+  clock.time = static_cast<double>(clock.step) * model.dt;
   clock.step += 1;
 }
 

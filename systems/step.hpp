@@ -41,7 +41,7 @@ struct Simulation {
 /// does.
 Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options);
 
-/// One step of Clock::dt: reads one pose a tool (that of the time Clock::step * dt). Never throws,
+/// One step of Model::dt: reads one pose a tool (that of the time Clock::step * dt). Never throws,
 /// never allocates; what went wrong is in Clock::faults. Different states, each with a scratch of
 /// its own, may step in different threads.
 /// @pre tool_poses.size() == tools; scratch.reserve() was called

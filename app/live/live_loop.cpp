@@ -81,7 +81,7 @@ void answer(LiveLoop& loop, std::uint32_t row) {
         tool.books, tool.limits,
         felt_wrench(tool.hold, tool.coupling, tool.handle, out.tool, out.contact),
         tool.handle.position - tool.last_handle.position,
-        turn_between(tool.last_handle.rotation, tool.handle.rotation), world.state.clock.dt);
+        turn_between(tool.last_handle.rotation, tool.handle.rotation), world.model.dt);
     tool.last_handle = tool.handle;
     out.distance = glm::length(tool.handle.position - out.tool.position);
   }
@@ -104,7 +104,7 @@ void go_over(LiveLoop& loop, Generation& to, bool carry) {
       push_input(loop, body_entry(step, body, to.picks[body]));
     }
     push_input(loop, {InputKind::kRebuild, 0, step, {}});
-    const double dt = to.simulation.world.state.clock.dt;
+    const double dt = to.simulation.world.model.dt;
     for (LiveTool& tool : loop.tools) {
       tool.still_steps = static_cast<std::uint32_t>(std::ceil(kSettle / dt));
     }
@@ -266,7 +266,7 @@ void publish_if_due(LiveLoop& loop) {
 
 void reserve(LiveLoop& loop, Session& session, Simulation& simulation) {
   const World& world = simulation.world;
-  const double dt = world.state.clock.dt;
+  const double dt = world.model.dt;
   loop.session = &session;
   loop.simulation = &simulation;
   loop.schedule.period = static_cast<Nanoseconds>(std::llround(1e9 * dt));

@@ -340,7 +340,7 @@ void output_wrench(ToolWrench& wrench, const Wrench& computed, bool faulty, doub
 void region_wrenches(StepContext& context) {
   const Model& model = context.model;
   State& state = context.state;
-  const double dt = state.clock.dt;
+  const double dt = model.dt;
   for (StoredEnergy& energy : state.bodies.column<StoredEnergy>()) {
     energy.work = 0.0;
   }
@@ -375,10 +375,10 @@ void sum_wrenches(StepContext& context) {
     }
     ToolWrench& wrench = state.tools.at<ToolWrench>(tool);
     const Wrench before = wrench.total;
-    output_wrench(wrench, computed, clock.faults != 0, clock.dt);
+    output_wrench(wrench, computed, clock.faults != 0, model.dt);
     // By the trapezoidal rule.
     wrench.work +=
-        work_against((before + wrench.total) * 0.5, state.tools.at<ToolMotion>(tool), clock.dt);
+        work_against((before + wrench.total) * 0.5, state.tools.at<ToolMotion>(tool), model.dt);
   }
 }
 

@@ -64,8 +64,8 @@ void couple_tools(StepContext& context) {
     motion.mass_center = to_outer(pose.now, masses[tool].center);
     const glm::dvec3 shift = motion.mass_center - center_before;
     const glm::dvec3 turn = turn_between(pose.before.rotation, pose.now.rotation);
-    motion.velocity = shift / clock.dt;
-    motion.angular_velocity = turn / clock.dt;
+    motion.velocity = shift / context.model.dt;
+    motion.angular_velocity = turn / context.model.dt;
     if (clock.step == 0) {
       // The scene's first pose is where the tool starts, not a motion from where it was loaded.
       motion.velocity = glm::dvec3(0.0);
@@ -136,7 +136,7 @@ MotionOverBody motion_over_body(const Model& model, const State& state, std::uin
   const Pose& body = model.bodies.at<Pose>(identity.body);
   const ToolMotion& tool = state.tools.at<ToolMotion>(identity.tool);
   const RegionSupport& support = state.regions.at<RegionSupport>(region);
-  const double dt = state.clock.dt;
+  const double dt = model.dt;
   const glm::dquat to_body = glm::conjugate(body.rotation);
   const glm::dvec3 shift = to_body * tool.velocity * dt;
   return {shift,

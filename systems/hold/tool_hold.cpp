@@ -31,7 +31,7 @@ ToolDamping choose_damping(const VirtualCoupling& coupling, const MassProperties
 Pose next_heavy_tool_pose(const Model& model, const State& state, std::uint32_t tool,
                           const VirtualCoupling& coupling, const Pose& handle) {
   const MassProperties& properties = model.tools.at<MassProperties>(tool);
-  const double h = state.clock.dt;
+  const double h = model.dt;
   const ToolBalance balance = balance_of(model, state, tool, coupling, handle);
   const Vector6 velocity = last_motion(model, state, tool) / h;
   const ToolDamping tool_damping = choose_damping(coupling, properties);

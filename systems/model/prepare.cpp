@@ -325,7 +325,7 @@ Result<Done> append_choices(PreparedWorld& prepared, const SceneDescription& sce
     append_models(model, row, scene.bodies[row], compliances.value()[row], prepared.choices[row]);
   }
   prepared.world.state.reserve(capacities, settings);
-  prepared.world.state.clock.dt = 1.0 / options.rate;
+  model.dt = 1.0 / options.rate;
   return Done{};
 }
 

@@ -52,7 +52,7 @@ BedSums press_bed(const Model& model, State& state, std::uint32_t region) {
   const Friction& friction = model.bodies.at<Friction>(identity.body);
   const std::uint32_t side = model.settings.grid_side;
   const double stiffness = bed_stiffness(model, identity.body);
-  const double to_velocity = 1.0 / (state.clock.dt * kStiction);
+  const double to_velocity = 1.0 / (model.dt * kStiction);
   const auto cells = state.cells.rows<CellGeometry>(identity.cells);
   const auto tractions = state.cells.rows<CellTraction>(identity.cells);
   BedSums sums;

@@ -57,7 +57,7 @@ class StepTimes {
 void time_contact(benchmark::State& state, Session& session) {
   constexpr double kFirst = 1.0;  // s
   constexpr double kLast = 3.3;   // s
-  const double dt = session.simulation.world.state.clock.dt;
+  const double dt = session.simulation.world.model.dt;
   while (session.simulation.world.state.clock.time < kFirst) {
     step_scripted(session);
   }

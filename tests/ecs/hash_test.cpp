@@ -37,7 +37,18 @@ TEST(HashTest, EveryColumnOfEveryTableCounts) {
   std::apply(change_each, world.model.tables());
   std::apply(change_each, world.state.tables());
   expect_hash_to_change(world, std::as_writable_bytes(std::span(&world.model.settings, 1)));
+  expect_hash_to_change(world, std::as_writable_bytes(std::span(&world.model.dt, 1)));
   expect_hash_to_change(world, std::as_writable_bytes(std::span(&world.state.clock, 1)));
+}
+
+TEST(HashTest, AColumnThatChangesIsNamed) {
+  World world = test::small_world(3);
+  const ColumnHashes before = hash_columns(world.state);
+  EXPECT_TRUE(differing(before, hash_columns(world.state)).empty());
+  world.state.regions.at<RegionNormal>(0).force += 1.0;
+  world.state.cells.at<CellTraction>(1).pressure += 1.0;
+  EXPECT_EQ(differing(before, hash_columns(world.state)), (columns<RegionNormal, CellTraction>()));
+  EXPECT_EQ(kColumnNames[column_number<RegionNormal>()], "RegionNormal");
 }
 
 TEST(HashTest, RowsBeyondTheSizeDoNotCount) {

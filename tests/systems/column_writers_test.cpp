@@ -96,7 +96,7 @@ void step_and_note(test::Hand& hand, Changes& changes) {
     ++number;
   }
   Clock& clock = world.state.clock;
-  clock.time = static_cast<double>(clock.step) * clock.dt;
+  clock.time = static_cast<double>(clock.step) * world.model.dt;
   clock.step += 1;
 }
 

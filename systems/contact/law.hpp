@@ -22,15 +22,15 @@ struct ContactLaw {
   ContactModel model = ContactModel::kAuto;
 
   // What it knows.
-  /// Pressure and traction of every cell, so that it says where on the material its load lies and
-  /// finds in its own equations what that does to a body that moves as a whole. Others know a
-  /// contact as a whole: a force, and a couple about its middle.
+  /// It knows pressure and traction of every cell: where on the material its load lies, and by its
+  /// own equations what that does to a body that moves as a whole. Other laws know a contact as a
+  /// whole: a force, and a couple about its middle.
   bool by_cells = false;
   /// It accounts for how the body deflects under its load in the step in which that is found
   /// (support/contact_load.hpp): writes ContactScratch::support_answers.
   bool moves_own_support = false;
-  /// On a body that moves as a whole: so many times a contact's own compliance the body has to give
-  /// way for other regions to answer within a step (support/body_law.hpp).
+  /// On a body that moves as a whole: where the body's compliance is more than this many times a
+  /// contact's own, regions account for each other's answers within a step (RegionReaction).
   double answers_from = 0.0;
   /// Its force is bounded by the overlap and by the tools' work (region_wrenches.hpp).
   bool is_bounded = true;

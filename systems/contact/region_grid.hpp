@@ -8,10 +8,10 @@
 
 namespace torsion {
 
-/// What is longer than so many times its width is a long contact: its grid lies along it.
+/// A contact longer than this many times its width counts as long: its grid lies along it.
 inline constexpr double kLongContact = 1.6;
 
-/// Of the width of a contact over its length, rad: to turn a grid by less changes nothing.
+/// Share of a contact's width over its length, rad: to turn a grid by less changes nothing.
 inline constexpr double kAligned = 0.05;
 
 /// Second moments of an area in its plane, over the area, about its middle, m^2.
@@ -72,13 +72,13 @@ struct ContactAxes {
   [[nodiscard]] bool is_askew() const { return std::abs(angle) > allowance; }
 };
 
-/// The grid's longer axis is to go along the contact, in a square one the nearer.
+/// How far the grid's longer axis, or a square grid's nearer one, lies off the contact's.
 ContactAxes contact_axes(const Grid& grid, const CellMoments& moments);
 
 /// Turns the grid's tangents about its normal.
 void turn_axes(RegionFrame& frame, double angle);
 
-/// Of a region's grid around its contact: about one cell of 16.
+/// Side of a region's grid over its contact's: about one cell of 16 is left free.
 inline constexpr double kGridMargin = 1.12;
 inline constexpr double kSmallestHalf = 1e-9;  // m
 
@@ -118,12 +118,12 @@ void lay(const Grid& grid, const glm::dvec2& shift, const glm::dvec2& half_size)
 /// Puts the grid around `box` (of its own plane).
 void fit(const Grid& grid, const PlaneBox& box);
 
-/// Likewise, but goes only a part of a short way: where a contact ends is known from cells to a
-/// share of one, and a grid that went all the way would find it elsewhere again, in every step.
-/// @param moves  whether the tool does; under one that stands a grid that nearly fits stays
+/// Likewise, but a short way is gone only in part: cells show a contact's edge to a fraction of
+/// one, and a grid that moved all the way would see another edge in every step.
+/// @param moves  whether the tool does; under a resting tool a grid that nearly fits stays
 void approach(const Grid& grid, const PlaneBox& box, bool moves);
 
-/// Lets every cell look for the tool from the same depth.
+/// Makes every cell look for the tool from the same depth.
 void restart_heights(const Grid& grid, double depth);
 
 /// Lays a new region's grid: in the body's tangent plane at the deepest of the cluster's points,
@@ -134,9 +134,9 @@ void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoin
 /// The deepest of the region's contact points; depth 0 where there are none.
 ContactPoint deepest_of_cluster(const Grid& grid, const RegionPoints& contact);
 
-/// A new grid may see more of the body than the one before it, by whose cells it is
-/// turned: of a face that comes to lie on a body the first to touch is an edge, whose normal is
-/// another one, and over the whole face that would be a depth of its own.
+/// Looks again where a new grid's cells show another normal than the one it was laid with. Of a
+/// face that comes to lie on a body an edge touches first, whose normal is not the face's; along it
+/// the whole face would seem to lie deep.
 void look_along_normal(const Grid& grid, const RegionPoints& contact);
 
 // Of contact models whose grid is found by the overlap alone.

@@ -23,9 +23,10 @@ inline constexpr Fault kAllFaults[] = {Fault::kPoseNotFinite,   Fault::kPoseJump
                                        Fault::kTooDeep,         Fault::kRegionsFull,
                                        Fault::kResultNotFinite, Fault::kForceTooLarge};
 
-/// The last line, whatever the cause: raises Fault::kForceTooLarge where a region's normal force F
-/// is beyond either of two bounds, in which k is the stiffness of a rigid punch that holds the
-/// region's contact and d is how deep the body's regions together are under its rest shape.
+/// The last line of defence, whatever the cause: raises Fault::kForceTooLarge where a region's
+/// normal force F is beyond either of two bounds, in which k is the stiffness of a rigid punch that
+/// holds the region's contact and d is how deep the body's regions together are under its rest
+/// shape.
 /// - F^2 / (2 k) <= W: no contact of that size holds F with less energy, and W is what the tools
 ///   have put in since nothing touched the body. Where regions come up at a depth that no motion
 ///   has brought them to, W is at least k d^2 / 2.
@@ -34,7 +35,7 @@ inline constexpr Fault kAllFaults[] = {Fault::kPoseNotFinite,   Fault::kPoseJump
 /// The force of `paper` is a formula of the depth, which stiffens without bound: it is left alone.
 void bound_forces(StepContext& context);
 
-/// What of a region does not change little by little in this step.
+/// What makes a region's force jump in this step.
 enum class RegionEvent : std::uint32_t {
   kNone,
   kBegins,      // on_tool is zero: it is new, where there was none; what the tool's way in this
@@ -47,9 +48,9 @@ enum class RegionEvent : std::uint32_t {
 
 /// Steps in which a body with compliance answers to regions that merge or split. Their contact is
 /// found on the body as the step before has left it, without or with what the one region moved the
-/// other (a tenth of the depth), and Newton's method takes one step a step: where two balls of
-/// patch part, the force is 23 % off in the step itself and 2.7, 2.3, 0.9, 0.6 and 0.1 % in those
-/// after it; where two of mdr meet, 19, 2.1 and 0.1 %.
+/// other (a tenth of the depth), and Newton's method makes one iteration in a step: where two balls
+/// of patch part, the force is 23 % off in the step itself and 2.7, 2.3, 0.9, 0.6 and 0.1 % in
+/// those after it; where two of mdr meet, 19, 2.1 and 0.1 %.
 inline constexpr std::uint32_t kFollowingSteps = 4;
 
 /// Force and torque of every region on its tool, about the tool's mass centre, in the world: T =

@@ -33,7 +33,7 @@ inline double inverse_of(double scale) {
   return scale > 0.0 ? 1.0 / scale : 1e60;
 }
 
-/// Against small motions of a tool, about a region's point and along its frame.
+/// How a region resists small motions of its tool, about the region's point and along its frame.
 struct StuckStiffness {
   double along_tangents = 0.0;     // N/m
   double along_normal = 0.0;       // N/m
@@ -41,16 +41,16 @@ struct StuckStiffness {
   double about_normal = 0.0;       // N m/rad
 };
 
-/// Of a region that sticks: a rigid ellipse bonded to a half-space, about as long as its overlap
-/// says; Newton's method, for which this is, overshoots where this is half of what it should be,
-/// and the motions of tool and body then feed each other. Source: elliptic_contact.hpp; Johnson,
-/// 1985, 3.2 and 3.7, for the tilt of a disc.
+/// Of a region that sticks everywhere: of a rigid ellipse bonded to a half-space, with the
+/// overlap's axes. It is for Newton's method, which overshoots where a stiffness is half of what it
+/// should be: the motions of tool and body would then feed each other. Source:
+/// elliptic_contact.hpp; Johnson, 1985, 3.2 and 3.7, for the tilt of a disc.
 ///
-/// A long contact tilts the harder, for the place of its force runs along it. A tilt by t moves the
+/// A long contact resists tilting more, because its force moves along it. A tilt by t moves the
 /// apex of a paraboloid of curvature k, and the force F with it, by t / k. Its overlap reaches
 /// h = sqrt(2 d / k) from the apex, d deep there, so F t / k = F t h^2 / (2 d); for a ball this is
-/// the bonded disc's. A flat contact's force goes to t 2 h^2 / (3 d) (contact_shape.hpp). Between
-/// the two: 0.6.
+/// the bonded disc's. A flat contact's force goes to t 2 h^2 / (3 d) (mdr/round_contact.hpp).
+/// Between the two: 0.6.
 /// @param radius  m, of the disc of equal area
 StuckStiffness stuck_stiffness(const Model& model, const State& state, std::uint32_t region,
                                double radius);

@@ -25,9 +25,9 @@ struct MotionOverBody {
 
 MotionOverBody motion_over_body(const Model& model, const State& state, std::uint32_t region);
 
-/// How the tool goes over the material that is at `point` and stays there, m, body axes. Turned
-/// about where the mass centre is halfway: turning and sliding in one step come in no order, and
-/// the work of the mean of two wrenches is that of the tractions' means.
+/// Displacement of the tool over the material that is at `point`, m, body axes. Its turn is about
+/// where the mass centre is halfway through the step: then it does not matter whether it turns or
+/// slides first, and the mean of two wrenches does the work of the tractions' means.
 inline glm::dvec3 shift_at(const MotionOverBody& motion, const glm::dvec3& point) {
   return motion.shift + glm::cross(motion.turn, point - motion.halfway) - motion.carried_by -
          glm::cross(motion.carried_turn, point - motion.carried_about);
@@ -38,7 +38,8 @@ inline glm::dvec3 turn_of(const MotionOverBody& motion) {
   return motion.turn - motion.carried_turn;
 }
 
-/// How the tool's point goes that is at `point` before the step, and that which is there after it.
+/// Displacement of the tool's point that is at `point` before the step, and of the one that is
+/// there after it.
 inline glm::dvec3 shift_before(const MotionOverBody& motion, const glm::dvec3& point) {
   return shift_at(motion, point) + 0.5 * glm::cross(motion.turn, motion.shift);
 }

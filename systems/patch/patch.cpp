@@ -20,30 +20,28 @@
 namespace torsion {
 namespace {
 
-// Of a region that begins or whose grid moved, at most: iterations of either, of both in all rounds
-// and regions together, and rounds of pressures and tractions in turn. What is left to do then is
-// done in the next steps, of which each has its own iterations. Where there are more such regions
-// in a step, or many others, they share out what there is, or the step would be long.
+// Most iterations for a region that begins or whose grid has moved: of the pressures or the
+// tractions in one round, of all rounds and all such regions together, and with those of the other
+// regions. Regions share what there is, so that the step does not get long; what is left to do is
+// done in the next steps.
 constexpr std::uint32_t kIterationsAnew = 8;
 constexpr std::uint32_t kIterationsOfAll = 16;
-constexpr std::uint32_t kIterationsOfStep = 24;  // with those of the other regions
-constexpr std::uint32_t kRoundsAnew = 8;
-constexpr double kSkipAnew = 1e-5;  // the residual that will do then
-// Of the last step's change. Steps that end early must not extrapolate more: an error that a step's
-// iterations leave to the share r comes back as r (1 + s) and -r s of the last two, with s what is
-// extrapolated; the roots of x^2 = r (1 + s) x - r s are within 1 for every r < 1 only where s
-// <= 1.
+constexpr std::uint32_t kIterationsOfStep = 24;
+constexpr std::uint32_t kRoundsAnew = 8;  // of pressures and tractions in turn
+constexpr double kSkipAnew = 1e-5;        // largest change, relative, that ends them
+// Share of the last step's change by which a solution is extrapolated, at most. With s that share
+// and r the part of an error that a step's iterations leave, the errors e of successive steps
+// follow e_n = r (1 + s) e_(n-1) - r s e_(n-2), which decays for every r < 1 only where s <= 1.
 constexpr double kMostExtrapolation = 1.0;
-// A contact that rolls: material comes in that no earlier step tells of, and leaves with what is
-// known of it. With two iterations a step the friction of rolling with spin was 2.3 % off the
-// largest, with these 0.8 %, as with any more (patch_steady_rolling_test.cpp). A contact rolls
-// where the tool tilts over it in a step by so much that its rim's depth changes by this share of
-// the mean, and more.
+// A contact rolls where the tool tilts over it in a step by so much that the depth at its rim
+// changes by more than kRolls of the mean depth: material comes in of which the last solution knows
+// nothing. With two iterations a step the friction of rolling with spin was 2.3 % of the largest
+// off, with eight 0.8 %, as with any more (patch_steady_rolling_test.cpp).
 constexpr std::uint32_t kIterationsOfRolling = 8;  // at most
 constexpr double kRolls = 2e-3;
 
-/// The motion of this step along that of the last one, as a share of it: 1 in steady motion, -1
-/// where it turns back.
+/// Component of this step's motion along the last one's, over that: 1 in steady motion, -1 where it
+/// turns back.
 double share_of_last(const Patch& patch, double deepened) {
   const double radius = patch.state.regions.at<Overlap>(patch.region).radius;
   const PatchState& last = patch.own;
@@ -55,7 +53,7 @@ double share_of_last(const Patch& patch, double deepened) {
   return square > 0.0 ? std::clamp(along / square, -1.0, 1.0) : 0.0;
 }
 
-/// How much of the last step's change to expect again.
+/// By how much of the last step's change the solution is extrapolated.
 ExtrapolationShares extrapolation_shares(const Patch& patch) {
   if (has_support(patch)) {
     const double share = std::clamp(patch.own.along_last, 0.0, kMostExtrapolation);
@@ -72,7 +70,7 @@ bool rolls(const Patch& patch) {
   return glm::length(tilt) * overlap.radius > kRolls * overlap.mean_depth;
 }
 
-/// As a step solves whose pressures have far to go.
+/// Allows the iterations of a solution that has far to go.
 /// @param iterations  at most
 void solve_longer(Patch& patch, std::uint32_t iterations) {
   const std::uint32_t least = patch.model.settings.iterations;
@@ -112,7 +110,8 @@ void start_anew(Patch& patch, std::uint32_t iterations) {
   solve_longer(patch, iterations);
 }
 
-/// A pressure to measure changes by: the mean of what is there, or what the depth will ask for.
+/// A typical pressure, by which changes are measured: the mean, or before there is any, what the
+/// depth will need.
 double reference_pressure(const Patch& patch, double depth) {
   const double mean = mean_pressure(patch.columns);
   if (mean > 0.0) {

@@ -16,20 +16,20 @@ struct BodyLaw {
   bool moves_as_a_whole = false;
 
   // What it knows of a region when that begins, splits off or ends; null: nothing.
-  /// Where a region that begins finds the material: moved by what the body's other regions do to it
-  /// now. Without it the first solution would press on the body at rest, and the others would feel
-  /// that.
+  /// A region begins: finds where the body's other regions have moved the material under it.
+  /// Without it the first solution would press on the body at rest, and the other regions would
+  /// feel that.
   void (*begin)(const Model& model, State& state, std::uint32_t region) = nullptr;
-  /// The same of a region that splits off another one: where that one has it. Of a contact law by
-  /// cells `split` has the rest to do, of others the load is shared out by the discs' areas.
+  /// A region splits off another one: the material is where that one has it. With a contact law by
+  /// cells `split` follows; with another one the load is shared out here, by the discs' areas.
   void (*begin_split)(const Model& model, State& state, std::uint32_t from,
                       std::uint32_t region) = nullptr;
-  /// A region that has taken a part of another's load: to each of the two what the other one's part
-  /// does to it is by another region from now on. For contact laws by cells.
+  /// A region has taken a part of another one's load: what that part does to the other one counts
+  /// as done by another region from now on, and the other way round. For contact laws by cells.
   void (*split)(const Model& model, State& state, std::uint32_t from,
                 std::uint32_t region) = nullptr;
-  /// A region that has taken over another one's tractions, which that still has, too: what they do
-  /// here is by its own load from now on. For contact laws by cells.
+  /// A region has taken over another one's tractions (that one's row still has them, too): what
+  /// they do to it counts as done by its own load from now on. For contact laws by cells.
   void (*join)(const Model& model, State& state, std::uint32_t ended, std::uint32_t heir) = nullptr;
 };
 

@@ -108,23 +108,43 @@ LeftCells first_of(const LeftCells& left, std::size_t count) {
           left.gradient_square.first(count)};
 }
 
-/// Lists the cells that still move, unless none moves far that may be in contact: whose underside,
-/// with its slopes, comes below the rest surface.
+/// Whether a cell still moves far that may be in contact: whose underside, with its slopes, comes
+/// below the rest surface.
 /// @param cell_length  m
-/// @param moved, z, tool_x, tool_y  (n) of the cells `of`, all when that is empty
-LeftCells cells_left(const LeftCells& memory, double cell_length, std::span<const double> moved,
-                     std::span<const double> z, std::span<const double> tool_x,
-                     std::span<const double> tool_y, std::span<const std::uint32_t> of) {
-  std::size_t count = 0;
+/// @param moved, z, tool_x, tool_y  (n) of the cells
+bool any_moves_far(double cell_length, std::span<const double> moved, std::span<const double> z,
+                   std::span<const double> tool_x, std::span<const double> tool_y) {
   bool far = false;
+  for (std::size_t k = 0; k < moved.size(); ++k) {
+    far = far || (moved[k] >= kCloseEnough * cell_length &&
+                  z[k] < cell_length * (std::abs(tool_x[k]) + std::abs(tool_y[k])));
+  }
+  return far;
+}
+
+/// Lists the cells that still move.
+/// @param moved  m, (n) of the cells `of`, all when that is empty
+LeftCells cells_left(const LeftCells& memory, double cell_length, std::span<const double> moved,
+                     std::span<const std::uint32_t> of) {
+  std::size_t count = 0;
   for (std::size_t k = 0; k < moved.size(); ++k) {
     if (moved[k] >= kAtRest * cell_length) {
       memory.cells[count++] = of.empty() ? static_cast<std::uint32_t>(k) : of[k];
-      far = far || (moved[k] >= kCloseEnough * cell_length &&
-                    z[k] < cell_length * (std::abs(tool_x[k]) + std::abs(tool_y[k])));
     }
   }
-  return first_of(memory, far ? count : 0);
+  return first_of(memory, count);
+}
+
+/// Puts cells that still go up beside a side of the tool, or over it, to where nothing touches:
+/// there is no underside over them, and their slopes are none of one.
+/// @param points  (n) of the cells `of`, all when that is empty; value: how far they have moved, m
+void raise_climbing(const CellColumns& columns, const DistanceColumns& points, double cell_length,
+                    double size, std::span<const std::uint32_t> of) {
+  for (std::size_t k = 0; k < points.value.size(); ++k) {
+    if (points.value[k] >= kCloseEnough * cell_length && points.gradient_z[k] > -kSteepest) {
+      columns.points.z[of.empty() ? k : of[k]] = size;
+    }
+  }
 }
 
 /// A step of those that are left: the others rest on the surface already.
@@ -172,13 +192,21 @@ void find_tool_surface(const Grid& grid) {
   if (extreme_of(columns.points.value, 1.0) < kCloseEnough * cell_length) {
     return;
   }
+  if (!any_moves_far(cell_length, columns.points.value, columns.points.z, columns.tool_x,
+                     columns.tool_y)) {
+    raise_climbing(columns, columns.points, cell_length, size, {});
+    return;
+  }
   const LeftCells& memory = grid.scratch.left_cells;
-  LeftCells left = cells_left(memory, cell_length, columns.points.value, columns.points.z,
-                              columns.tool_x, columns.tool_y, {});
-  for (int step = 1; step < kMostSurfaceSteps && !left.cells.empty(); ++step) {
+  LeftCells left = cells_left(memory, cell_length, columns.points.value, {});
+  for (int step = 1; step < kMostSurfaceSteps; ++step) {
     step_left_cells(grid, parts, frame, size, left);
-    left = cells_left(memory, cell_length, left.points.value, left.points.z, left.tool_x,
-                      left.tool_y, left.cells);
+    if (step + 1 == kMostSurfaceSteps ||
+        !any_moves_far(cell_length, left.points.value, left.points.z, left.tool_x, left.tool_y)) {
+      raise_climbing(columns, left.points, cell_length, size, left.cells);
+      return;
+    }
+    left = cells_left(memory, cell_length, left.points.value, left.cells);
   }
 }
 

@@ -267,6 +267,8 @@ PlaneBox align_grid(const Grid& grid, std::uint32_t region, const CellBits& cove
 /// @return whether it was regridded
 bool fit_to_contact(const Grid& grid, std::uint32_t region, const RegionPoints& contact,
                     double start_depth, bool event_now) {
+  bool outgrown = false;
+  bool tightened = false;
   for (int pass = 0; pass < kMostRegrids; ++pass) {
     const CellBits covered = find_cells(grid, contact);
     PlaneBox box = covered_box(grid, covered);
@@ -281,8 +283,17 @@ bool fit_to_contact(const Grid& grid, std::uint32_t region, const RegionPoints& 
     if (reaches_edge(grid, box)) {
       box.lowest -= 0.5 * grid.frame.half_size;
       box.highest += 0.5 * grid.frame.half_size;
+      outgrown = true;
     } else if (event_now ? settled(grid, box) : !fills_too_little(grid, box)) {
-      return pass > 0;
+      if (event_now || !outgrown || tightened) {
+        return pass > 0;
+      }
+      // Only for looking so far. Left as large, it would be made smaller in the next step by what
+      // its large cells show of a sharp corner, and be outgrown again in the one after.
+      const glm::dvec2 cell = cell_half_size(grid);
+      box.lowest -= cell;
+      box.highest += cell;
+      tightened = true;
     }
     if (event_now && !reaches_edge(grid, box)) {
       box = align_grid(grid, region, covered, 1.0);

@@ -77,11 +77,11 @@ void answer(LiveLoop& loop, std::uint32_t row) {
   out.wrench = Wrench{};
   out.distance = 0.0;
   if (tool.from == PoseFrom::kHandle && tool.sample != 0) {
-    out.wrench = keep_passive(
-        tool.books, tool.limits,
-        felt_wrench(tool.hold, tool.coupling, tool.handle, out.tool, out.contact),
-        tool.handle.position - tool.last_handle.position,
-        turn_between(tool.last_handle.rotation, tool.handle.rotation), world.model.dt);
+    out.wrench =
+        keep_passive(tool.books, tool.limits,
+                     felt_wrench(tool.hold, tool.coupling, tool.handle, out.tool, out.contact),
+                     tool.handle.position - tool.last_handle.position,
+                     turn_between(tool.last_handle.rotation, tool.handle.rotation), world.model.dt);
     tool.last_handle = tool.handle;
     out.distance = glm::length(tool.handle.position - out.tool.position);
   }

@@ -36,8 +36,7 @@ PaperShaft shaft_of(const Hand& hand) {
   return {world.state.regions.at<RegionNormal>(0).force,
           world.model.bodies.at<Friction>(0).dynamic_friction,
           world.model.bodies.at<Elasticity>(0).shear_modulus(),
-          world.state.regions.at<Contact>(0).radius,
-          world.state.regions.at<RegionMotion>(0).lever};
+          world.state.regions.at<Contact>(0).radius, world.state.regions.at<RegionMotion>(0).lever};
 }
 
 TEST(PaperTorqueTest, RegionOfThePressedBallIsTheOverlapDisc) {
@@ -52,7 +51,8 @@ TEST(PaperTorqueTest, RegionOfThePressedBallIsTheOverlapDisc) {
   const double mean_depth =
       kPressDepth * kPressDepth * (3.0 * 0.05 - kPressDepth) / (3.0 * exact * exact);
   EXPECT_NEAR(contact.depth, mean_depth, 0.005 * mean_depth);
-  EXPECT_NEAR(hand.world().state.regions.at<Overlap>(0).largest_depth, kPressDepth, 0.01 * kPressDepth);
+  EXPECT_NEAR(hand.world().state.regions.at<Overlap>(0).largest_depth, kPressDepth,
+              0.01 * kPressDepth);
 }
 
 TEST(PaperTorqueTest, CellsInContactAreAboutTwoHundred) {

@@ -61,9 +61,8 @@ ReferenceCase twist_case(bool quick) {
           amplitude, amplitude);
   result.reference = fmt::format(
       "Sneddon (1965) for force and contact radius, Lubkin (1951) for torque and twist field, "
-      "Masing\u2019s rule after each reversal; evaluated to 1e-11. That a sphere presses not quite "
-      "as "
-      "Hertz\u2019 paraboloid changes the torque by {:.1g}\u00a0%.",
+      "Masing\u2019s rule after each reversal; evaluated to 1e-11. That a sphere presses not "
+      "quite as Hertz\u2019 paraboloid changes the torque by {:.1g}\u00a0%.",
       100.0 * pressure_error(sphere));
   result.force_meaning = "normal force, pressing and turning";
   result.torque_meaning = "torque about the axis of the turn";

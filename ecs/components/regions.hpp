@@ -201,10 +201,9 @@ struct MdrState {
 
 /// Written by: region_wrenches.
 struct RegionWrench {
-  Wrench on_tool;       // world, about the tool's mass centre, as output
-  Wrench event_change;  // world: what an event would have made jump; none: the last change
-  double event_share =
-      0.0;  // of event_change that is still taken off: 1 at the event, 0 when faded
+  Wrench on_tool;            // world, about the tool's mass centre, as output
+  Wrench event_change;       // world: what an event would have made jump; none: the last change
+  double event_share = 0.0;  // of event_change, in on_tool: 1 at the event, 0 when faded
   std::uint32_t event_now =
       0;  // a RegionEvent (region_wrenches.hpp); group_regions and region_grids set it
   std::uint32_t padding = 0;

@@ -314,7 +314,7 @@ void include_points(const Grid& grid, const RegionPoints& contact, PlaneBox& box
 }
 
 /// The region's contact in this step, findable by its block of cells, which stays when rows move.
-RegionPoints& contact_of(StepContext& context, const RegionIdentity& region) {
+RegionPoints& region_points_of(StepContext& context, const RegionIdentity& region) {
   return context.scratch.region_points[block_of(region)];
 }
 
@@ -345,7 +345,7 @@ void look_along_normal(const Grid& grid, const RegionPoints& contact) {
 
 void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const Grid grid = grid_of(context, region);
-  contact_of(context, grid.identity) = contact;
+  region_points_of(context, grid.identity) = contact;
   const ContactPoint deepest = deepest_of_cluster(grid, contact);
   const Distance surface = signed_distance(
       grid.model, grid.model.bodies.at<OwnedRows>(grid.identity.body).parts, deepest.position);
@@ -394,7 +394,7 @@ void find_overlap(StepContext& context, std::uint32_t region, const RegionPoints
 
 void follow_contact(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const RegionIdentity& identity = context.state.regions.at<RegionIdentity>(region);
-  contact_of(context, identity) = contact;
+  region_points_of(context, identity) = contact;
   law_of(context.model, identity.body).follow(context, region, contact);
 }
 
@@ -403,7 +403,7 @@ void region_grids(StepContext& context) {
   State& state = context.state;
   for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
     const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
-    law_of(model, identity.body).find_cells(context, region, contact_of(context, identity));
+    law_of(model, identity.body).find_cells(context, region, region_points_of(context, identity));
     state.regions.at<Overlap>(region) = summarize_cells(grid_of(context, region));
   }
   for (std::uint32_t region = 0; region < state.regions.size(); ++region) {

@@ -268,9 +268,9 @@ double share_by_motion(const Model& model, const State& state, std::uint32_t reg
 }
 
 /// Fades what an event has changed.
-/// @param extrapolated  of the last step's change, by which this step's motion continues it
-/// @param came      of a region that begins, the share that the tool's way has made
-/// @param faded     share that goes in this step
+/// @param extrapolated  share of the last step's change that this step's motion makes again
+/// @param came          of a region that begins, the share that the tool's way has made
+/// @param faded         share that goes in this step
 void fade_event(RegionWrench& wrench, const Wrench& computed, double extrapolated, double came,
                 double faded) {
   const Wrench before = wrench.on_tool;

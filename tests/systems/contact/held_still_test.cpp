@@ -117,7 +117,7 @@ TEST_P(HeldStillTest, ACornerIsFeltTheSameInEveryStep) {
 
 // Exact shapes: the same bits but for rounding; in a distance field a cell comes to rest to 1e-6 of
 // its length, which is up to ten times the mean depth here. patch ends its iterations where a
-// change is small.
+// change is below 1e-9 of the mean pressure, a few times in each of the 50 steps.
 INSTANTIATE_TEST_SUITE_P(Models, HeldStillTest,
                          testing::Values(Held{"paper", ContactModel::kPaper, false, 1e-12},
                                          Held{"paper_mesh", ContactModel::kPaper, true, 1e-5},
@@ -125,8 +125,8 @@ INSTANTIATE_TEST_SUITE_P(Models, HeldStillTest,
                                          Held{"mdr_mesh", ContactModel::kMdr, true, 1e-5},
                                          Held{"winkler", ContactModel::kWinkler, false, 1e-12},
                                          Held{"winkler_mesh", ContactModel::kWinkler, true, 1e-5},
-                                         Held{"patch", ContactModel::kPatch, false, 1e-4},
-                                         Held{"patch_mesh", ContactModel::kPatch, true, 1e-4}),
+                                         Held{"patch", ContactModel::kPatch, false, 1e-6},
+                                         Held{"patch_mesh", ContactModel::kPatch, true, 1e-5}),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include "systems/contact/tool_surface.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -5,7 +7,6 @@
 #include <glm/geometric.hpp>
 
 #include "systems/contact/grid_cells.hpp"
-#include "systems/contact/tool_surface.hpp"
 #include "systems/geometry/distance_shapes.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"

@@ -268,10 +268,17 @@ PlaneBox align_grid(const Grid& grid, std::uint32_t region, const CellBits& cove
 bool fit_to_contact(const Grid& grid, std::uint32_t region, const RegionPoints& contact,
                     double start_depth, bool event_now) {
   bool outgrown = false;
-  bool tightened = false;
+  std::optional<RegionFrame> wide;  // before it was made tight
   for (int pass = 0; pass < kMostRegrids; ++pass) {
     const CellBits covered = find_cells(grid, contact);
     PlaneBox box = covered_box(grid, covered);
+    if (wide && (box.empty() || reaches_edge(grid, box))) {
+      // Where the contact ends is not the same on smaller cells: there is no tighter grid.
+      grid.frame = *wide;
+      restart_heights(grid, start_depth);
+      find_cells(grid, contact);
+      return true;
+    }
     if (box.empty()) {
       if (pass > 0) {
         return true;
@@ -285,7 +292,7 @@ bool fit_to_contact(const Grid& grid, std::uint32_t region, const RegionPoints& 
       box.highest += 0.5 * grid.frame.half_size;
       outgrown = true;
     } else if (event_now ? settled(grid, box) : !fills_too_little(grid, box)) {
-      if (event_now || !outgrown || tightened) {
+      if (event_now || !outgrown || wide) {
         return pass > 0;
       }
       // Only for looking so far. Left as large, it would be made smaller in the next step by what
@@ -293,7 +300,7 @@ bool fit_to_contact(const Grid& grid, std::uint32_t region, const RegionPoints& 
       const glm::dvec2 cell = cell_half_size(grid);
       box.lowest -= cell;
       box.highest += cell;
-      tightened = true;
+      wide = grid.frame;
     }
     if (event_now && !reaches_edge(grid, box)) {
       box = align_grid(grid, region, covered, 1.0);

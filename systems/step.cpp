@@ -36,7 +36,7 @@ bool any_paper_beam(const StepContext& context) {
              });
 }
 
-/// What regions have from the last step: rows of their own, and those of their blocks.
+/// What regions keep from the last step: their rows and the rows of their blocks.
 constexpr ColumnSet kOfRegions = table_columns<RegionTable>() | table_columns<CellTable>() |
                                  table_columns<PatchCellTable>() | table_columns<MdrLayerTable>() |
                                  columns<SupportFit, RegionCoupling>();

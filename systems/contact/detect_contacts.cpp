@@ -124,8 +124,8 @@ struct BallBlock {
   alignas(64) std::array<double, kBalls> distance;  // m, to the body
 };
 
-/// Marks the balls' samples whose ball reaches into the body, and lines up what is below the others
-/// that do.
+/// Marks the samples whose ball reaches into the body, and lists the balls of the level below that
+/// have to be tested.
 /// @param rows  of the tool's balls, at most BallBlock::kBalls of them
 void look_at(ContactSearch& search, std::span<const SurfaceBall> balls,
              std::span<const std::uint32_t> rows, BallBlock& block) {
@@ -146,7 +146,8 @@ void look_at(ContactSearch& search, std::span<const SurfaceBall> balls,
     const SurfaceBall& ball = balls[rows[i]];
     const double distance = block.distance[i];
     if (ball.sample == kNoRow) {
-      // Written so that NaN goes on.
+      // Written so that a distance that is NaN is searched further and found by the check for
+      // faults.
       const std::uint32_t end = distance > ball.radius ? 0 : ball.skip;
       for (std::uint32_t below = rows[i] + 1; below < end; below = balls[below].skip) {
         scratch.walk.push_back(below);
@@ -158,9 +159,9 @@ void look_at(ContactSearch& search, std::span<const SurfaceBall> balls,
   }
 }
 
-/// Walks the tool's tree of balls, level by level: keeps the samples whose ball reaches into the
-/// body, in their order. The distance is at least |distance| in every part, so a ball farther away
-/// than its radius holds no contact.
+/// Walks the tool's tree of balls, level by level, and keeps the samples whose ball reaches into
+/// the body, in the order of the samples. The body's nearest point is at least |distance| away, so
+/// a ball with a smaller radius than that has no contact.
 void find_candidates(ContactSearch& search) {
   ContactScratch& scratch = search.scratch;
   const auto balls = search.model.balls.rows<SurfaceBall>(search.tool.balls);
@@ -191,8 +192,8 @@ void find_candidates(ContactSearch& search) {
   }
 }
 
-/// Lowest among its neighbours; between equals the first. A neighbour that was not reached is
-/// farther away.
+/// Whether no neighbouring sample is deeper; of equally deep ones the first counts. A neighbour
+/// that the search did not reach is farther away from the body.
 bool is_local_minimum(const ContactSearch& search, const Candidate& candidate) {
   const SurfaceSample& sample = search.model.samples.at<SurfaceSample>(candidate.sample);
   for (const std::uint32_t neighbour : sample.neighbours) {
@@ -282,8 +283,8 @@ void pair_neighbours(const ContactSearch& search, std::uint32_t first) {
   }
 }
 
-/// Deeper than half of the body, or with half of the tool's surface inside it, no side is "out" any
-/// more.
+/// When the tool is deeper than half of the body, or half of its surface is inside, the nearest
+/// point of the body's surface no longer says on which side the tool came in.
 bool too_deep(const ContactSearch& search, const Bounds& bounds,
               std::span<const ContactPoint> points) {
   const glm::dvec3 size = bounds.highest - bounds.lowest;
@@ -298,9 +299,10 @@ void find_points(ContactSearch& search) {
   find_candidates(search);
   ContactScratch& scratch = search.scratch;
   for (const Candidate& candidate : scratch.candidates) {
-    // A sample alone in contact is told by the lowest point near it, as one beside the contact is:
-    // where it comes into contact nothing jumps, and two samples at one contact's rim that are no
-    // neighbours meet at its bottom instead of standing for a contact each.
+    // A single sample in contact is represented by the lowest point near it, and so is one beside a
+    // contact. So the force does not jump where the sample comes into contact, and two samples that
+    // are not neighbours, at the rim of the same contact, meet at its bottom instead of making two
+    // contacts.
     const bool inside = candidate.distance < 0.0;
     if (inside && !stands_alone(search, candidate)) {
       const glm::dvec3& position =

@@ -22,8 +22,8 @@ void find_rest_surface(const Grid& grid) {
   signed_distances(grid.model, parts, grid_in_body(grid.frame), grid.scratch.cell_columns.points);
 }
 
-/// Depth under the body's rest surface, how much it changes across a cell, and the share of the
-/// cell that is in contact, all from both surfaces' first-order shape there.
+/// Depth under the body's rest surface, its change across a cell, and the share of the cell that is
+/// in contact, to first order in the shape of both surfaces there.
 /// @param half        m: half a cell
 /// @param beside_edge  out: 1 where a cell in contact may lie beside an edge of the body, in lanes
 TORSION_WIDEST
@@ -58,14 +58,15 @@ void find_depths(const glm::dvec2& half, std::size_t count, const double* __rest
   beside_edge = beside;
 }
 
-/// The share of a cell with depth > 0, to first order.
+/// The share of a cell where the depth is positive, to first order.
 /// @param across  m: how much the depth changes across the cell
 double share_below(double depth, double across) {
   return 2.0 * std::abs(depth) >= across ? (depth > 0.0 ? 1.0 : 0.0) : 0.5 + depth / across;
 }
 
-/// Beside an edge of the body its side is nearest: that says how much of the cell is over the body,
-/// but the depth is the one under the face that the tool presses on, here its tangent plane.
+/// Beside an edge of the body the nearest point may lie on the body's side. The distance to it
+/// gives the share of the cell that is over the body; the depth is measured under the face that the
+/// tool presses on, here that face's tangent plane.
 void take_depth_from_plane(const Grid& grid, std::size_t cell, double facing) {
   const CellColumns& columns = grid.scratch.cell_columns;
   const glm::dvec2 half = cell_half_size(grid);
@@ -80,13 +81,13 @@ void take_depth_from_plane(const Grid& grid, std::size_t cell, double facing) {
   coverage *= facing + (1.0 - facing) * below;
   columns.bearing[cell] = coverage >= 0.5 ? 1.0 : 0.0;
   if (coverage > 0.0) {
-    // What makes the mean over the covered part of a cell that is partly covered be `mean`.
+    // Chosen so that the mean over the covered part of a partly covered cell is `mean`.
     columns.depth_change[cell] =
         facing * columns.depth_change[cell] + (1.0 - facing) * 2.0 * mean / coverage;
   }
 }
 
-/// Bits of the cells that are covered or can bear, a word a row.
+/// One bit a cell, one word a row: the cells that are covered, and those that may carry pressure.
 /// @param coverage, bearing  (side x side)
 /// @param bits               1, 2, 4, ...: shifts would hinder vectorisation
 TORSION_WIDEST
@@ -120,8 +121,8 @@ CellBits bits_of_covered(const Grid& grid) {
   return covered;
 }
 
-/// Leaves depth, its change and coverage in the columns.
-/// @param rims  find_rims has found any
+/// Computes depth, its change and coverage into the columns.
+/// @param rims  whether find_rims has found any
 CellBits find_coverage(const Grid& grid, bool rims) {
   const CellColumns& columns = grid.scratch.cell_columns;
   const std::size_t count = columns.coverage.size();
@@ -153,7 +154,7 @@ CellBits find_coverage(const Grid& grid, bool rims) {
   return bits_of_covered(grid);
 }
 
-/// From the columns to the table.
+/// Copies the columns into the table of cells.
 void store_cells(const Grid& grid) {
   const CellColumns& columns = grid.scratch.cell_columns;
   const double* const z = columns.points.z.data();
@@ -181,7 +182,7 @@ bool mark_points(const Grid& grid, const RegionPoints& contact, CellBits& own, C
   return any_foreign;
 }
 
-/// Of the cells given. One beside a rim has a depth without being in contact.
+/// The deepest of these cells. (A cell beside a rim has a depth without being in contact.)
 std::optional<CellPlace> deepest_of(const Grid& grid, const CellBits& cells) {
   std::optional<CellPlace> deepest;
   double most = 0.0;  // m
@@ -198,8 +199,8 @@ std::optional<CellPlace> deepest_of(const Grid& grid, const CellBits& cells) {
   return deepest;
 }
 
-/// Takes the coverage from cells that are not joined to the region's own contact points, or are
-/// nearer to those of another cluster, in steps from cell to cell. Returns those that keep it.
+/// Removes the coverage of cells that are not connected to the region's own contact points, or that
+/// are nearer, counted in cells, to those of another cluster. Returns the cells that remain.
 CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact, const CellBits& covered) {
   const CellColumns& columns = grid.scratch.cell_columns;
   CellBits free{};
@@ -213,7 +214,7 @@ CellBits keep_own_cells(const Grid& grid, const RegionPoints& contact, const Cel
     any_own |= own[j];
   }
   if (any_own == 0) {
-    // The points fall between the cells: the deepest of those in contact is the nearest to them.
+    // The contact points lie between cells: start from the deepest cell in contact instead.
     if (const auto cell = deepest_of(grid, covered)) {
       own[cell->j] = std::uint64_t{1} << cell->i;
       foreign[cell->j] &= ~own[cell->j];
@@ -316,7 +317,7 @@ CellBits find_cells(const Grid& grid, const RegionPoints& contact) {
 
 namespace {
 
-/// Sums over a grid's cells in contact, every eighth one after another.
+/// Sums over a grid's cells in contact, in eight lanes.
 struct alignas(64) GeometryLanes {
   Lanes area{}, volume{}, depth{}, x{}, y{}, z{}, normal_x{}, normal_y{}, normal_z{};
 };
@@ -347,10 +348,11 @@ void add_up(const CellColumns& columns, double cell_area, std::size_t count,
       const double slope_z = normal_z[cell];
       const bool covered = shared > 0.0;
       const double share = covered ? shared * cell_area : 0.0;
-      // Overlap per covered area: where the edge runs through a cell, depth rises linearly from it.
+      // Overlap per covered area: the depth is zero at the edge of the contact and rises linearly
+      // into the cell.
       const double at_edge = 0.5 * shared * depth_change[cell];
       const double volume = share * (shared < 1.0 ? at_edge : deep);
-      // Of cells whose centre is over the body, and of the face that is pressed.
+      // The slope of the cells whose centre is over the body, on the face that is pressed.
       const double length_squared = slope_x * slope_x + slope_y * slope_y + slope_z * slope_z;
       const double sure = normal_share(length_squared);
       const double counted =

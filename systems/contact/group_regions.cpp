@@ -17,7 +17,7 @@ namespace {
 constexpr auto kTakesOver = static_cast<std::uint32_t>(RegionEvent::kTakesOver);
 constexpr auto kBodyFollows = static_cast<std::uint32_t>(RegionEvent::kBodyFollows);
 
-/// A region's cells under contact points.
+/// The cells of a region that contact points lie on.
 struct RegionCells {
   RegionCells(const Model& model, const State& state, std::uint32_t region)
       : finder(moved_grid_in_body(state.regions.at<RegionFrame>(region),
@@ -26,8 +26,8 @@ struct RegionCells {
                state.regions.at<RegionFrame>(region).half_size, model.settings.grid_side),
         cells(state.cells.rows<CellGeometry>(state.regions.at<RegionIdentity>(region).cells)) {}
 
-  /// Share of a point that lies over the region: 1 on its covered cells, a little on the others of
-  /// its grid.
+  /// Share of a point that lies over the region: 1 on its covered cells, a little on the other
+  /// cells of its grid.
   [[nodiscard]] double overlap_with(const glm::dvec3& point) const {
     const auto cell = finder.under(point);
     if (!cell) {
@@ -44,7 +44,7 @@ bool of_pair(const RegionIdentity& region, const ContactPair& pair) {
   return region.tool == pair.tool && region.body == pair.body;
 }
 
-/// Ends a region and lets `heir`, if any, take over what it exerted.
+/// Ends a region. Another region, `heir`, may take over what it exerted.
 void end_region(const Model& model, State& state, std::uint32_t region, std::uint32_t heir) {
   if (heir != kNoRow) {
     RegionWrench& wrench = state.regions.at<RegionWrench>(heir);
@@ -70,9 +70,10 @@ bool any_took_over(const State& state, std::uint32_t body) {
   return false;
 }
 
-/// Ends the last step's events. A body with compliance answers to regions that took over from the
-/// next step on, and moves all its regions. Of answers that follow upon each other within the fade
-/// a region that waits does so for the first alone, so that the force does not stand still.
+/// Clears the events of the last step. Where the body has compliance, its answer to a region that
+/// took over another begins in the next step and moves all its regions. Of several answers that
+/// follow each other within the fade, a waiting region waits for the first only: otherwise its
+/// force would stand still.
 void end_events(const Model& model, State& state) {
   for (std::uint32_t body = 0; body < model.bodies.size(); ++body) {
     const bool begins_to_follow =
@@ -94,8 +95,8 @@ void end_events(const Model& model, State& state) {
   }
 }
 
-/// A block of cells that no region uses. There are as many blocks as rows, so one is free when a
-/// row is.
+/// A block of cells that no region uses. There are as many blocks as rows, so where a row is free a
+/// block is.
 Range free_cells(const Model& model, const State& state) {
   const std::uint32_t side = model.settings.grid_side;
   const std::uint32_t count = side * side;
@@ -156,7 +157,7 @@ void begin_region(StepContext& context, const ContactPair& pair, std::uint32_t c
   if (split_from != kNoRow && law.split != nullptr) {
     law.split(state, split_from, row);
   }
-  // on_tool is zero: what it exerts at birth fades in.
+  // on_tool stays zero: the force of a new region is faded in.
   state.regions.at<RegionWrench>(row).event_now = static_cast<std::uint32_t>(
       split_from != kNoRow ? RegionEvent::kTakesOver : RegionEvent::kBegins);
 }
@@ -166,8 +167,8 @@ bool owns_cluster(const ContactScratch& scratch, std::uint32_t region) {
       scratch.owners, [region](const ClusterOwner& owner) { return owner.region == region; });
 }
 
-/// Regions continue in the cluster that they overlap most; the oldest comes first and keeps what it
-/// takes.
+/// A region continues in the cluster that it overlaps most. The oldest region chooses first, and no
+/// other may take the same cluster.
 void match_by_overlap(const Model& model, const State& state, ContactScratch& scratch,
                       const ContactPair& pair, std::span<const ContactPoint> points) {
   const auto regions = state.regions.column<RegionIdentity>();
@@ -191,8 +192,8 @@ void match_by_overlap(const Model& model, const State& state, ContactScratch& sc
   }
 }
 
-/// A small region may slide or roll past its own size in a step: what is left over on both sides is
-/// matched when it is nearer than two regions can be to each other.
+/// A small region may slide or roll farther than its own size in a step. Regions and clusters that
+/// are left without a partner are matched if they are nearer than two separate regions can be.
 void match_by_distance(const Model& model, const State& state, ContactScratch& scratch,
                        const ContactPair& pair, std::span<const ContactPoint> points) {
   const double threshold = model.bodies.at<BodyModels>(pair.body).region_threshold;
@@ -225,8 +226,7 @@ void match_clusters(const Model& model, const State& state, ContactScratch& scra
   match_by_distance(model, state, scratch, pair, points);
 }
 
-/// Where the region's contact went: the region that now owns the cluster over its old place, or
-/// kNoRow.
+/// The region that now owns the cluster at this region's old place, or kNoRow.
 std::uint32_t heir_of(const Model& model, const State& state, const ContactScratch& scratch,
                       std::uint32_t region, std::span<const ContactPoint> points) {
   const RegionCells cells(model, state, region);
@@ -238,8 +238,8 @@ std::uint32_t heir_of(const Model& model, const State& state, const ContactScrat
   return kNoRow;
 }
 
-/// A cluster without an owner that lies over a living region was split off it. Leaves that region
-/// in scratch.owners.
+/// A cluster without an owner that lies over a living region has split off that region, which is
+/// then written to scratch.owners.
 void note_splits(const Model& model, State& state, ContactScratch& scratch,
                  std::span<const ContactPoint> points) {
   for (const ContactPoint& point : points) {
@@ -256,10 +256,9 @@ void note_splits(const Model& model, State& state, ContactScratch& scratch,
   }
 }
 
-/// Points are sought under the body's rest shape. One that deflects may be dragged along by
-/// friction until the tool stands beside that shape with all its points: cells that carry a force
-/// where they are now are a contact without them. Where there are points they say which contacts
-/// there are.
+/// Contact points are sought under the body's rest shape. Friction may drag a deflected body along
+/// until all points of the tool are beside that shape: cells that still carry a force are then a
+/// contact without points. Where there are points, they decide which contacts exist.
 bool lives_without_points(const Model& model, const State& state, const ContactPair& pair,
                           std::uint32_t region) {
   return pair.points.count == 0 && body_law_of(model, pair.body).moves_as_a_whole &&
@@ -286,7 +285,7 @@ void end_or_go_on(StepContext& context, const ContactPair& pair,
   }
 }
 
-/// Regions that others take over hand them what they hold.
+/// Regions whose cluster another region owns hand over what they hold.
 void join_regions(StepContext& context, const ContactPair& pair,
                   std::span<const ContactPoint> points) {
   const Model& model = context.model;
@@ -303,9 +302,10 @@ void join_regions(StepContext& context, const ContactPair& pair,
   }
 }
 
-/// Takes the rows of regions that have ended out of the table.
+/// Erases the rows of regions that have ended.
 void erase_ended(State& state, ContactScratch& scratch) {
-  // The last first: rows behind one that goes move up. They were noted in the order of rows.
+  // From the last to the first, because rows behind an erased one move up. They were noted in the
+  // order of rows.
   for (; !scratch.ended_regions.empty(); scratch.ended_regions.pop_back()) {
     state.regions.erase(scratch.ended_regions.back());
   }

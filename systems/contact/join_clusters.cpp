@@ -30,12 +30,13 @@ struct RegionCover {
         normal(glm::cross(finder.tangent_x, finder.tangent_y)),
         cells(state.cells.rows<CellGeometry>(state.regions.at<RegionIdentity>(region).cells)) {}
 
-  /// By more than what the slope at the rim of a contact that ends before it may feign.
+  /// Covered by more than what the slope at the rim may show of a contact that ends before this
+  /// cell.
   [[nodiscard]] bool is_covered(const CellPlace& cell) const {
     return cells[std::size_t{cell.j} * finder.side + cell.i].coverage >= kLeastCoverage;
   }
 
-  /// The covered cell that a point lies on; none where it is beside it, over or under it.
+  /// The covered cell that a point lies on, if any.
   [[nodiscard]] std::optional<CellPlace> under(const glm::dvec3& point) const {
     const auto cell = finder.under(point);
     if (!cell || !is_covered(*cell)) {
@@ -44,8 +45,8 @@ struct RegionCover {
     return is_near(point, *cell) ? cell : std::nullopt;
   }
 
-  /// Not far over or under a cell: as steep as two to one, the tool's surface goes up by two cells
-  /// across one.
+  /// A point belongs to a cell if it is not far above or below it: on a slope of two to one the
+  /// tool's surface rises by two cells across one.
   [[nodiscard]] bool is_near(const glm::dvec3& point, const CellPlace& cell) const {
     const double reach = 4.0 * std::max(frame.half_size.x, frame.half_size.y) / finder.side;
     const double height = glm::dot(point - finder.origin, normal);
@@ -110,7 +111,7 @@ void link_joined(const RegionCover& cover, std::span<const ContactPoint> points,
   }
 }
 
-/// The cluster of a point on a region's covered cells; kNoRow where there is none.
+/// The cluster of a point on a region's covered cells, or kNoRow.
 std::uint32_t cluster_on(const RegionCover& cover, std::span<const ContactPoint> points) {
   const auto on = std::ranges::find_if(
       points, [&](const ContactPoint& point) { return cover.under(point.position).has_value(); });
@@ -142,7 +143,7 @@ bool touch(const RegionCover& one, const RegionCover& other) {
   return false;
 }
 
-/// Numbers the sets of clusters 0, 1, ... and gives their numbers to the points.
+/// Numbers the sets of clusters 0, 1, ... and writes the numbers to the points.
 void renumber(std::span<std::uint32_t> parent, std::span<std::uint32_t> numbers,
               std::span<ContactPoint> points, ContactPair& pair) {
   std::uint32_t count = 0;
@@ -161,7 +162,8 @@ bool is_of_pair(const State& state, std::uint32_t region, const ContactPair& pai
   return identity.tool == pair.tool && identity.body == pair.body;
 }
 
-/// Links the clusters on a region's cells, and its own with those of other regions that it touches.
+/// Links the clusters on a region's cells with each other and with those of the regions that it
+/// touches.
 void join_on(const Model& model, const State& state, std::uint32_t region, const ContactPair& pair,
              std::span<const ContactPoint> points, std::span<std::uint32_t> parent) {
   const RegionCover cover(model, state, region);
@@ -184,7 +186,7 @@ void join_on(const Model& model, const State& state, std::uint32_t region, const
   }
 }
 
-/// Where the clusters' points are.
+/// Bounding boxes of the clusters' points.
 class ClusterBoxes {
  public:
   ClusterBoxes(std::span<const ContactPoint> points, std::uint32_t clusters) : count_(clusters) {
@@ -198,7 +200,7 @@ class ClusterBoxes {
     }
   }
 
-  /// How many clusters, of as many as it knows, may have points on a region or beside it.
+  /// How many clusters, of those it has a box for, may have points on a region or beside it.
   [[nodiscard]] std::size_t near(const State& state, std::uint32_t region) const {
     if (count_ > boxes_.size()) {
       return count_;

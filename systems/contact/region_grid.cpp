@@ -86,14 +86,14 @@ PlaneBox covered_box(const Grid& grid, const CellBits& covered) {
     // As cell_center, without its division.
     const glm::dvec2 cell(static_cast<double>(i), static_cast<double>(j));
     const glm::dvec2 center = grid.frame.half_size * ((cell + 0.5) * step - 1.0);
-    // At less than half coverage the edge is short of the centre: the reach is negative, and this
+    // Below half coverage the edge is before the cell's centre. The reach is negative then, and
     // grows with the coverage without a jump.
     const glm::dvec2 reach = half * (2.0 * grid.cells[j * grid.side + i].coverage - 1.0);
     box.include(center - reach, center + reach);
     middle = center;
   };
-  // A cell reaches no farther than a covered neighbour outside of it, so the outermost of each row
-  // and all of the outermost rows say it all.
+  // A cell reaches no farther than its covered neighbour on the outer side, so the outermost cells
+  // of each row and the outermost rows determine the box.
   const auto any = [](std::uint64_t row) {
     return row != 0;
   };
@@ -198,10 +198,9 @@ constexpr double kTurn = 0.5;              // of the angle by which a grid lies 
 constexpr double kSettled =
     0.02;  // of the grid: what it is off by when a region begins, splits or takes over another
 
-/// Where the contact sticks, the material went along with the tool in the last step: the grid turns
-/// with it, and the place of the tractions moves with it. Without this a long contact that sticks
-/// and turns would seem to leave the area that it holds, for contact is found against the rest
-/// shape.
+/// Where the contact sticks, the material moved with the tool in the last step: the grid turns with
+/// it, and the place of the tractions moves with it. Contact is found against the rest shape, so a
+/// long contact that sticks and turns would otherwise seem to leave the area that it holds.
 void follow_material(State& state, std::uint32_t region) {
   RegionFrame& frame = state.regions.at<RegionFrame>(region);
   RegionFrame& tractions = state.regions.at<TractionFrame>(region).frame;
@@ -248,9 +247,9 @@ void turn_grid(const Grid& grid, std::uint32_t region, double angle) {
   friction.force = back * friction.force;
 }
 
-/// Lays the grid's axes along a long contact, across which a grid askew has only a cell or two.
-/// @param part  of the angle between them that it turns by
-/// @return the contact's box in the grid's axes then
+/// Turns the grid's axes towards those of a long contact; askew, it has only a cell or two across.
+/// @param part  share of the angle that is turned
+/// @return the contact's box in the new axes
 PlaneBox align_grid(const Grid& grid, std::uint32_t region, const CellBits& covered, double part) {
   const double angle = part * contact_axes(grid, covered_moments(grid)).angle;
   if (angle == 0.0) {
@@ -261,9 +260,9 @@ PlaneBox align_grid(const Grid& grid, std::uint32_t region, const CellBits& cove
   return box;
 }
 
-/// Passes over the grid until it holds the whole contact and little else. In most steps it does at
-/// once, and moves with the contact from step to step; when something happened to the region it
-/// settles within the step, so that what fades in is not the grid's way to its place.
+/// Regrids until the grid holds the whole contact and little else. In most steps one pass is
+/// enough, and the grid follows the contact from step to step. After an event the grid settles
+/// within the step: otherwise the force would fade in while the grid still moves.
 /// @return whether it was regridded
 bool fit_to_contact(const Grid& grid, std::uint32_t region, const RegionPoints& contact,
                     double start_depth, bool event_now) {
@@ -273,7 +272,8 @@ bool fit_to_contact(const Grid& grid, std::uint32_t region, const RegionPoints& 
     const CellBits covered = find_cells(grid, contact);
     PlaneBox box = covered_box(grid, covered);
     if (wide && (box.empty() || reaches_edge(grid, box))) {
-      // Where the contact ends is not the same on smaller cells: there is no tighter grid.
+      // On smaller cells the contact ends at another place: there is no grid that fits more
+      // tightly.
       grid.frame = *wide;
       restart_heights(grid, start_depth);
       find_cells(grid, contact);
@@ -283,7 +283,8 @@ bool fit_to_contact(const Grid& grid, std::uint32_t region, const RegionPoints& 
       if (pass > 0) {
         return true;
       }
-      // Cells look for the tool where it was; of a thin one that has turned none may find it.
+      // The heights start from the tool's last place. A thin tool that has turned may be missed
+      // from there by every cell.
       restart_heights(grid, start_depth);
       continue;
     }
@@ -295,8 +296,9 @@ bool fit_to_contact(const Grid& grid, std::uint32_t region, const RegionPoints& 
       if (event_now || !outgrown || wide) {
         return pass > 0;
       }
-      // Only for looking so far. Left as large, it would be made smaller in the next step by what
-      // its large cells show of a sharp corner, and be outgrown again in the one after.
+      // This large grid only finds how far the contact reaches. If it stayed, its large cells would
+      // show a sharp corner as smaller than it is, the next step would shrink the grid, and the
+      // step after that would find it too small.
       const glm::dvec2 cell = cell_half_size(grid);
       box.lowest -= cell;
       box.highest += cell;
@@ -320,7 +322,8 @@ void include_points(const Grid& grid, const RegionPoints& contact, PlaneBox& box
   }
 }
 
-/// The region's contact in this step, findable by its block of cells, which stays when rows move.
+/// The region's contact in this step. It is found by the region's block of cells, which stays the
+/// same when rows move.
 RegionPoints& region_points_of(StepContext& context, const RegionIdentity& region) {
   return context.scratch.region_points[block_of(region)];
 }
@@ -378,8 +381,8 @@ void follow_overlap(StepContext& context, std::uint32_t region, const RegionPoin
   const CellBits covered = covered_cells(grid);
   PlaneBox box = moves ? align_grid(grid, region, covered, kTurn) : covered_box(grid, covered);
   if (box.empty()) {
-    // Here, too. A grid that only approached its points would shrink to a point under a single one.
-    // Without points it stays where it is, and its cells find nothing or the tool again.
+    // A grid that only moved towards its contact points would shrink to a point under a single one.
+    // Without points the grid stays, and its cells find either nothing or the tool again.
     if (contact.cluster != kNoRow) {
       place_new_grid(context, region, contact);
     }

@@ -42,7 +42,7 @@ namespace {
 
 constexpr double kDeeper = 3.0;  // than the deepest sample, at most
 
-/// What holds a region's contact.
+/// What bounds the force of a region's contact.
 struct RestOverlap {
   double depth = 0.0;   // m, the largest under the rest shape
   double radius = 0.0;  // m, of a disc
@@ -65,21 +65,21 @@ RestOverlap rest_overlap(const StepContext& context, std::uint32_t region) {
       highest = glm::max(highest, point.position);
     }
   }
-  // Between samples it may be deeper, as cells show it; but where the body as a whole has moved,
-  // theirs is the depth under the moved surface.
+  // Between samples the tool may be deeper, which the cells show. Where the body as a whole has
+  // moved, however, the cells' depth is the one under the moved surface.
   const double of_cells = state.regions.at<Overlap>(region).largest_depth;
   overlap.depth = std::max(overlap.depth, body_law_of(model, identity.body).moves_as_a_whole
                                               ? std::min(of_cells, kDeeper * overlap.depth)
                                               : of_cells);
-  // Samples lie within the overlap; it ends between them and their neighbours, which are at most as
-  // far away as what makes two points one region.
+  // Samples lie within the overlap, which ends between them and their neighbours. Those are at most
+  // as far away as two points of one region can be.
   const double threshold = model.bodies.at<BodyModels>(identity.body).region_threshold;
   const double by_samples = overlap.depth > 0.0 ? 0.5 * glm::length(highest - lowest) : 0.0;
   overlap.radius = std::max(by_samples, state.regions.at<Contact>(region).radius) + threshold;
   return overlap;
 }
 
-/// How deep the tool is under the rest surface at a region's cells, m: a distance a cell.
+/// How deep the tool is under the rest surface at a region's cells, m: one distance query a cell.
 double deepest_cell(StepContext& context, std::uint32_t region) {
   const Grid grid = grid_of(context, region);
   const Pose moved = moved_grid_in_body(grid.frame, grid.carrier, grid.support);
@@ -109,9 +109,9 @@ double depth_by_cells(StepContext& context, std::uint32_t body) {
   return depth;
 }
 
-/// A punch of radius a has 2 E* a on a half-space and 3 pi G a^4 / (2 h^3) on a thin bonded layer
-/// without volume change (Johnson, Contact Mechanics, 1985, (3.36), 5.8), N/m; twice their sum is
-/// for curved bodies and for cells that are too coarse.
+/// A rigid punch of radius a has the stiffness 2 E* a on a half-space and 3 pi G a^4 / (2 h^3) on a
+/// thin bonded layer without volume change (Johnson, Contact Mechanics, 1985, (3.36), 5.8), N/m.
+/// Twice their sum allows for curved bodies and for cells that are too coarse.
 double stiffness_of_punch(const Model& model, std::uint32_t body, double radius) {
   constexpr double kSafety = 2.0;
   constexpr double kLayer = 0.6;  // 3 pi / 16
@@ -122,7 +122,7 @@ double stiffness_of_punch(const Model& model, std::uint32_t body, double radius)
   return kSafety * 2.0 * modulus * radius * (1.0 + kLayer * thin * thin * thin);
 }
 
-/// What a body's regions are together.
+/// All regions of a body together.
 struct Regions {
   std::uint32_t count = 0;
   RestOverlap overlap;       // all depths, and the largest radius
@@ -163,10 +163,10 @@ void bound_forces_on(StepContext& context, std::uint32_t body) {
     return;
   }
   const double stiffness = stiffness_of_punch(model, body, regions.overlap.radius);
-  // A force that is wrong has done no work, neither in its own step nor in the next.
+  // A wrong force has done no work, neither in its own step nor in the next.
   const double work = energy.faulty == 0 && std::isfinite(energy.work) ? energy.work : 0.0;
-  // The sum of the work drifts by what steps leave unsolved, but what the last force needs has been
-  // there.
+  // The sum of the work drifts by what steps leave unsolved; but the energy that the last force
+  // needs must have been put in.
   const double needed = 0.5 * energy.force * energy.force / stiffness;
   double most = std::max(energy.most + work, kSameSize * needed + std::max(work, 0.0));
   if (regions.unannounced) {
@@ -175,7 +175,7 @@ void bound_forces_on(StepContext& context, std::uint32_t body) {
                              : regions.overlap.depth;
     most = std::max(most, 0.5 * stiffness * depth * depth);
   }
-  // Written so that NaN is left to who looks for that.
+  // Written so that NaN passes: another check finds it.
   const double allowed = std::max(most, kDrift * energy.peak);
   const bool too_much = regions.force * regions.force > 2.0 * stiffness * allowed;
   const bool too_hard = regions.force > stiffness * regions.overlap.depth;
@@ -216,7 +216,7 @@ Wrench operator*(const Wrench& a, double share) {
   return {a.force * share, a.torque * share};
 }
 
-/// Where the body as a whole has the material under a region now.
+/// Where the region's material is now, by the motion of the body as a whole.
 RegionSupport support_now(const StepContext& context, std::uint32_t region) {
   const RegionIdentity& identity = context.state.regions.at<RegionIdentity>(region);
   RegionSupport support = context.state.regions.at<RegionSupport>(region);
@@ -239,7 +239,7 @@ Wrench computed_wrench(const StepContext& context, std::uint32_t region) {
                      tangent_to_body(frame, friction.force);
   glm::dvec3 couple = frame.normal * friction.couple;
   glm::dvec3 point = state.regions.at<Contact>(region).equivalent_point;
-  // The contact was found in the axes of the material under it, which has gone with the body.
+  // The contact was found in the axes of the material under it, which has moved with the body.
   const RegionSupport support = support_now(context, region);
   const double turn = glm::length(support.rotation);
   if (turn > 0.0) {
@@ -254,9 +254,9 @@ Wrench computed_wrench(const StepContext& context, std::uint32_t region) {
   return {force_in_world, glm::cross(arm, force_in_world) + body.rotation * couple};
 }
 
-/// Of a new region's force, what the tool's way in this step has made of it: all where it came to
-/// the body within the step. What it finds there deeper than that did not come by the motion, but
-/// when the run began or because samples had missed it. By Hertz' law, F ~ d^(3/2).
+/// The share of a new region's force that comes from the tool's motion in this step: all of it if
+/// the tool reached the body within the step. A greater depth was there when the run began, or
+/// samples had missed it. By Hertz, F ~ d^(3/2).
 double share_by_motion(const Model& model, const State& state, std::uint32_t region) {
   constexpr double kMore = 1.2;  // times the way: depths are told by cells
   const glm::dvec3 shift = shift_at(motion_over_body(model, state, region),
@@ -267,10 +267,11 @@ double share_by_motion(const Model& model, const State& state, std::uint32_t reg
   return share < 1.0 ? std::pow(std::max(share, 0.0), 1.5) : 1.0;
 }
 
-/// Fades what an event has changed.
-/// @param extrapolated  share of the last step's change that this step's motion makes again
-/// @param came          of a region that begins, the share that the tool's way has made
-/// @param faded         share that goes in this step
+/// Fades the part of the wrench that an event has changed.
+/// @param extrapolated  share of the last step's change that this step's motion repeats
+/// @param came          of a region that begins: the share of its force that the tool's motion has
+/// made
+/// @param faded         share of the change that is faded out in this step
 void fade_event(RegionWrench& wrench, const Wrench& computed, double extrapolated, double came,
                 double faded) {
   const Wrench before = wrench.on_tool;
@@ -282,12 +283,11 @@ void fade_event(RegionWrench& wrench, const Wrench& computed, double extrapolate
     wrench.event_change = before - computed;
     wrench.event_share = 1.0;
   } else if (event == RegionEvent::kRegridded && wrench.event_share == 0.0) {
-    // All that the last step does not extrapolate is the grid's; where the motion turns back, so
-    // does what it extrapolates. Of grids that follow upon each other within the fade, while a tool
-    // is pressed in fast, only the first: the force must not wait.
+    // What the extrapolation of the last step does not explain is the regrid's change; where the
+    // motion turns back, so is what it explains. While a tool is pressed in fast and one regrid
+    // follows another within the fade, only the first is faded: the force must not wait.
     wrench.event_change = before + wrench.event_change * extrapolated - computed;
-    // A quick tool's force bends away from what the last step extrapolates by more than any grid
-    // does.
+    // The force of a fast tool deviates from the extrapolation by more than any regrid changes it.
     const double most = kMostByGrid * glm::length(computed.force);
     const double jump = glm::length(wrench.event_change.force);
     wrench.event_change = wrench.event_change * (jump > most ? most / jump : 1.0);
@@ -301,13 +301,13 @@ void fade_event(RegionWrench& wrench, const Wrench& computed, double extrapolate
   }
 }
 
-/// What a tool's holder, who balances the wrench, does in a step, J.
+/// Work that the tool's holder, who balances the wrench, does in a step, J.
 double work_against(const Wrench& wrench, const ToolMotion& motion, double dt) {
   return -dt * (glm::dot(wrench.force, motion.velocity) +
                 glm::dot(wrench.torque, motion.angular_velocity));
 }
 
-/// What the computed wrench of a tool becomes, given whether this step had a fault.
+/// The output for a computed wrench of a tool, given whether this step had a fault.
 void output_wrench(ToolWrench& wrench, const Wrench& computed, bool faulty, double dt) {
   if (faulty && wrench.state != WrenchState::kFalling) {
     wrench.state = WrenchState::kFalling;

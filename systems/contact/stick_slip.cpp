@@ -17,11 +17,12 @@ double cube_of(double x) {
   return x * x * x;
 }
 
-/// b / a of a contact from its overlap's half extents along the grid, m. A paraboloid's overlap is
-/// as long to its width as a root of its curvatures' ratio, its contact's axes are by the power 2/3
-/// of that (Greenwood, J. Tribol. 107 (1985) 501); a cylinder's between two edges are within a
-/// third of the same. One that lies askew in its grid shows by the share q = a b / (x^2 + y^2): of
-/// Hertz' ellipses of b / a = 1, 0.5, 0.2, 0.05 it is 0.25, 0.21, 0.13, 0.04, of a strip 4/3 b / a.
+/// Ratio b / a of a contact's half axes, from its overlap's half extents along the grid, m. The
+/// overlap of a paraboloid has the ratio of the square root of the curvatures' ratio, its contact
+/// the power 2/3 of that (Greenwood, J. Tribol. 107 (1985) 501); a cylinder between two edges is
+/// within a third of the same. In a grid that is not aligned with it, the share q = a b / (x^2 +
+/// y^2) shows the ratio: for Hertz' ellipses of b / a = 1, 0.5, 0.2, 0.05 it is 0.25, 0.21, 0.13,
+/// 0.04, for a strip 4/3 b / a.
 double axes_of(const glm::dvec2& half, double radius, bool grid_fits) {
   const double overlap = std::min(half.x, half.y) / std::max(half.x, half.y);
   const double filled = grid_fits ? radius * radius / glm::dot(half, half) : 0.25;

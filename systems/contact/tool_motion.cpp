@@ -13,8 +13,8 @@ namespace {
 // Faster than any held tool: a hammer blow is about 10 m/s, a flick of the wrist about 40 rad/s.
 constexpr double kLargestSpeed = 20.0;          // m/s
 constexpr double kLargestAngularSpeed = 500.0;  // rad/s
-// The axis remembers about this much turning, so that noise on a nearly still tool does not throw
-// it about.
+// The axis is averaged over about this angle, so that noise on a nearly still tool does not turn
+// it.
 constexpr double kAxisMemory = 0.02;  // rad
 
 bool finite(const Pose& pose) {
@@ -24,15 +24,15 @@ bool finite(const Pose& pose) {
          std::isfinite(norm) && norm > 0.25 && norm < 4.0;
 }
 
-/// Turning adds to the axis vector and fades what was there, by the angle turned, not by time: the
-/// axis is a function of the path alone.
+/// Adds the turn to the axis vector and fades the older turns by the angle, not by time: so the
+/// axis depends on the path alone.
 void remember_axis(ToolMotion& motion, const glm::dvec3& turn) {
   const double angle = glm::length(turn);
   if (angle == 0.0) {
     return;
   }
   const double kept = std::exp(-angle / kAxisMemory);
-  // Opposite turns share one axis: the line has no sign.
+  // Opposite turns have the same axis: a line has no sign.
   const double sign = glm::dot(motion.axis, turn) < 0.0 ? -1.0 : 1.0;
   const glm::dvec3 sum =
       motion.axis * (motion.axis_turn * kept) + turn * (sign * kAxisMemory * (1.0 - kept) / angle);
@@ -111,7 +111,7 @@ AxisInBody axis_in_body(const Model& model, const State& state, const RegionIden
   return {to_inner(body, motion.mass_center), glm::conjugate(body.rotation) * motion.axis};
 }
 
-/// Where the axis meets the plane through p_eq, and how much of it counts as going through the
+/// Where the axis meets the plane through p_eq, and to which share it counts as passing through the
 /// region.
 void aim_axis(const AxisInBody& axis, const RegionFrame& frame, const Overlap& overlap,
               RegionMotion& motion) {

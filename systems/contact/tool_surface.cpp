@@ -19,7 +19,7 @@ constexpr double kCloseEnough =
     0.02;                         // of a cell: where no cell steps farther, the step is the last
 constexpr double kAtRest = 1e-6;  // of a cell: one that steps less is left where it is
 
-/// The cells' places of the last step as columns of points, in the grid's frame.
+/// Copies the cells' places of the last step into columns, in the grid's frame.
 void place_centers(const Grid& grid) {
   const DistanceColumns& points = grid.scratch.cell_columns.points;
   cell_centers(grid.frame, grid.side, points.x, points.y);
@@ -53,8 +53,8 @@ double deepest_place(const Grid& grid) {
   return extreme_of(grid.scratch.cell_columns.points.z, -1.0);
 }
 
-/// Cells that found nothing of the tool near the rest surface look again from below: where they are
-/// now may be above the tool, and from there no step leads to its underside.
+/// Cells that found nothing of the tool near the rest surface start again from below: their present
+/// place may be above the tool, from where Newton's method does not find the underside.
 void return_from_above(const Grid& grid) {
   const double size = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
   const double lowest = -deepest_place(grid);
@@ -80,7 +80,7 @@ void step_to_surface(double size, std::size_t count, const double* __restrict gr
     // Above the rest surface there is no contact, however far away the tool is.
     const double to = height < size ? height : size;
     z[cell] = to;
-    // A cell that stays up there is at rest, though it is not on the tool.
+    // A cell that stays there counts as converged, though it is not on the tool.
     value[cell] = to < size ? std::abs(change) : to - from;
     tool_x[cell] = gradient_x[cell] * over_slope;
     tool_y[cell] = gradient_y[cell] * over_slope;
@@ -109,8 +109,8 @@ LeftCells first_of(const LeftCells& left, std::size_t count) {
           left.gradient_square.first(count)};
 }
 
-/// Whether a cell still moves far that may be in contact: whose underside, with its slopes, comes
-/// below the rest surface.
+/// Whether a cell that may be in contact, because its underside with its slopes comes below the
+/// rest surface, still moves far.
 /// @param cell_length  m
 /// @param moved, z, tool_x, tool_y  (n) of the cells
 bool any_moves_far(double cell_length, std::span<const double> moved, std::span<const double> z,
@@ -123,7 +123,7 @@ bool any_moves_far(double cell_length, std::span<const double> moved, std::span<
   return far;
 }
 
-/// Lists the cells that still move.
+/// Lists the cells that have not converged.
 /// @param moved  m, (n) of the cells `of`, all when that is empty
 LeftCells cells_left(const LeftCells& memory, double cell_length, std::span<const double> moved,
                      std::span<const std::uint32_t> of) {
@@ -136,8 +136,8 @@ LeftCells cells_left(const LeftCells& memory, double cell_length, std::span<cons
   return first_of(memory, count);
 }
 
-/// Puts cells that still go up beside a side of the tool, or over it, to where nothing touches:
-/// there is no underside over them, and their slopes are none of one.
+/// Raises cells that still climb beside or above the tool to the height where nothing touches:
+/// there is no underside above them, and their slopes belong to none.
 /// @param points  (n) of the cells `of`, all when that is empty; value: how far they have moved, m
 void raise_climbing(const CellColumns& columns, const DistanceColumns& points, double cell_length,
                     double size, std::span<const std::uint32_t> of) {
@@ -148,7 +148,7 @@ void raise_climbing(const CellColumns& columns, const DistanceColumns& points, d
   }
 }
 
-/// A step of those that are left: the others rest on the surface already.
+/// One step for the cells that have not converged.
 void step_left_cells(const Grid& grid, std::span<const std::uint32_t> parts, const Pose& frame,
                      double size, const LeftCells& left) {
   const CellColumns& columns = grid.scratch.cell_columns;
@@ -173,7 +173,7 @@ void step_left_cells(const Grid& grid, std::span<const std::uint32_t> parts, con
 
 std::span<const std::uint32_t> parts_under(const Grid& grid, Range parts,
                                            const glm::dvec3& origin) {
-  // There is no choice of one.
+  // There is only one to choose.
   const double reach =
       parts.count > 1 ? glm::length(grid.frame.half_size) + deepest_place(grid) : 0.0;
   return parts_near(grid.model, parts, origin, reach, grid.scratch.near_parts);
@@ -213,12 +213,12 @@ void find_tool_surface(const Grid& grid) {
 
 namespace {
 
-// |cosine| between a surface's normal and the grid's: a side below the one, an underside from the
-// other.
+// |cosine| between a surface's normal and the grid's. Below the first limit the surface is a side,
+// above the second an underside.
 constexpr double kSide = kSteepest;
 constexpr double kUnderside = kFullyFacing;
 
-/// Cells that have found no underside: they have gone up to where nothing touches, or end on a
+/// Finds the cells without an underside: they have climbed to where nothing touches, or end on a
 /// side.
 /// @param open  1 or 0, out
 /// @return how many there are
@@ -247,7 +247,7 @@ CellBits bits_of(const double* values, std::uint32_t side) {
   return bits;
 }
 
-/// What a cell beside the tool would have of its underside.
+/// The tool's underside, extended to a cell beside the tool.
 struct Underside {
   double height = 0.0;  // m, grid
   double slope_x = 0.0;
@@ -259,8 +259,8 @@ Underside operator+(const Underside& a, const Underside& b) {
   return {a.height + b.height, a.slope_x + b.slope_x, a.slope_y + b.slope_y, a.count + b.count};
 }
 
-/// The underside of the neighbours that have one, carried on to a cell: of those beside it, or else
-/// those across its corners. Sums in pairs, so that a mirror image has the same bits.
+/// Extends the underside of the neighbours that have one to a cell: of the four beside it, or else
+/// of those at its corners. Sums are made in pairs, so that a mirror image has the same bits.
 Underside carried_on(const Grid& grid, const CellBits& closed, std::uint32_t i, std::uint32_t j) {
   const CellColumns& columns = grid.scratch.cell_columns;
   const glm::dvec2 length = 2.0 * cell_half_size(grid);
@@ -284,7 +284,7 @@ Underside carried_on(const Grid& grid, const CellBits& closed, std::uint32_t i, 
   return {sum.height / sum.count, sum.slope_x / sum.count, sum.slope_y / sum.count, sum.count};
 }
 
-/// Lists the cells on both sides of the rims and puts those beside the tool on its underside.
+/// Lists the cells on both sides of the rims and extends the underside to those beside the tool.
 /// @return how many there are, in LeftCells::cells
 std::size_t list_rims(const Grid& grid, const CellBits& open) {
   const CellColumns& columns = grid.scratch.cell_columns;
@@ -325,8 +325,8 @@ double share_inside(double distance, double across) {
   return std::clamp(0.5 - distance / across, 0.0, 1.0);
 }
 
-/// How well an underside with such slopes can be carried on past its rim: 1 up to 27 degrees, 0
-/// from 45 degrees, as between the faces of a mesh, whose distances are rounded at its edges.
+/// How well an underside with such slopes can be extended past its rim: 1 up to 27 degrees, 0 from
+/// 45 degrees (as between the faces of a mesh, whose distances are rounded at its edges).
 double evenness(double slope_x, double slope_y) {
   constexpr double kEven = 0.25;  // squares of slopes
   constexpr double kAskew = 1.0;
@@ -334,7 +334,7 @@ double evenness(double slope_x, double slope_y) {
   return 1.0 - smooth_step((slope - kEven) / (kAskew - kEven));
 }
 
-/// The distances of the listed cells' places, `above` higher, to the tool.
+/// Distances from the listed cells' places, raised by `above`, to the tool.
 DistanceColumns distances_above(const Grid& grid, std::size_t count, double above) {
   const DistanceColumns& from = grid.scratch.cell_columns.points;
   const LeftCells& left = grid.scratch.left_cells;
@@ -356,8 +356,8 @@ DistanceColumns distances_above(const Grid& grid, std::size_t count, double abov
   return points;
 }
 
-/// Moves a cell's place on the underside into the middle of what of the cell lies under it: beside
-/// a rim of a face that is tilted the overlap is another one than there.
+/// Moves a cell's place on the underside to the middle of the part of the cell that lies under it:
+/// beside a rim of a tilted face the overlap is different there.
 /// @param side    unit: out of the tool's side, of which the grid's part counts
 /// @param inward  m: along that
 void move_inward(const CellColumns& columns, std::size_t cell, const glm::dvec3& side,
@@ -424,7 +424,7 @@ void take_rims(const CellColumns& columns) {
     double& change = columns.depth_change[cell];
     const double mean = coverage < 1.0 ? 0.5 * coverage * change : columns.depth[cell];
     coverage *= share;
-    // What makes the mean over the covered part be `mean` still.
+    // Chosen so that the mean over the covered part stays `mean`.
     change = coverage > 0.0 ? 2.0 * mean / coverage : change;
   }
 }

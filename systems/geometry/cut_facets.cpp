@@ -26,7 +26,8 @@ struct Plane {
   [[nodiscard]] double height(const glm::dvec3& at) const { return glm::dot(normal, at - point); }
 };
 
-/// Of a line, what lies in a facet: places along its direction, m, and the point at the first.
+/// The part of a line that lies in a facet: places along its direction, m, and the point at the
+/// first.
 struct Crossing {
   double from = 0.0;
   double to = 0.0;
@@ -39,9 +40,8 @@ std::array<double, 3> heights_over(const Facet& facet, const Plane& plane) {
 }
 
 /// @param heights  of the facet's corners over the other plane
-/// @param origin, direction  where places on the line count from, and which way: a unit vector
-/// along
-///                           both planes
+/// @param origin, direction  of the line: where places count from, and a unit vector along both
+/// planes
 std::optional<Crossing> crossing_with(const Facet& facet, const std::array<double, 3>& heights,
                                       const glm::dvec3& origin, const glm::dvec3& direction,
                                       double same) {
@@ -126,7 +126,7 @@ double length_inside(const Polygon& polygon, const glm::dvec3& normal, const Seg
   return std::max(to - from, 0.0) * glm::distance(segment.from, segment.to);
 }
 
-/// Cuts the pieces through which the segment goes along the plane.
+/// Cuts the pieces that the segment crosses along the plane.
 void cut_along(std::vector<Polygon>& pieces, const glm::dvec3& normal, const Plane& plane,
                const Segment& segment, double same) {
   std::vector<Polygon> cut;

@@ -28,7 +28,7 @@ void with_shape(const Model& model, const ShapePart& part, F&& f) {
   }
 }
 
-/// Points of another frame to the part's, as x_part = turn x + shift.
+/// Transforms points of another frame to the part's: x_part = turn x + shift.
 struct ColumnPlacement {
   glm::dmat3 turn;
   glm::dvec3 shift;  // m
@@ -39,11 +39,11 @@ ColumnPlacement column_placement(const Pose& part, const Pose& frame) {
   return {glm::mat3_cast(to_part * frame.rotation), to_part * (frame.position - part.position)};
 }
 
-// The loops below vectorise only where the compiler knows that what they write is nothing that they
-// read: hence the local copies and __restrict, which it believes of parameters only.
+// The loops below vectorise only if the compiler knows that they do not read what they write. It
+// believes __restrict of parameters only: hence the local copies.
 
-/// Distances and their gradients in the columns' frame; unless the part is the first, only where
-/// they are smaller than those that are there.
+/// Distances and their gradients in the columns' frame. For the first part all are written, for
+/// others only where they are smaller than the present ones.
 template <bool First, class Shape>
 TORSION_WIDEST void evaluate(Shape shape, const ColumnPlacement& placement, std::size_t count,
                              const double* __restrict x, const double* __restrict y,
@@ -71,7 +71,7 @@ TORSION_WIDEST void evaluate(Shape shape, const ColumnPlacement& placement, std:
   }
 }
 
-/// The same of the distances alone.
+/// The same for distances alone.
 template <bool First, class Shape>
 TORSION_WIDEST void evaluate_value(Shape shape, const ColumnPlacement& placement, std::size_t count,
                                    const double* __restrict x, const double* __restrict y,
@@ -124,19 +124,19 @@ std::span<const std::uint32_t> parts_near(const Model& model, Range parts, const
   double nearest = std::numeric_limits<double>::infinity();
   for (std::uint32_t part = 0; part < parts.count && parts.count > 1; ++part) {
     const double value = distance(part);
-    // As signed_distance of all of them: NaN of the first stays.
+    // As signed_distance does for all parts: a NaN of the first stays.
     nearest = part == 0 || value < nearest ? value : nearest;
     if (part < kKept) {
       kept[part] = value;
     }
   }
-  // A distance changes by at most `reach` on the way from the centre, so a part that is 2 reach
-  // farther away than the nearest stays farther. Half a reach more covers what an ellipsoid or a
-  // field is off by.
+  // On the way from the centre a distance changes by at most `reach`, so a part that is 2 reach
+  // farther away than the nearest stays farther. Half a reach more allows for the errors of
+  // ellipsoids and fields.
   const double farthest = nearest + 2.5 * reach;
   std::uint32_t count = 0;
   for (std::uint32_t part = 0; part < parts.count; ++part) {
-    // Written so that NaN keeps all.
+    // Written so that NaN keeps all parts.
     if (parts.count == 1 || !((part < kKept ? kept[part] : distance(part)) > farthest)) {
       rows[count++] = parts.first + part;
     }

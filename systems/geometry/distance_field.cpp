@@ -17,7 +17,7 @@
 namespace torsion {
 namespace {
 
-/// Where along one axis: the cell and the fraction of it, 0 to 1.
+/// A place along one axis: the cell, and the fraction within it, 0 to 1.
 struct AxisPlace {
   std::uint32_t cell;
   double fraction;
@@ -27,7 +27,7 @@ struct AxisPlace {
   const double last = static_cast<double>(cells);
   const double inside =
       coordinate > 0.0 ? (coordinate < last ? coordinate : last) : 0.0;  // NaN goes to 0
-  // By way of the signed number, which takes one instruction.
+  // Through a signed integer, which takes one instruction.
   const auto floor = static_cast<std::uint32_t>(static_cast<std::int32_t>(inside));
   const std::uint32_t cell = floor < cells ? floor : cells - 1;
   return {cell, inside - static_cast<double>(cell)};
@@ -135,7 +135,7 @@ constexpr double kMargin = 1.5;  // coarse cells around the mesh's box
 constexpr double kBrickBand =
     0.25;  // coarse cells: how far from the surface a cell may be and still get a brick
 
-/// Calls f(row) for every row below `count`, from `threads` threads; rows must not share what they
+/// Calls f(row) for every row below `count`, from `threads` threads. Rows must not share what they
 /// write.
 template <class F>
 void for_each_row(std::uint32_t count, std::uint32_t threads, const F& f) {
@@ -156,7 +156,7 @@ void for_each_row(std::uint32_t count, std::uint32_t threads, const F& f) {
   work();
 }
 
-/// Walks along a row of points: the nearest triangle of one is a good guess for the next.
+/// Walks along a row of points: the nearest triangle of a point is a good first guess for the next.
 class RowWalk {
  public:
   explicit RowWalk(const MeshDistance& mesh) : mesh_(mesh) {}
@@ -245,7 +245,7 @@ void choose_bricks(const MeshDistance& mesh, std::uint32_t threads, BuiltField& 
   field.nodes.resize(end);
 }
 
-/// Where fine rows of one coordinate lie: in one coarse cell, or on the face between two.
+/// Where the fine rows of one coordinate lie: in a coarse cell, or on the face between two.
 struct CellsOfFineRow {
   std::array<std::uint32_t, 2> cell;
   std::array<std::uint32_t, 2> local;  // fine index in the cell, 0 to subdivision
@@ -268,8 +268,8 @@ CellsOfFineRow cells_of_fine_row(std::uint32_t fine, std::uint32_t subdivision,
   return found;
 }
 
-/// Fills the nodes of all bricks, each place of the fine lattice once: bricks share their faces. A
-/// row of the lattice writes to nodes that no other row writes to.
+/// Fills the nodes of all bricks. Bricks share their faces, so each place of the fine lattice is
+/// computed once. No two rows of the lattice write to the same node.
 void fill_bricks(const MeshDistance& mesh, std::uint32_t threads, BuiltField& field) {
   const DistanceField& grid = field.header;
   const std::uint32_t n = grid.subdivision;

@@ -16,7 +16,7 @@
 
 namespace torsion {
 
-/// Two cache lines: the first is enough to turn down most triangles.
+/// Two cache lines, of which the first is enough to reject most triangles.
 struct alignas(64) TriangleCorners {
   glm::dvec3 middle;
   glm::dvec3 normal;  // unit, or zero for a triangle without area
@@ -29,8 +29,8 @@ struct alignas(64) TriangleCorners {
 
 namespace {
 
-/// What of a triangle is closest to a point: 0 to 2 a corner, 3 to 5 the edge from corner k-3 to
-/// the next, 6 the face.
+/// The feature of a triangle that is closest to a point: 0 to 2 a corner, 3 to 5 the edge from
+/// corner k-3 to the next, 6 the face.
 using Feature = std::uint32_t;
 constexpr Feature kFirstEdge = 3;
 constexpr Feature kFace = 6;
@@ -96,8 +96,9 @@ struct Query {
   std::uint32_t triangle = kNoRow;
 };
 
-/// True if `triangle` is nearer than what was found so far; equally near: the lower row, whatever
-/// the tree's order.
+/// Takes `triangle` if it is nearer than the nearest so far; of equally near ones the lower row, so
+/// that the tree's order does not matter.
+/// @return whether it was taken
 bool try_triangle(Query& query, std::uint32_t triangle) {
   const TriangleCorners& corners = query.corners[triangle];
   // The triangle lies in its plane, within `reach` of its middle.

@@ -27,8 +27,8 @@ struct SampleCandidate {
   std::uint32_t part;
 };
 
-/// Points spread over the pieces by area: equal steps through the areas, and in each piece the R2
-/// sequence (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
+/// Points spread over the pieces by area: equal steps through the areas, and within each piece the
+/// R2 sequence (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
 std::vector<SampleCandidate> candidates_on(std::span<const SurfaceTriangle> pieces,
                                            const PartSolids& solids, double total_area,
                                            std::uint32_t count) {
@@ -56,9 +56,9 @@ std::vector<SampleCandidate> candidates_on(std::span<const SurfaceTriangle> piec
   return candidates;
 }
 
-/// The candidates as columns of float for the search below: place and, scaled by the samples'
-/// spacing, normal. Points on two sides of a crease or of a thin wall are thus as far apart as if
-/// there were a spacing or two between them.
+/// The candidates as columns of float for the search below: place, and normal times the samples'
+/// spacing. So points on the two sides of a crease or of a thin wall count as a spacing or two
+/// apart.
 struct CandidateColumns {
   std::array<std::vector<float>, 6> column;
   std::vector<float> squared_distance;  // to the nearest of the chosen
@@ -79,7 +79,7 @@ CandidateColumns columns_of(std::span<const SampleCandidate> candidates, double 
   return columns;
 }
 
-/// Lowers all distances to those to `chosen`, where that is nearer.
+/// Lowers each distance to the one to `chosen` where that is smaller.
 /// @return the row that is farthest then
 TORSION_WIDEST std::size_t lower_distances(CandidateColumns& columns, std::size_t chosen) {
   constexpr std::size_t kBlock = 256;  // rows among which the farthest is looked for by its value
@@ -109,8 +109,8 @@ TORSION_WIDEST std::size_t lower_distances(CandidateColumns& columns, std::size_
                                   nearest.begin());
 }
 
-/// Picks again and again the candidate that is farthest from all picked so far: Gonzalez,
-/// "Clustering to minimize the maximum intercluster distance", 1985; the largest hole is at most
+/// Takes again and again the candidate that is farthest from all taken so far: Gonzalez,
+/// "Clustering to minimize the maximum intercluster distance", 1985. The largest hole is at most
 /// twice the smallest possible.
 std::vector<std::uint32_t> spread_out(std::span<const SampleCandidate> candidates, double spacing,
                                       std::uint32_t count) {
@@ -165,8 +165,8 @@ void find_neighbours(std::span<SurfaceSample> samples) {
   }
 }
 
-/// Gives every piece to a leaf near it, whose ball then grows to hold it: halves those with edges
-/// longer than `longest_edge` first.
+/// Assigns every piece to a leaf near it, whose ball then grows to hold it. Pieces with edges
+/// longer than `longest_edge` are halved first.
 class LeafCover {
  public:
   LeafCover(std::span<SurfaceBall> balls, std::span<const SurfaceSample> samples,

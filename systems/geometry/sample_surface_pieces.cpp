@@ -13,8 +13,8 @@
 namespace torsion {
 namespace {
 
-/// Moves a point of the box of half extents `half` to the surface of the shape that the box
-/// encloses: flat faces stay flat, and the shape's edges come from the box's.
+/// Moves a point of the box of half extents `half` to the surface of the shape inside the box: flat
+/// faces stay flat, and the box's edges become the shape's.
 glm::dvec3 from_box_to_shape(const ShapePart& shape, const glm::dvec3& p) {
   const glm::dvec3& half = shape.half_extent;
   switch (shape.kind) {
@@ -53,7 +53,7 @@ glm::dvec3 enclosing_box(const ShapePart& shape) {
   }
 }
 
-/// Adds the piece unless it has no area or is hidden in another part.
+/// Adds a piece unless it has no area or is hidden in another part.
 void add_piece(const std::array<glm::dvec3, 3>& corner, std::uint32_t part, double bulge,
                const PartSolids& solids, std::vector<SurfaceTriangle>& pieces) {
   const glm::dvec3 normal = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
@@ -69,8 +69,8 @@ void add_piece(const std::array<glm::dvec3, 3>& corner, std::uint32_t part, doub
   }
 }
 
-/// How far the exact surface lies from a piece: seen at its middle and the middles of its edges;
-/// half more for what is between.
+/// How far the exact surface lies from a piece, measured at its middle and the middles of its
+/// edges; half more for the places between.
 double bulge_of(const ShapePart& shape, const std::array<glm::dvec3, 3>& corner) {
   double bulge = 0.0;
   for (const glm::dvec3& point :
@@ -81,7 +81,7 @@ double bulge_of(const ShapePart& shape, const std::array<glm::dvec3, 3>& corner)
   return 1.5 * bulge;
 }
 
-/// One face of the box, cut into squares: the face where `axis` is at `side` times its half extent.
+/// One face of the box, cut into squares: the one where `axis` is `side` times its half extent.
 void add_face(const ShapePart& shape, std::uint32_t part, int axis, double side, double step,
               const PartSolids& solids, std::vector<SurfaceTriangle>& pieces) {
   const glm::dvec3 box = enclosing_box(shape);
@@ -198,8 +198,8 @@ namespace {
 
 constexpr std::size_t kBucket = 8;  // leaves under one ball: a walk looks at all of them at once
 
-/// Splits the rows at the median of the longest side of their points' box. @return how many are in
-/// the lower half
+/// Splits the rows at the median of the longest side of their points' box.
+/// @return the number of rows in the lower half
 std::size_t split(std::span<const glm::dvec3> points, std::span<std::uint32_t> rows) {
   glm::dvec3 lowest = points[rows[0]];
   glm::dvec3 highest = lowest;
@@ -246,8 +246,9 @@ void add_subtree(std::span<const glm::dvec3> points, std::span<std::uint32_t> ro
   tree.balls[own].skip = static_cast<std::uint32_t>(tree.balls.size());
 }
 
-/// The smallest ball about the leaf balls in `below`, nearly: Badoiu and Clarkson, "Smaller
-/// core-sets for balls", 2003: walk towards the farthest ball by 1 / (k + 1) of the way.
+/// Nearly the smallest ball around the leaf balls in `below`. Badoiu and Clarkson, "Smaller
+/// core-sets for balls", 2003: move by 1 / (k + 1) of the distance towards the farthest ball, again
+/// and again.
 void fit_ball(std::span<const SurfaceBall> below, SurfaceBall& ball) {
   const auto farthest = [&](const glm::dvec3& center) {
     const SurfaceBall* found = nullptr;
@@ -278,7 +279,7 @@ void fit_ball(std::span<const SurfaceBall> below, SurfaceBall& ball) {
     if (!(length > 0.0)) {
       break;
     }
-    // to the far end of the leaf's ball, not only to its centre
+    // to the far side of the leaf's ball, not only to its centre
     center += way * ((1.0 + leaf->radius / length) / (k + 1.0));
   }
   ball.radius *= 1.0 + 1e-12;

@@ -45,7 +45,7 @@ SurfacePiece cylinder_piece(double radius, double half_height, const glm::dvec3&
     return piece;
   }
   piece.face.y = std::copysign(1.0, point.y);
-  // The rim as if it were as near on all sides.
+  // The rim, as if it were equally near on all sides.
   end_along(piece, {1.0, 0.0, 0.0}, 0.0, radius - from_axis);
   end_along(piece, {0.0, 0.0, 1.0}, 0.0, radius - from_axis);
   return piece;
@@ -89,7 +89,8 @@ SurfacePiece piece_at(const ShapePart& part, const glm::dvec3& point) {
 }
 
 glm::dmat3 curvature_at(const SurfacePiece& piece, const glm::dvec3& point) {
-  // The normal is g / |g| with g = Q (x - c): its derivative is Q / |g| without what is along it.
+  // The normal is g / |g| with g = Q (x - c). Its derivative is Q / |g| without the component along
+  // the normal.
   const glm::dvec3 gradient = piece.quadric * (point - piece.center);
   const double length = glm::length(gradient);
   if (length == 0.0) {

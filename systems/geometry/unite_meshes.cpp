@@ -23,10 +23,10 @@ namespace {
 
 constexpr double kCornersApart = 8.0;  // of what is the same: a corner is found from two sides
 
-/// Vertices by the cell of a grid that they lie in.
+/// Vertices by the grid cell that they lie in.
 using Places = std::map<std::array<double, 3>, std::vector<std::uint32_t>>;
 
-/// The row of a vertex there, which is new if there was none.
+/// The row of the vertex at this place; a new one if there is none.
 std::uint32_t vertex_at(const glm::dvec3& point, double slack, Places& places,
                         SurfaceMesh& surface) {
   const double cell = 2.0 * slack;
@@ -94,7 +94,7 @@ void append_triangles(const std::vector<std::uint32_t>& polygon, SurfaceMesh& su
     surface.triangles.emplace_back(polygon[0], polygon[1], polygon[2]);
     return;
   }
-  // From the middle, so that corners in a row make no triangle without area.
+  // A fan from the middle, so that corners in a line make no triangle without area.
   glm::dvec3 sum(0.0);
   for (const std::uint32_t row : polygon) {
     sum += surface.positions[row];
@@ -106,7 +106,7 @@ void append_triangles(const std::vector<std::uint32_t>& polygon, SurfaceMesh& su
   }
 }
 
-/// True where along every edge as many triangles run forth as back.
+/// True if along every edge as many triangles run in the one direction as in the other.
 bool is_closed(const SurfaceMesh& surface) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const glm::uvec3& t : surface.triangles) {
@@ -151,8 +151,8 @@ std::optional<SurfaceMesh> close_pieces(const std::vector<Polygon>& pieces, doub
 
 namespace {
 
-// Of the mesh's size. Places nearer than kSamePlace are one; a triangle's two sides are looked at
-// so far from it.
+// Of the mesh's size. Places nearer to each other than kSamePlace are the same; the two sides of a
+// triangle are tested at this distance.
 constexpr double kSamePlace = 1e-9;
 constexpr double kBeside = 1e-7;
 
@@ -208,7 +208,7 @@ glm::dvec3 middle_of(const Polygon& polygon) {
   return sum / static_cast<double>(polygon.size());
 }
 
-/// Facets of several shells.
+/// The facets of several shells.
 struct Facets {
   std::vector<Facet> rows;
   std::vector<std::vector<std::uint32_t>> crossed_by;  // for each those of other shells
@@ -240,9 +240,9 @@ void find_crossings(const Shells& shells, Facets& facets) {
   }
 }
 
-/// Facets that nothing crosses go together with their neighbours across edges: a patch of them is
-/// outside or inside as a whole.
-/// @return for each facet the first of its patch
+/// Facets that no other crosses are joined with their neighbours across edges to patches: each
+/// patch is outside or inside as a whole.
+/// @return for each facet the first one of its patch
 std::vector<std::uint32_t> whole_patches(const SurfaceMesh& mesh, const Facets& facets) {
   std::vector<std::uint32_t> parent(facets.rows.size());
   std::iota(parent.begin(), parent.end(), 0U);
@@ -266,7 +266,7 @@ std::vector<std::uint32_t> whole_patches(const SurfaceMesh& mesh, const Facets& 
 /// @param point  m, of the piece
 bool is_outside(const Facets& facets, std::uint32_t row, const glm::dvec3& point) {
   const Facet& facet = facets.rows[row];
-  // Of faces that lie in each other one is enough.
+  // Of coincident faces one is kept.
   for (const std::uint32_t other : facets.crossed_by[row]) {
     const Facet& crossing = facets.rows[other];
     if (other < row && glm::dot(crossing.normal, facet.normal) > 0.0 &&
@@ -278,7 +278,7 @@ bool is_outside(const Facets& facets, std::uint32_t row, const glm::dvec3& point
          winding_number(facets.rows, point - facets.beside * facet.normal) > 0.5;
 }
 
-/// What bounds the solid: whole facets and pieces of those that others cross.
+/// The pieces that bound the solid: whole facets, and pieces of those that others cross.
 std::vector<Polygon> outside_pieces(const Facets& facets, const std::vector<std::uint32_t>& patches,
                                     Union& united) {
   std::vector<Polygon> kept;
@@ -322,7 +322,7 @@ SurfaceMesh joined(const std::vector<const SurfaceMesh*>& meshes) {
   return all;
 }
 
-/// Mesh parts in groups whose boxes meet.
+/// Groups of mesh parts whose boxes meet.
 std::vector<std::vector<std::size_t>> groups_of(const std::vector<PartDescription>& parts) {
   std::vector<std::uint32_t> parent(parts.size());
   std::iota(parent.begin(), parent.end(), 0U);

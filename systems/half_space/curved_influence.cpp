@@ -10,7 +10,7 @@
 namespace torsion {
 namespace {
 
-/// What a CurvedKind's terms are multiplied by.
+/// The functions that a CurvedKind's terms are multiplied by.
 struct AngularWaves {
   double log = 0.0;  // of r / reach
   double cos_2 = 0.0;
@@ -19,7 +19,7 @@ struct AngularWaves {
   double sin_4 = 0.0;
 };
 
-/// Their means over a cell, taken at four points (Gauss).
+/// Their means over a cell, from four points (Gauss).
 /// @param offset  m: the cell's middle from the force
 AngularWaves mean_waves(const glm::dvec2& offset, const glm::dvec2& cell, double reach) {
   constexpr double kGauss = 0.28867513459481287;  // of the cell, from its centre
@@ -83,8 +83,8 @@ double curved_displacement(const CurvedKind& kind, const glm::dvec2& offset, dou
 }
 
 double curved_mean(const CurvedKind& kind, double radius, double reach) {
-  // Between two places of the density 1 / sqrt(1 - r^2) the mean logarithm of the distance is
-  // that of the radius and minus the integral of (1 - sqrt(1 - r^2))^2 / r.
+  // The mean logarithm of the distance between two places with the density 1 / sqrt(1 - r^2) is
+  // that of the radius minus the integral of (1 - sqrt(1 - r^2))^2 / r.
   constexpr double kLogOfMean = 2.0 * std::numbers::ln2 - 1.5;
   return kind.steady + kind.log * (std::log(reach / radius) - kLogOfMean);
 }
@@ -98,7 +98,7 @@ void fill_curved_influences(const InfluenceTables& half_space, const CurvedRespo
   for (std::size_t kind = 0; kind < kSolvedKinds; ++kind) {
     std::copy_n(half_space.kinds[kind], table, &values[kind * table]);
   }
-  // Over the cell's length along x its area leaves its width.
+  // The cell's area over its length along x, which leaves its width.
   const double area = cell.y / (8.0 * std::numbers::pi);
   for (std::size_t j = 0; j < side; ++j) {
     for (std::size_t i = 0; i < side; ++i) {
@@ -111,7 +111,7 @@ void fill_curved_influences(const InfluenceTables& half_space, const CurvedRespo
         const double odd = by.sin_2 * waves.sin_2 + by.sin_4 * waves.sin_4;
         double* const to = &values[kind * table];
         const double* const from = half_space.kinds[kind];
-        // The same at the place and on the other side of the force, to the last bit.
+        // The same value, to the last bit, on the opposite side of the force.
         const auto put = [&](std::size_t row, std::size_t column, double value) {
           const std::size_t at = row * width + column;
           const std::size_t opposite = (width - 2 - row) * width + (width - 2 - column);

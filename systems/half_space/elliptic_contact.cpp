@@ -41,14 +41,14 @@ double axis_ratio(double ratio) {
   for (int k = 0; k < 4; ++k) {
     const double m = 1.0 - axes * axes;
     const double found = curvature_ratio(m, elliptic_integrals(m));
-    // d ln(B / A) / d ln(b / a) is -1.5 near the circle and falls to -2: any value between
+    // d ln(B / A) / d ln(b / a) is -1.5 near the circle and approaches -2: every value between them
     // converges.
     axes = std::clamp(axes * std::exp(std::log(found / ratio) / 1.7), 0.01, 1.0);
   }
   return axes;
 }
 
-/// Integrals of sin^2 and sin^4 over (1 - m sin^2)^(3/2) from 0 to pi / 2, and of 1.
+/// Integrals of sin^2, of sin^4 and of 1, over (1 - m sin^2)^(3/2), from 0 to pi / 2.
 struct Directions {
   double zeroth = 0.0;
   double square = 0.0;

@@ -11,7 +11,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// A point as the half-space sees it, and a wrench in parts. z is the depth below the plane.
+/// A point relative to the half-space, and a wrench in parts. z is the depth below the plane.
 struct Seen {
   glm::dvec3 inward;         // -normal: direction of z
   glm::dvec3 along;          // m, position in the plane, from the load
@@ -66,7 +66,7 @@ glm::dvec3 scaled_displacement(const Seen& seen, double k) {
          glm::cross(seen.inward, seen.along) * (seen.twist * r3);
 }
 
-/// Half its curl times 4 pi G; the derivatives collapse to
+/// Half its curl times 4 pi G. The derivatives collapse to
 ///   Boussinesq  (1 + k) e x p / R^3
 ///   Cerruti     Q x p / R^3 + (z/R^3 + k/(R s)) Q x e + k (Q.p) (z + 2 R)/(R^3 s^2) e x p
 ///   twist       (3 z (p + z e)/R^5 - e/R^3) / 2
@@ -89,7 +89,7 @@ glm::dvec3 scaled_rotation(const Seen& seen, double k) {
 }
 
 /// A third of the stress's trace, Pa: exact at nu = 0.5, where it does not follow from the
-/// displacement. The dipole again by minus the derivative along `arm`.
+/// displacement. The dipole's is again minus the derivative along `arm`.
 double mean_stress(const Seen& seen, const Elasticity& elasticity) {
   const double r1 = 1.0 / seen.distance;
   const double r3 = r1 * r1 * r1;
@@ -98,8 +98,7 @@ double mean_stress(const Seen& seen, const Elasticity& elasticity) {
           3.0 * glm::dot(seen.arm, seen.along) * seen.z * r3 * r1 * r1);
 }
 
-/// Gradient of scaled_displacement, column c the derivative along axis c: the product rule over its
-/// terms, each factor with its own gradient.
+/// Gradient of scaled_displacement, column c the derivative along axis c, by the product rule.
 glm::dmat3 scaled_gradient(const Seen& seen, double k) {
   const double z = seen.z;
   const double r1 = 1.0 / seen.distance;
@@ -113,7 +112,7 @@ glm::dmat3 scaled_gradient(const Seen& seen, double k) {
   const glm::dvec3& e = seen.inward;
   const glm::dvec3& p = seen.along;
   const glm::dvec3& q = seen.tangent_force;
-  // Of R, and of s, which depends on R and z.
+  // Gradients of R, and of s, which depends on R and z.
   const glm::dvec3 by_r = (p + z * e) * r1;
   const double share = 1.0 + z * r1;
   const glm::dvec3 by_s =
@@ -182,7 +181,7 @@ glm::dmat3 half_space_stress(const Port& load, const Elasticity& elasticity, con
                              const glm::dvec3& point) {
   const double k = 1.0 - 2.0 * elasticity.poisson_ratio;
   if (k == 0.0 && wrench.torque == glm::dvec3(0.0)) {
-    // Boussinesq's and Cerruti's stress of an incompressible material: all along the ray.
+    // Boussinesq's and Cerruti's stress in an incompressible material acts along the ray alone.
     const glm::dvec3 ray = point - load.position;
     const double square = glm::dot(ray, ray);
     return glm::outerProduct(ray, ray) *

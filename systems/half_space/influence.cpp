@@ -12,13 +12,13 @@
 namespace torsion {
 namespace {
 
-/// y ln(x + rho); x + rho is written so that it keeps its digits where x is negative.
+/// y ln(x + rho), with x + rho written so that no digits are lost where x is negative.
 double y_log_x_plus_rho(double x, double y, double rho) {
   const double sum = x > 0.0 ? x + rho : y * y / (rho - x);
   return y == 0.0 ? 0.0 : y * std::log(sum);
 }
 
-/// The four integrals over a corner, whose alternating sums are those over a rectangle.
+/// The four integrals at a corner; their alternating sums are the integrals over a rectangle.
 struct Integrals {
   double x2 = 0.0;  // of x^2 / rho^3
   double y2 = 0.0;  // of y^2 / rho^3
@@ -127,8 +127,8 @@ namespace {
 
 constexpr std::size_t kBlockValues = 4;  // here, along x, along y, corner: the rest is symmetry
 
-/// Gauss' elimination; the matrix is that of a positive definite one under symmetry, so it needs no
-/// pivots.
+/// Gauss' elimination. The matrix is a positive definite one reduced by symmetry: no pivots are
+/// needed.
 std::array<double, kBlockValues> solve(
     std::array<std::array<double, kBlockValues>, kBlockValues> matrix,
     std::array<double, kBlockValues> values) {

@@ -25,7 +25,7 @@ bool is_wide(const Model& model, std::uint32_t body, double thickness) {
   const Bounds& bounds = model.bodies.at<Bounds>(body);
   const glm::dvec3 along = glm::abs(fixed.normal);
   const glm::dvec3 across = (bounds.highest - bounds.lowest) * (1.0 - along);
-  // Along two of the axes; the third is nearest to the normal.
+  // Along two of the axes: the third one is nearest to the normal.
   const double steepest = std::max({along.x, along.y, along.z});
   double width = 1e300;
   bool seen = false;
@@ -60,9 +60,10 @@ double layer_thickness(const Model& model, std::uint32_t body, const glm::dvec3&
 
 namespace {
 
-/// Beyond it a layer differs from a half-space by u^2 exp(-2u) < 1e-18.
+/// Above this wave number a layer differs from a half-space by u^2 exp(-2u) < 1e-18.
 constexpr double kLargestWave = 25.0;
-/// Waves turn by kLargestWave kLayerReach = 300 rad at the far end: four nodes a turn and some.
+/// The waves turn by kLargestWave kLayerReach = 300 rad up to the far end: more than four nodes a
+/// turn.
 constexpr int kWaves = 220;
 
 struct Nodes {
@@ -70,7 +71,8 @@ struct Nodes {
   std::vector<double> weights;
 };
 
-/// Gauss and Legendre's on [0, end], by Newton's method on the three-term recurrence.
+/// Nodes and weights of Gauss and Legendre on [0, end], by Newton's method on the three-term
+/// recurrence.
 Nodes gauss_legendre(int count, double end) {
   Nodes nodes;
   for (int i = 0; i < count; ++i) {
@@ -93,13 +95,13 @@ Nodes gauss_legendre(int count, double end) {
   return nodes;
 }
 
-/// Bessel's function J_2 from the first two.
+/// Bessel's function J_2 from J_0 and J_1.
 double bessel_2(double x) {
   return x < 1e-2 ? x * x / 8.0 * (1.0 - x * x / 12.0) : 2.0 / x * ::j1(x) - ::j0(x);
 }
 
-/// The four transforms at one distance: of the sinking (J0), of half the sum of along and across
-/// (J0), of half their difference (J2) and of the mixed one (J1).
+/// The four transforms at one distance: of the normal displacement (J0), of half the sum of those
+/// along and across (J0), of half their difference (J2), and of the mixed one (J1).
 struct Transforms {
   double sinking = 0.0;
   double mean = 0.0;
@@ -107,8 +109,8 @@ struct Transforms {
   double mixed = 0.0;
 };
 
-/// Minus the half-space's own, from where the layer hardly moves: all Bessel functions integrate
-/// to 1.
+/// Minus the half-space's own transforms, for distances where the layer hardly moves: all Bessel
+/// functions integrate to 1.
 Transforms still(double poisson_ratio, double distance) {
   return {-(1.0 - poisson_ratio) / distance, -(1.0 - 0.5 * poisson_ratio) / distance,
           0.5 * poisson_ratio / distance, -0.5 * (1.0 - 2.0 * poisson_ratio) / distance};
@@ -128,8 +130,8 @@ Transforms between(std::span<const double> kernel, double distance) {
 }  // namespace
 
 WaveCompliance layer_wave_compliance(double poisson_ratio, double u) {
-  // Unknown: a and beta of the part that falls from the surface, b and delta of the one that falls
-  // from the base, lengths over 1 / k.
+  // Unknowns: a and beta of the part that decays from the surface, b and delta of the one that
+  // decays from the base; lengths over 1 / k.
   const double kappa = 3.0 - 4.0 * poisson_ratio;
   const double fall = std::exp(-u);
   const double shear = 0.5 * (kappa + 1.0);
@@ -233,7 +235,7 @@ void fill_layer_influences(const InfluenceTables& half_space, std::span<const do
     for (std::uint32_t i = 0; i < side; ++i) {
       const auto response = mean_response(kernel, poisson_ratio, cell * glm::dvec2(i, j), cell);
       for (std::size_t kind = 0; kind < kSolvedKinds; ++kind) {
-        // Over the cell's length along x: its area leaves its width.
+        // The cell's area over its length along x leaves its width.
         const double value = response[kind] * cell.y;
         for (const bool left : {false, true}) {
           for (const bool below : {false, true}) {
@@ -280,7 +282,7 @@ glm::dmat3 layer_coupling(const Model& model, std::uint32_t body, const glm::dve
   const glm::dvec2 along(glm::dot(first, offset), glm::dot(second, offset));
   const LayerResponse at =
       layer_response(values.last(kLayerKernelSize), elasticity.poisson_ratio, along / thickness);
-  // Of the kernel z points into the layer; u_x by pressure is minus u_z by traction along x.
+  // In the kernel, z points into the layer. u_x by pressure is minus u_z by traction along x.
   const glm::dmat3 local(at.xx, at.xy, -at.zx, at.xy, at.yy, -at.zy, at.zx, at.zy, at.zz);
   const glm::dmat3 axes(first, second, normal);
   return axes * local * glm::transpose(axes) / (elasticity.shear_modulus() * thickness);

@@ -17,12 +17,12 @@ constexpr double kFarthest = 2.0;   // counts: what is farther is followed at on
 constexpr double kPlay = 1.0;       // counts: what is nearer is not
 constexpr double kSlowTime = 0.25;  // s: of the way between, twice that of a loose hand
 
-/// What of a change goes beyond `free`, for each axis.
+/// The part of a change beyond `free`, for each axis.
 glm::dvec3 beyond(const glm::dvec3& change, double free) {
   return change - glm::clamp(change, -free, free);
 }
 
-/// How far to go of a change within `period`.
+/// The part of a change that is followed within `period`.
 glm::dvec3 followed(const glm::dvec3& change, double count, double period) {
   const glm::dvec3 at_once = beyond(change, kFarthest * count);
   const double share = std::min(1.0, period / kSlowTime);
@@ -51,12 +51,12 @@ Pose follow_counts(const Pose& last, const Pose& measured, double count, double 
 namespace {
 
 constexpr double kSlowest = 1e-9;  // m or rad a sample: slower, damping would divide by nothing
-// Where a device's are not known: a small handle alone, 50 g on 20 mm. Mechanism and fingers only
-// add to it, and the more there is, the more a late damper may do.
+// Used where a device's own are not known: a small handle alone, 50 g with a radius of 20 mm. The
+// mechanism and the fingers only add to it, and with more mass a late damper may do more.
 constexpr double kLightMass = 0.05;     // kg
 constexpr double kLightInertia = 1e-5;  // kg m^2
 
-/// @param held  force on the hand over the interval that has passed
+/// @param held  force on the hand over the past interval
 /// @param way   of the handle over it
 /// @return the force to display over the next one
 glm::dvec3 keep_channel_passive(EnergyBooks& books, const glm::dvec3& held, const glm::dvec3& way,
@@ -147,7 +147,7 @@ Wrench guard_output(OutputGuard& guard, const GuardLimits& limits, const GuardIn
   const bool good = !input.faulty && input.result_age <= limits.longest_silence &&
                     finite(input.wanted) && std::isfinite(input.distance);
   if (!good && (guard.state == GuardState::kLive || guard.state == GuardState::kRising)) {
-    // What was sent last falls, from its whole size: its share is already in it.
+    // What was sent last decreases, from its whole size: it includes its share already.
     guard.state = GuardState::kFalling;
     guard.last_good = guard.sent;
     guard.share = 1.0;
@@ -188,7 +188,7 @@ void begin_epoch(HandleSide& side, const DeviceSample& sample, const Pose& tool)
   side.map.origin = sample.steers_rate ? tool.position - sample.pose.position : side.home.position;
 }
 
-/// Until it takes hold the handle is turned as the tool is, however it is held.
+/// Until it takes hold, the handle has the tool's orientation, however it is held.
 void wait_for_hold(HandleSide& side, const DeviceSample& sample, const Pose& tool) {
   side.device = sample.pose;
   side.map.turned = sample.pose.rotation;

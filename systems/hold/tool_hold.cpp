@@ -64,7 +64,7 @@ constexpr double kWidestTurn = 0.02;       // rad
 constexpr double kLongestFreeStep = 5e-3;  // m: off every contact
 constexpr double kWidestFreeTurn = 0.2;    // rad
 
-/// Of one region that sticks, about the tool's mass centre.
+/// Stiffness of one region that sticks, about the tool's mass centre.
 Matrix6 contact_stiffness(const Model& model, const State& state, std::uint32_t region,
                           const glm::dvec3& center) {
   const Contact& contact = state.regions.at<Contact>(region);
@@ -83,8 +83,8 @@ Matrix6 contact_stiffness(const Model& model, const State& state, std::uint32_t 
                           stuck.about_tangents.y * (y * y.transpose()));
 }
 
-/// What the contacts do to the tool as they are now. The output of a region lags behind while
-/// it forms, merges or splits, and a tool without mass that fell through that lag would bounce.
+/// The present wrench of the contacts on the tool. A region's output lags behind while it forms,
+/// joins or splits: a tool without mass would fall through that lag and bounce.
 Wrench contact_wrench(const State& state, std::uint32_t tool) {
   Wrench contact = state.tools.at<ToolWrench>(tool).total;
   if (state.tools.at<ToolWrench>(tool).state != WrenchState::kLive) {
@@ -167,9 +167,9 @@ Pose moved(const State& state, std::uint32_t tool, const Vector6& motion) {
 
 namespace {
 
-/// How much of a step to take that follows `last`, 1/4 to 1. A contact that is stiffer than its
-/// region's stiffness says (several regions on one body, meshes) throws each step past the balance
-/// and the next one back: with steps that shrink by -g the balance is at the share 1 / (1 + g).
+/// How much of a step that follows `last` is taken, 1/4 to 1. A contact that is stiffer than its
+/// region's stiffness says (several regions on one body, meshes) makes each step overshoot the
+/// balance: with steps that change by the factor -g the balance lies at the share 1 / (1 + g).
 /// Source: Aitken's extrapolation, for the component along the last step in the metric of the
 /// stiffness.
 double share_of_step(const Matrix6& stiffness, const Vector6& last, const Vector6& step) {

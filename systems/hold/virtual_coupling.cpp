@@ -73,7 +73,8 @@ CouplingChoice choose_coupling(const DeviceTraits& device) {
       stiffness_for(device.turn_damping, hold, device.largest_turn_stiffness, kCautiousTurn);
   choice.coupling.largest_force =
       device.largest_force > 0.0 ? device.largest_force : kCautiousForce;
-  // A tool on a device without torque is still turned by it, and needs something to turn it.
+  // A tool on a device without torque output is still turned by it, and needs a torque that turns
+  // it.
   choice.coupling.largest_torque =
       device.largest_torque > 0.0 ? device.largest_torque : kCautiousTorque;
   return choice;

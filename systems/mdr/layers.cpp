@@ -48,9 +48,8 @@ Line<Value> line_of(double outer_place, double inner_place, const Value& outer,
   return {inner - slope * inner_place, slope};
 }
 
-/// One foundation's deflections on the pieces of the last step, projected on those of this one.
-/// Both lists of edges fall; what is left between two of them in turn is a stretch on which both
-/// are linear.
+/// Projects one foundation's deflections from the pieces of the last step onto those of this step.
+/// Both lists of edges fall; between two successive edges of either list both are linear.
 /// @param before, now      foundations
 /// @param scale_before     a of the last step over that of this one: places are over the new a
 /// @param deflections      (kMdrLayers) in: of the last step; out: of this step
@@ -98,9 +97,9 @@ void project(const MdrFoundation& before, const MdrFoundation& now, double scale
 constexpr double kLoadRounding =
     1e-9;  // of a layer's largest load: by so much none slips that is held
 
-/// Where slip ends, over the contact's radius: on the edge between the pieces that slip and those
-/// that do not (two layers a piece). Sliding and turning have edges of their own; where both go on
-/// they count by their loads.
+/// Where slip ends, over the contact's radius: at the edge between the pieces that slip and those
+/// that stick (two layers a piece). Sliding and turning have an edge each; where both go on, they
+/// are weighted by their loads.
 double stick_radius(const MdrPlaces& places, std::size_t slipping, const glm::dvec2& loads) {
   const std::size_t piece = slipping / 2;
   const auto edge = [&](const std::array<double, kMdrPieces + 1>& edges) {
@@ -149,8 +148,9 @@ MdrForces move_layers(const MdrPlaces& places, const LimitCurve& curve, const Md
   // Largest couple (3 pi / 16) or (pi / 4) mu F a: docs/models.md.
   const double largest_couple =
       pi * std::lerp(3.0 / 16.0, 0.25, contact.flat_share) * a * contact.torque_share * friction;
-  // Loads over the largest ones: a layer's largest load over its stiffness is where it slips, so
-  // that all layers together have the exact stiffness before they slip and the exact load after.
+  // Loads over the largest ones. A layer slips where its largest load over its stiffness is
+  // reached, so all layers together have the exact stiffness before slip and the exact load in full
+  // slip.
   const double shift_unit = slide_stiffness / friction;  // 1/m
   const double turn_unit = turn_stiffness / largest_couple;
   std::size_t segment = kLimitCurveSegments / 2;

@@ -31,7 +31,7 @@ double pressure_share(double square, double flat_share) {
   return (1.0 - flat_share) * 1.5 * root + flat_share * 0.5 / std::max(root, kRim);
 }
 
-/// Pressure and what sticks for those who draw it and count cells.
+/// Pressure and stick state of the cells, for pictures and for those who count cells.
 /// @param stick_radius  over the contact's
 void set_cells(const Model& model, State& state, std::uint32_t region, const RoundContact& contact,
                double stick_radius) {
@@ -64,7 +64,7 @@ glm::dvec2 slide_at(const RegionMotion& motion, const glm::dvec2& center) {
   return motion.slide + motion.spin * glm::dvec2(-arm.y, arm.x);
 }
 
-/// What the layers are asked, of the motion since the last step.
+/// The input of the layers: the motion since the last step.
 MdrContact layers_contact(const Model& model, const State& state, std::uint32_t region,
                           const RoundContact& round) {
   const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
@@ -88,13 +88,13 @@ MdrContact layers_contact(const Model& model, const State& state, std::uint32_t 
   return contact;
 }
 
-/// Of springs that all stick, N/m.
+/// The stiffness when all springs stick, N/m.
 double slide_stiffness(const MdrContact& contact) {
   return contact.slide_stiffness * 8.0 * contact.shear_modulus * contact.radius /
          (2.0 - contact.poisson_ratio);
 }
 
-/// mu_s comes down to mu_d over a short slip and is back after as long an elastic path.
+/// mu_s falls to mu_d over a short slip, and recovers over an equally long elastic path.
 void move_friction(const MdrContact& contact, double slipped, double& kinetic_share) {
   const double inverse = inverse_of(contact.friction * contact.force / slide_stiffness(contact));
   const double path = glm::length(contact.slide) + std::abs(contact.spin) * contact.radius;
@@ -109,7 +109,7 @@ glm::dvec3 middle_of(const State& state, std::uint32_t region, const RoundContac
   return grid_to_body(frame, {round.center, height});
 }
 
-/// Where the contact is, for the systems after this one.
+/// Writes the contact's place and size for the systems after this one.
 void set_contact(State& state, std::uint32_t region, const RoundContact& round) {
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   Contact& contact = state.regions.at<Contact>(region);
@@ -120,7 +120,7 @@ void set_contact(State& state, std::uint32_t region, const RoundContact& round) 
   contact.depth = round.depth;
 }
 
-/// A region's springs, as often as they are tried in a step.
+/// A region's springs, tried several times in a step.
 struct Springs {
   const MdrTables& tables;
   MdrPressure pressure;  // of the last step
@@ -129,7 +129,7 @@ struct Springs {
   std::span<MdrLayer> layers;
 };
 
-/// Moves them from where they were before.
+/// Moves the springs from the state before the step.
 MdrForces move_springs(const Springs& springs, const RoundContact& round,
                        const MdrContact& contact) {
   std::ranges::copy(springs.before, springs.layers.begin());
@@ -141,7 +141,7 @@ MdrForces move_springs(const Springs& springs, const RoundContact& round,
   return move_layers(places, springs.tables.limit_curve, contact, springs.layers);
 }
 
-/// What a contact and its springs come to in one step.
+/// The contact and its springs in one step.
 struct Outcome {
   RoundContact round;
   MdrContact contact;
@@ -149,8 +149,8 @@ struct Outcome {
   SupportAnswer answer;
 };
 
-/// Stiffnesses of springs that all stick and of the contact along its normal, with turns times the
-/// radius.
+/// Stiffnesses of springs that all stick and of the contact along its normal. Turns are multiplied
+/// by the radius.
 glm::dvec4 stiffness_of(const Outcome& outcome, double modulus) {
   const MdrContact& contact = outcome.contact;
   const double slide = slide_stiffness(contact);
@@ -158,7 +158,7 @@ glm::dvec4 stiffness_of(const Outcome& outcome, double modulus) {
   return {slide, slide, turn, normal_slope(outcome.round, modulus)};
 }
 
-/// A contact on a body that deflects, and what it was asked.
+/// A contact on a body that deflects, and the motion imposed on it.
 struct Balance {
   const Model& model;
   const State& state;
@@ -168,8 +168,8 @@ struct Balance {
   double modulus;     // E*, Pa
   glm::dvec4 turns;   // 1, 1, its radius, 1
 
-  /// The loads on the material, of the couple over the radius, when the springs have moved and the
-  /// contact is as deep as that.
+  /// The loads on the material (the couple over the radius) when the springs have moved and the
+  /// contact has this depth.
   /// @param motion  along x and y, turning times the radius, and the depth, m
   ContactLoads load_at(const glm::dvec4& motion, Outcome& outcome) const {
     outcome.round = pressed_to(motion.w, modulus, seen);
@@ -182,8 +182,8 @@ struct Balance {
 };
 
 /// Springs and depth when the body deflects under their loads l: z = free - C (l(z) - known), by
-/// Broyden's method (Dennis and Schnabel, Numerical Methods for Unconstrained Optimization, 8) from
-/// springs that all stick.
+/// Broyden's method (Dennis and Schnabel, Numerical Methods for Unconstrained Optimization, 8),
+/// which begins with springs that all stick.
 /// @param last  of the springs in the last step, N and N m, on the material
 /// @return the loads beyond those under which the body had deflected
 ContactLoads settle(const Balance& balance, const OwnAnswer& body, const glm::dvec3& last,
@@ -238,7 +238,7 @@ ContactLoads settle(const Balance& balance, const OwnAnswer& body, const glm::dv
   return turns * (load - known);
 }
 
-/// The contact and its springs in this step, with the body's answer to them where it is known.
+/// The contact and its springs in this step, with the body's reaction where that is known.
 Outcome find_outcome(const Model& model, const State& state, std::uint32_t region,
                      const Springs& springs) {
   Outcome outcome;
@@ -339,7 +339,7 @@ constexpr System<StepContext> kMdrSolve[] = {
 
 }  // namespace
 
-// The springs are round: they need no grid that turns with what sticks.
+// The springs are axisymmetric: they need no grid that turns with the sticking material.
 const ContactLaw kMdrLaw{
     .model = ContactModel::kMdr,
     .moves_own_support = true,

@@ -41,7 +41,7 @@ double approach(const glm::dvec2& load, const glm::dvec2& weights, const glm::dv
 LimitCurve make_limit_curve() {
   LimitCurve curve;
   for (int k = 0; k <= kLimitCurveSegments; ++k) {
-    // Equal steps of the slip's direction, scaled so that the points lie about evenly.
+    // Equal steps of the slip's direction, scaled so that the points are about evenly spaced.
     const double angle = 0.5 * pi * k / kLimitCurveSegments;
     curve.points[static_cast<std::size_t>(k)] = k == 0 ? glm::dvec2(1.0, 0.0)
                                                 : k == kLimitCurveSegments
@@ -53,7 +53,8 @@ LimitCurve make_limit_curve() {
 
 glm::dvec2 nearest_inside(const LimitCurve& curve, const glm::dvec2& load,
                           const glm::dvec2& weights, std::size_t& segment) {
-  // On a convex curve the distance falls and then rises: downhill to the segment where it turns.
+  // On a convex curve the distance first falls and then rises: search downhill for the segment
+  // where it turns.
   std::size_t low = std::min(segment, std::size_t{kLimitCurveSegments - 1});
   while (low + 1 < kLimitCurveSegments &&
          approach(load, weights, curve.points[low + 1], curve.points[low + 2]) > 0.0) {
@@ -65,7 +66,7 @@ glm::dvec2 nearest_inside(const LimitCurve& curve, const glm::dvec2& load,
   segment = low;
   const glm::dvec2& from = curve.points[low];
   const glm::dvec2 along = curve.points[low + 1] - from;
-  // The way from pure sliding to pure spinning has the inside on its left.
+  // Going from pure sliding to pure spinning, the inside of the curve is on the left.
   const glm::dvec2 offset = load - from;
   if (along.x * offset.y - along.y * offset.x >= 0.0) {
     return load;
@@ -78,7 +79,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Loads at slip of the springs at x = place * a, per length: of the tangential one over mu F, of
+/// Loads of the springs at x = place * a in full slip, per length: the tangential one over mu F,
 /// the torsional one over (4 / pi) mu F a.
 struct SpringLoads {
   double shift = 0.0;
@@ -96,10 +97,10 @@ RingIntegrals ring_integrals_at(double place) {
   return {std::comp_ellint_1(modulus), std::comp_ellint_2(modulus)};
 }
 
-/// Of one pressure. Tangential: mu times the normal line load, 3 F / (2 a) (1 - x^2 / a^2) or F / a
-/// over the half line. Torsional: 16 G x^2 times (mu / 2 G) times the Abel transform of the
-/// pressure, which gives K - E or K. The middle of a long contact holds on longer than that of a
-/// round one of equal torque: a power of K - E, fitted to a boundary element solution
+/// For one pressure. Tangential: mu times the normal line load, 3 F / (2 a) (1 - x^2 / a^2) or F /
+/// a over the half line. Torsional: 16 G x^2 times (mu / 2 G) times the Abel transform of the
+/// pressure, which gives K - E or K. The middle of a long contact sticks for longer than that of a
+/// round one of equal torque: modelled by a power of K - E, fitted to a boundary element solution
 /// (docs/models.md).
 struct Loads {
   double flat_share = 0.0;
@@ -131,15 +132,15 @@ Loads make_loads(double flat_share, double power, const std::vector<RingIntegral
   return {flat_share, power, 3.0 * pi * pi / 64.0 / sum};  // the integral at power 1
 }
 
-/// Share of all friction that has slipped once so many pieces have: finer where the first and the
-/// last springs slip, where the exact curve bends most.
+/// Share of the whole friction that has slipped when so many pieces have: finer where the first and
+/// the last springs slip, where the exact curve bends most.
 double slipped_share(std::size_t pieces) {
   return smooth_step(static_cast<double>(pieces) / static_cast<double>(kMdrPieces));
 }
 
 /// Two places on a piece, t = -1 to 1, whose linear functions (1 at the one, 0 at the other) are
-/// orthogonal for the weight (middle + half t)^2: then what a linear deflection stores is what the
-/// two springs store. The outer one may be chosen.
+/// orthogonal with the weight (middle + half t)^2: so a linear deflection stores the same energy as
+/// the two springs. The outer place is free.
 struct TwoSprings {
   double inner = 0.0;         // t
   double outer_weight = 0.0;  // of the integral of the weight
@@ -158,8 +159,8 @@ double cube(double x) {
   return x * x * x;
 }
 
-/// Places and stiffnesses of the springs from the pieces' edges and, in torsion, from where the
-/// outer spring of each is.
+/// Places and stiffnesses of the springs, from the pieces' edges and, in torsion, from the place of
+/// the outer spring of each piece.
 void place_springs(MdrPlaces& places) {
   for (std::size_t k = 0; k < kMdrPieces; ++k) {
     const std::size_t outer = 2 * k;
@@ -187,7 +188,7 @@ void set_haste(MdrPlaces& places) {
   }
 }
 
-/// The edges, rim first, outside of which given shares of all load lie.
+/// The edges, from the rim, outside of which given shares of the whole load lie.
 /// @param beyond  (n + 1) load beyond i / n
 std::array<double, kMdrPieces + 1> edges_of(const std::vector<double>& beyond) {
   std::array<double, kMdrPieces + 1> edges{};
@@ -204,7 +205,7 @@ std::array<double, kMdrPieces + 1> edges_of(const std::vector<double>& beyond) {
   return edges;
 }
 
-/// Which part of a piece's torsional load its outer spring holds when it is at t = `outer`.
+/// The share of a piece's torsional load that its outer spring carries when it is at t = `outer`.
 double outer_turn_load(const Loads& loads, double outer, double middle, double half) {
   const TwoSprings springs = springs_with(outer, middle, half);
   const auto limit = [&](double t) {
@@ -215,15 +216,16 @@ double outer_turn_load(const Loads& loads, double outer, double middle, double h
   return load / (load + (1.0 - springs.outer_weight) * limit(springs.inner));
 }
 
-/// Puts the torsional springs of piece k where they divide its load as the tangential ones do. The
-/// farther out the outer one, the less it holds: by halving.
+/// Places the torsional springs of piece k so that they divide its load as the tangential ones do.
+/// The farther out the outer spring, the less it carries: by bisection.
 void divide_piece(const Loads& loads, std::size_t k, MdrPlaces& places) {
   const double shift_outer = loads.at(places.shift.place[2 * k]).shift;
   const double shift_inner = loads.at(places.shift.place[2 * k + 1]).shift;
   const double wanted = shift_outer / (shift_outer + shift_inner);
   const double middle = 0.5 * (places.turn.edges[k] + places.turn.edges[k + 1]);
   const double half = 0.5 * (places.turn.edges[k] - places.turn.edges[k + 1]);
-  // Both springs stay within the piece, the inner one off the centre, where the limit has none.
+  // Both springs stay within the piece, the inner one off the centre, where the friction limit has
+  // no load.
   double low = -1.0;
   double high = 1.0 - 1e-9;
   for (int halving = 0; halving < 50; ++halving) {

@@ -20,15 +20,15 @@ namespace {
 
 constexpr int kMoments = 15;  // of x^p y^q with p + q <= 4
 
-/// Where x^p y^q is in the list of moments: by degree, then by q.
+/// Index of x^p y^q in the list of moments: by degree, then by q.
 constexpr std::size_t moment(int p, int q) {
   const int degree = p + q;
   return static_cast<std::size_t>(degree * (degree + 1) / 2 + q);
 }
 
-/// PlaceMoments of the cells' places, in half grid sizes, and of their depths: by weight_of and, of
-/// the area, by the share in contact alone. Of the middle by that share and the square of the
-/// depth.
+/// Moments of the cells' places, in half grid sizes, and of their depths. Those for the paraboloid
+/// have the weight weight_of; those of the area the share in contact; those of the middle that
+/// share times the square of the depth.
 struct PlaceMoments {
   std::array<double, kMoments> of_place{};
   std::array<double, 6> of_depth{};
@@ -45,9 +45,9 @@ double largest_depth(std::span<const CellGeometry> cells) {
   return most;
 }
 
-/// Of a cell in contact, whose depth is `relative` of the largest. The rim's cells, whose middles
-/// may not touch, count little, but alone say how a contact falls off that is narrower than two
-/// cells and lies across them: without them it would seem flat.
+/// Weight of a cell in contact, whose depth is `relative` of the largest. Rim cells, whose middles
+/// may not touch, count little; but in a contact narrower than two cells they alone show how it
+/// falls off across. Without them it would seem flat.
 double weight_of(double relative) {
   constexpr double kRim = 0.01;
   const double deep = std::max(relative, 0.0);
@@ -61,7 +61,7 @@ PlaceMoments add_cells(std::uint32_t side, std::span<const CellGeometry> cells, 
   std::uint32_t cell = 0;
   for (std::uint32_t j = 0; j < side; ++j) {
     const double y = (static_cast<double>(j) + 0.5) * step - 1.0;
-    // PlaceMoments of one row in x, which y then multiplies.
+    // Moments of one row in x, to be multiplied by powers of y.
     std::array<double, 5> row{};
     std::array<double, 3> row_depth{};
     std::array<double, 3> row_area{};
@@ -115,7 +115,7 @@ Vector6 solve(const PlaceMoments& sums) {
       matrix(a, b) = sums.of_place[moment(pa[0] + pb[0], pa[1] + pb[1])];
     }
   }
-  // Few cells, or cells in a row, leave some of it open: those stay near zero.
+  // Few cells, or cells in a line, leave some coefficients undetermined: those stay near zero.
   matrix.diagonal().array() += 1e-12 * matrix(0, 0);
   return solve_ldlt(matrix, right);
 }
@@ -160,9 +160,9 @@ struct PrincipalAxis {
   double extent = 0.0;  // m
 };
 
-/// How well the cells show the apex along a principal axis, 0 to 1. A whole paraboloid's depth
-/// falls off by 2 bend spread = depth from its apex to its rim; a flat contact that an edge ends
-/// falls off by nothing, and gradient / bend would be anywhere.
+/// How well the cells show the apex along a principal axis, 0 to 1. The depth of a whole paraboloid
+/// falls by 2 bend spread = the depth of its apex from there to its rim. That of a flat contact,
+/// which ends at an edge, does not fall, and gradient / bend would be arbitrary.
 /// @param bend    1/m, curvature
 /// @param spread  m^2, variance of the place over the area
 double apex_share(double bend, double spread, double depth) {
@@ -171,14 +171,14 @@ double apex_share(double bend, double spread, double depth) {
   return smooth_step((2.0 * bend * spread / depth - kUnknown) / (kShown - kUnknown));
 }
 
-// How far a stamp's force goes when it tilts, over what the depth's squares say. Flat and round
-// (2/3) a^2 over a^2 / 2 (Johnson, 1985, 3.5). Of a cylinder between two edges the squares say 5/3
-// of Winkler's foundation; `patch` says 1.3 of it where the contact's length is 10 of its widths
-// and 1.4 at 5.
+// How far the force of a tilted flat punch moves, over what the squares of the depth give. Flat and
+// round: (2/3) a^2 over a^2 / 2 (Johnson, 1985, 3.5). For a cylinder between two edges the squares
+// give 5/3 of Winkler's foundation; `patch` gives 1.3 of it where the contact is 10 times as long
+// as wide, 1.4 where 5 times.
 constexpr double kFlatStamp = 4.0 / 3.0;
 constexpr double kCylinder = 0.8;
 
-/// The apex of a paraboloid of two cells' width lies a quarter deeper than the nearest centres.
+/// The apex of a paraboloid two cells wide is a quarter deeper than the nearest centres.
 constexpr double kBetweenCells = 1.25;
 
 }  // namespace
@@ -233,8 +233,8 @@ ContactShape fit_contact_shape(const RegionFrame& frame, std::uint32_t side,
   shape.curvature_1 = std::max(principal.eigenvalues()(0), 0.0);
   shape.curvature_2 = std::max(principal.eigenvalues()(1), 0.0);
   shape.apex = {apex.x(), apex.y()};
-  // Where the cells do not say much (a thin contact that lies across them), the paraboloid may go
-  // anywhere beyond them, but no deeper than they lie by what may be between two of them.
+  // Where the cells show little (a thin contact lies across them) the paraboloid may do anything
+  // outside of them, but its depth is limited to what may lie between two cells.
   shape.depth = std::min(fit.at(deepest), kBetweenCells * largest);
   return shape;
 }
@@ -243,8 +243,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// What does not depend on how the contact was found: stiffnesses of an ellipse that presses with
-/// `round_share` of Hertz' pressure.
+/// The part that does not depend on how the contact was found: stiffnesses of an ellipse that
+/// presses with `round_share` of Hertz' pressure.
 /// @param axes  b / a
 void set_stiffnesses(double axes, const EllipseShares& shares, double round_share,
                      double poisson_ratio, RoundContact& contact) {
@@ -254,10 +254,10 @@ void set_stiffnesses(double axes, const EllipseShares& shares, double round_shar
   contact.torque_share = shares.torque;
 }
 
-/// Of shapes that are known: Hertz' ellipse, and as much less as their surfaces part beyond the
-/// paraboloid. A round profile r^2 / (2 R) + c r^4 has g = x^2 / R + (8/3) c x^4, and so
-/// F = 2 E* (d a - a^3 / (3 R) - (8/15) c a^5) with g(a) = d (Popov & Hess, 2015, ch. 3); its
-/// r^4 term here is the mean over the ellipse's rim.
+/// For known shapes: Hertz' ellipse, less what their surfaces lie beyond the paraboloid. A round
+/// profile r^2 / (2 R) + c r^4 has g = x^2 / R + (8/3) c x^4, and so F = 2 E* (d a - a^3 / (3 R) -
+/// (8/15) c a^5) with g(a) = d (Popov & Hess, 2015, ch. 3); its r^4 term here is the mean over the
+/// ellipse's rim.
 RoundContact contact_of_shapes(const SmoothContact& smooth, const Elasticity& elasticity) {
   RoundContact contact;
   if (smooth.depth <= 0.0) {
@@ -281,10 +281,10 @@ RoundContact contact_of_shapes(const SmoothContact& smooth, const Elasticity& el
   return contact;
 }
 
-/// From the cells: a paraboloid's contact. Where the overlap ends before the contact's own edge
-/// would be, it ends there, and the rest of the depth presses like a flat stamp: a half-space gives
-/// way to a stamp by d at 2 E* a d, to a ball at (4/3) E* a d, and to a cylinder between two edges
-/// in between.
+/// From the cells: the contact of a paraboloid. Where the overlap ends before the paraboloid's
+/// contact would, the contact ends there, and the rest of the depth presses like a flat punch: a
+/// half-space resists a flat punch with 2 E* a d, a ball with (4/3) E* a d, and a cylinder between
+/// two edges with a force between these.
 RoundContact contact_of_cells(const Model& model, const State& state, std::uint32_t region,
                               const Elasticity& elasticity) {
   const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
@@ -299,7 +299,7 @@ RoundContact contact_of_cells(const Model& model, const State& state, std::uint3
   contact.center = shape.apex;
   contact.depth = shape.depth;
   const double radius_of_area = std::sqrt(overlap.area / pi);
-  // No paraboloid so flat that its contact would reach beyond the overlap.
+  // No paraboloid so flat that its contact would be larger than the overlap.
   const double least_1 = shape.depth / (shape.extent_1 * shape.extent_1);
   const double least_2 = shape.depth / (shape.extent_2 * shape.extent_2);
   const double bend_1 = std::max(shape.curvature_1, least_1);
@@ -308,7 +308,7 @@ RoundContact contact_of_cells(const Model& model, const State& state, std::uint3
   const double along = std::min(ellipse.major, bend_1 < bend_2 ? shape.extent_1 : shape.extent_2);
   const double across = std::min(ellipse.minor, bend_1 < bend_2 ? shape.extent_2 : shape.extent_1);
   contact.radius = std::min(std::sqrt(along * across), radius_of_area);
-  // How much of each axis' curvature is the shapes' own.
+  // How much of each axis' curvature comes from the shapes.
   const double round_share = 0.5 * (shape.curvature_1 / bend_1 + shape.curvature_2 / bend_2);
   const double axes = std::clamp(across / along, 0.01, 1.0);
   const EllipseShares shares = axes < 1.0 ? ellipse_shares(axes) : EllipseShares{};
@@ -319,7 +319,7 @@ RoundContact contact_of_cells(const Model& model, const State& state, std::uint3
   return contact;
 }
 
-/// Between the two, where the shapes say only part of it.
+/// Mixes the two where the shapes determine only part of the contact.
 RoundContact mix(const RoundContact& cells, const RoundContact& shapes, double share) {
   RoundContact contact;
   contact.center = glm::mix(cells.center, shapes.center, share);
@@ -349,7 +349,7 @@ RoundContact round_contact(const Model& model, const State& state, std::uint32_t
   if (smooth.share > 0.0) {
     contact = mix(contact, contact_of_shapes(smooth, elasticity), smooth.share);
   }
-  // A body model in series has the body's thickness itself.
+  // A body model in series already has the thickness of the body.
   const bool in_series = body_law_of(model, identity.body).moves_as_a_whole;
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const double thickness = in_series

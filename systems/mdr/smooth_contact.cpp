@@ -56,7 +56,7 @@ PlacedPart place_part(const ShapePart& part, const Pose& owner) {
           to_part * (owner.position - part.pose.position)};
 }
 
-/// The nearest of the parts to a point of the grid, and how near the next one is.
+/// The part nearest to a point of the grid, and the distance of the next one.
 struct Nearest {
   std::uint32_t row = kNoRow;
   double other = 1e300;  // m
@@ -82,7 +82,7 @@ Nearest nearest_part(const Model& model, Range parts, const Pose& grid, const gl
   return nearest;
 }
 
-/// Two surfaces at the points that lie deepest in each other, in the grid's frame.
+/// Two surfaces at the points where they are deepest in each other, in the grid's frame.
 struct CommonNormal {
   double depth = 0.0;        // m
   glm::dvec3 on_tool{0.0};   // m
@@ -103,14 +103,14 @@ glm::dmat2 in_tangents(const PlacedPart& part, const glm::dmat3& curvature,
   return {glm::dot(one, curvature * one), mixed, mixed, glm::dot(two, curvature * two)};
 }
 
-/// The tangents next to the grid's axes.
+/// Tangents close to the grid's axes.
 void set_tangents(CommonNormal& at) {
   const glm::dvec3 x(1.0, 0.0, 0.0);
   at.across_1 = glm::normalize(x - at.normal * at.normal.x);
   at.across_2 = glm::cross(at.normal, at.across_1);
 }
 
-/// Newton's method for the point of the tool's surface at which the normals are opposite.
+/// Newton's method for the point of the tool's surface at which the two normals are opposite.
 /// @param start  m, grid
 /// @param reach  m: farthest step
 std::optional<CommonNormal> common_normal(const PlacedPart& tool, const PlacedPart& body,
@@ -155,7 +155,7 @@ std::optional<CommonNormal> common_normal(const PlacedPart& tool, const PlacedPa
   return at;
 }
 
-/// How far the nearest end of a piece is, over how far the overlap reaches towards it.
+/// Distance to the nearest end of a smooth piece, over the overlap's reach in that direction.
 /// @param inverse  of the curvature: the overlap is s' C s / 2 < depth
 double room(const PlacedPart& part, const SurfacePiece& piece, const CommonNormal& at,
             const glm::dmat2& inverse) {
@@ -164,7 +164,7 @@ double room(const PlacedPart& part, const SurfacePiece& piece, const CommonNorma
     const glm::dvec3 towards = border.direction * part.turn;
     const glm::dvec2 along(glm::dot(towards, at.across_1), glm::dot(towards, at.across_2));
     const double extent = std::sqrt(2.0 * at.depth * glm::dot(along, inverse * along));
-    // Written so that NaN is no room.
+    // Written so that NaN means no room.
     least = std::min(least, extent == 0.0 ? 1e300 : extent > 0.0 ? border.distance / extent : 0.0);
   }
   return least;
@@ -190,8 +190,8 @@ Principal principal(const glm::dmat2& curvature) {
   return result;
 }
 
-/// Mean over the rim of Hertz' ellipse of how far the surfaces part beyond their paraboloid, over
-/// how far the paraboloid does: of a sphere (a / 2 R)^2.
+/// How far the surfaces lie beyond their paraboloid, over the paraboloid itself, averaged over the
+/// rim of Hertz' ellipse: (a / 2 R)^2 for a sphere.
 double beyond_paraboloid(const PlacedPart& tool, const PlacedPart& body, const CommonNormal& at,
                          const Principal& bend, const EllipticContact& ellipse) {
   constexpr int kPlaces = 8;
@@ -214,7 +214,7 @@ double beyond_paraboloid(const PlacedPart& tool, const PlacedPart& body, const C
   return sum / kPlaces / paraboloid - 1.0;
 }
 
-/// What is known of a region's contact from its shapes.
+/// What a region's shapes tell about its contact.
 /// @param at  out: the deepest place, when share > 0
 SmoothContact find_contact(const Grid& grid, const Overlap& overlap,
                            std::optional<CommonNormal>& at) {
@@ -240,18 +240,18 @@ SmoothContact find_contact(const Grid& grid, const Overlap& overlap,
     return contact;
   }
   const Principal bend = principal(at->curvature);
-  // A cylinder on a plane does not end along its axis, where rounding bends it to either side: its
-  // extent would be anything, and that it ends nowhere.
+  // The overlap of a cylinder on a plane has no end along its axis, where rounding bends it either
+  // way: its extent would be arbitrary.
   if (!(bend.small > kFlatCurvature * bend.large)) {
     return contact;
   }
-  // Along a cylinder the way to the deepest place is anything, too: what it leads to is another
-  // place where the normals are opposite, if the cells lie deeper.
+  // Along a cylinder the deepest place is arbitrary, too. If the cells are deeper, it is another
+  // place where the normals are opposite.
   const double deepest =
       rising(at->depth, kOther * overlap.largest_depth, kDeepest * overlap.largest_depth);
   contact.depth = at->depth;
   if (contact.depth <= 0.0) {
-    // They do not touch, or just.
+    // They do not touch, or hardly.
     contact.share = overlap.largest_depth < kJust * size ? 1.0 : 0.0;
     return contact;
   }
@@ -276,8 +276,8 @@ SmoothContact find_contact(const Grid& grid, const Overlap& overlap,
   return contact;
 }
 
-/// The frame's normal, and the overlap's points and depth, go to what the shapes say as far as it
-/// is known.
+/// Moves the frame's normal, and the overlap's points and depth, to what the shapes give, in
+/// proportion to how well they determine it.
 /// @return the deepest place on the body, m, grid
 glm::dvec2 move_region_to(const CommonNormal& at, double share, RegionFrame& frame,
                           Overlap& overlap) {

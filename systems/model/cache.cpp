@@ -44,7 +44,7 @@ bool write_file(int descriptor, std::span<const std::byte> bytes) {
     close(descriptor);
     return false;
   }
-  // No fsync: a file torn by a power cut fails its checksum and is made anew.
+  // No fsync: a file damaged by a power cut fails its checksum and is made again.
   const FileHeader header = header_of(bytes);
   const bool written = std::fwrite(&header, sizeof(header), 1, file.get()) == 1 &&
                        (bytes.empty() ||  // an empty span may have no address
@@ -146,7 +146,7 @@ bool store_cached(const CacheKey& key, std::span<const std::byte> bytes) {
 
 namespace {
 
-// Of the bytes in the cache: raise it when the same mesh gives others.
+// For the bytes in the cache: raise it when the same mesh gives others.
 constexpr std::uint32_t kFieldVersion = 1;
 
 }  // namespace

@@ -25,19 +25,19 @@ namespace {
 // (docs/models.md, "Which model"; tests/app/report_test.cpp holds the report to them).
 constexpr double kMdrRoundError = 0.003;  // a round contact that slides or turns
 constexpr double kMdrLongError = 0.025;   // a long one
-// One that does both at once: found not by the report but against patch, where the directions of
-// slip and turn change in turn (patch_mdr_ball_test.cpp).
+// Of a contact that does both at once. Measured not by the report but against patch, where the
+// directions of slip and turn change in turn (patch_mdr_ball_test.cpp).
 constexpr double kMdrCombinedError = 0.07;
-// Times the contact radii rolled, at most all: mdr's springs stay with the contact, while the
-// material leaves it with what it holds (mdr_rolling_test.cpp).
+// Times the contact radii rolled, at most the whole torque: mdr's springs stay with the contact,
+// while the rolling material takes its deflection along (mdr_rolling_test.cpp).
 constexpr double kMdrRollingError = 0.95;
 constexpr double kMdrCoupling = 0.095;    // times 1 - 2 nu: pressure moves the surface sideways
 constexpr double kMdrWideError = 0.095;   // times contact radius over body depth: shape unknown
 constexpr double kFiniteBodyError = 1.1;  // of the force, times contact radius over body depth
-// Of contact model patch at the cells that it is given for contacts with edges that are long, like
-// a blade's that turns by 90 degrees, against finer grids: 0.05 to 0.06 for 8 x 1.2 mm on gel, as
-// rounding has it, against 2500 cells (long_contact_test.cpp), 0.02, 0.04 and 0.04 for 3 : 1, 6 : 1
-// and 10 : 1 on a half-space, 0.06 for 15 : 1; 0.006 to 0.03 on average.
+// Of contact model patch with the cells that it gets for long contacts with edges, such as a
+// blade's that turns by 90 degrees. Against finer grids: 0.05 to 0.06 for 8 x 1.2 mm on gel,
+// depending on rounding, against 2500 cells (long_contact_test.cpp); 0.02, 0.04 and 0.04 for 3 : 1,
+// 6 : 1 and 10 : 1 on a half-space, 0.06 for 15 : 1; 0.006 to 0.03 on average.
 constexpr double kLongEdgedError = 0.07;
 constexpr double kSlenderEdgedError = 0.09;
 constexpr double kSlender = 8.0;              // times the width
@@ -46,7 +46,7 @@ constexpr double kSlidesWhileTurning = 0.05;  // of the radius, between two expe
 constexpr double kTellsOfRolling = 0.02;      // of the torque: less is not worth a word
 constexpr double kTurnsWhileSliding = 1e-3;   // rad between two expected poses: less is no turn
 
-/// What is found at one time.
+/// A contact found at one time.
 struct Touch {
   std::vector<glm::dvec3> points;  // m, body: samples inside the body
   double depth = 0.0;              // m
@@ -58,7 +58,7 @@ struct Touch {
   double rolled = 0.0;  // m: the farthest of the places
 };
 
-/// That part on whose surface a point of its owner's frame lies, or next to it.
+/// The part on whose surface, or nearest to whose surface, a point of its owner's frame lies.
 const ShapePart& part_at(const Model& model, Range parts, const glm::dvec3& point) {
   std::uint32_t at = parts.first;
   double nearest = 1e300;
@@ -72,8 +72,8 @@ const ShapePart& part_at(const Model& model, Range parts, const glm::dvec3& poin
   return model.parts.at<ShapePart>(at);
 }
 
-/// Whether the body's surface has an edge nearer to `point` than the next sample, so that it cuts
-/// off what touches there.
+/// Whether the body's surface has an edge that is nearer to `point` than the next sample, so that
+/// it cuts the contact off.
 /// @param point    m, body
 /// @param spacing  m, of the samples
 bool near_edge(const ShapePart& part, const glm::dvec3& point, double spacing) {
@@ -90,7 +90,7 @@ bool makes_long_contacts(ShapeKind kind) {
          kind == ShapeKind::kCapsule;
 }
 
-/// @param before  of the pose before
+/// @param before  at the pose before
 void touch_with_tool(const Model& model, std::uint32_t body, std::uint32_t tool, const Pose& pose,
                      std::span<const TouchedPlace> before, Touch& touch) {
   const Pose& body_pose = model.bodies.at<Pose>(body);
@@ -135,14 +135,14 @@ Touch touch_with_tools(const Model& model, std::uint32_t body, std::span<const P
   return touch;
 }
 
-/// Distance from `point` to what holds the body, m.
+/// Distance from `point` to the body's fixed part, m.
 double distance_to_fixed(const Model& model, std::uint32_t body, const glm::dvec3& point) {
   const FixedRegion& fixed = model.bodies.at<FixedRegion>(body);
   return fixed.kind == FixedKind::kFace ? std::abs(glm::dot(point - fixed.point, fixed.normal))
                                         : glm::distance(point, fixed.point);
 }
 
-/// Widest half extent of the groups of points, and how many groups there are.
+/// Widest half extent of the groups of points, and the number of groups.
 std::pair<double, std::uint32_t> extent_of_groups(std::span<const glm::dvec3> points,
                                                   double threshold) {
   std::vector<std::uint32_t> order(points.size());
@@ -165,7 +165,7 @@ std::pair<double, std::uint32_t> extent_of_groups(std::span<const glm::dvec3> po
   return {radius, count};
 }
 
-/// Length over width of what touches; 1 where the points are too few to tell.
+/// Length over width of the contact; 1 where the points are too few to tell.
 double elongation_of(const Touch& touch) {
   if (touch.points.size() < kFewestPoints) {
     return 1.0;
@@ -203,7 +203,7 @@ bool slides_while_turning(const Model& model, std::uint32_t body, const Touch& b
 
 std::string percent(double share) {
   char text[32];
-  // Two digits; %g would write a hundred with an exponent.
+  // With two digits; %g would write a hundred with an exponent.
   std::snprintf(text, sizeof text, share < 0.995 ? "%.2g %%" : "%.0f %%", 100.0 * share);
   return text;
 }
@@ -212,7 +212,7 @@ double rolling_error(const ExpectedContact& contact) {
   return std::min(1.0, kMdrRollingError * contact.rolled);
 }
 
-/// Cheapest contact model within the tolerance.
+/// The cheapest contact model within the tolerance.
 std::pair<ContactModel, std::string> auto_contact(const ExpectedContact& contact, double tolerance,
                                                   double poisson_ratio) {
   const std::string within = ", tolerance " + percent(tolerance);

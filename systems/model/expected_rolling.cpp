@@ -14,8 +14,8 @@
 namespace torsion {
 namespace {
 
-/// The point of a piece whose outward normal is `direction`; along axes in which it is straight
-/// that of `mean`. All in the part's frame.
+/// The point of a piece whose outward normal is `direction`; along axes in which the piece is
+/// straight, the point of `mean`. In the part's frame.
 glm::dvec3 outermost(const SurfacePiece& piece, const glm::dvec3& direction,
                      const glm::dvec3& mean) {
   double square = 0.0;
@@ -34,7 +34,7 @@ glm::dvec3 outermost(const SurfacePiece& piece, const glm::dvec3& direction,
   return point;
 }
 
-/// Moves a place from the mean of its points to where the part lies deepest.
+/// Moves a place from the mean of its points to where the part is deepest.
 void find_deepest(const Model& model, std::uint32_t body, const Pose& pose,
                   const TouchingPoint& deepest, TouchedPlace& place) {
   constexpr int kSteps = 4;  // the body's normal is that of the point before
@@ -61,7 +61,7 @@ void find_deepest(const Model& model, std::uint32_t body, const Pose& pose,
   place.on_body -= distance.value * distance.gradient;
 }
 
-/// Groups' places, as if each began.
+/// The groups' places, as if each began now.
 std::vector<TouchedPlace> new_places(const Model& model, std::uint32_t body, std::uint32_t tool,
                                      const Pose& pose, std::span<const TouchingPoint> points) {
   std::vector<glm::dvec3> on_body;
@@ -97,7 +97,7 @@ std::vector<TouchedPlace> new_places(const Model& model, std::uint32_t body, std
   return places;
 }
 
-/// That of the same tool; null where it has none.
+/// The place of the same tool, or null.
 const TouchedPlace* nearest_of(std::span<const TouchedPlace> places, const TouchedPlace& place) {
   const TouchedPlace* nearest = nullptr;
   for (const TouchedPlace& other : places) {

@@ -18,7 +18,7 @@ namespace torsion {
 namespace {
 
 constexpr std::uint32_t kSamplesPerTool = 2000;
-// r_th over the mean distance to a sample's farthest neighbour: neighbours over one contact are
+// r_th over the mean distance to a sample's farthest neighbour: neighbours in one contact are
 // always linked, and two contacts a few samples apart are not.
 constexpr double kThresholdOverSpacing = 1.2;
 constexpr double kHighestRate = 1e6;  // Hz
@@ -74,7 +74,7 @@ Result<Built> build(const SceneDescription& scene, const PrepareOptions& options
   return built;
 }
 
-/// Of all tables but those that depend on the models.
+/// Of all tables that do not depend on the models.
 Capacities capacities_of(const SceneDescription& scene, const Built& built) {
   Capacities needed;
   needed.bodies = static_cast<std::uint32_t>(scene.bodies.size());
@@ -170,7 +170,7 @@ void append_body(Model& model, const BodyDescription& body, const Built& built,
   model.bodies.at<Bounds>(row) = bounds_of(body.parts);
 }
 
-/// All that knows nothing of models: shapes, bodies, tools.
+/// The tables that do not depend on models: shapes, bodies, tools.
 void append_scene(Model& model, const SceneDescription& scene, const Built& built) {
   std::size_t next_field = 0;
   for (const BodyDescription& body : scene.bodies) {
@@ -194,8 +194,8 @@ std::vector<ModelChoice> choose_all(const Model& model, const PrepareOptions& op
   return choices;
 }
 
-/// Body model compliance's anchors and matrices of all bodies that have it; empty for the others.
-/// Where it cannot be had and nobody insists on it, the choice becomes skeleton.
+/// Anchors and matrices of all bodies with body model compliance; empty for the others. Where it
+/// can't be built and was not demanded, the choice becomes skeleton.
 Result<std::vector<PreparedCompliance>> build_compliances(const Model& model,
                                                           const SceneDescription& scene,
                                                           std::span<ModelChoice> choices,
@@ -265,7 +265,7 @@ void append_influences(Model& model, std::uint32_t row, const BodyModels& models
                          [](double value) { return Influence{value}; });
 }
 
-/// What the chosen models of a body need.
+/// Appends what the chosen models of a body need.
 void append_models(Model& model, std::uint32_t row, const BodyDescription& body,
                    const PreparedCompliance& compliant, ModelChoice& choice) {
   OwnedRows& owned = model.bodies.at<OwnedRows>(row);

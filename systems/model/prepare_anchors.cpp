@@ -21,7 +21,7 @@ using std::numbers::pi;
 constexpr std::size_t kCandidates = 4096;
 constexpr std::size_t kRays = 48;
 
-/// What every function below reads of one body.
+/// What the functions below read of a body.
 struct Body {
   const Model& model;
   Range parts;
@@ -36,8 +36,8 @@ bool in_fixed_volume(const Body& body, const glm::dvec3& point) {
                      [&](const FixedVolume& volume) { return in_volume(volume, point); });
 }
 
-/// A point of the surface that belongs to the fixed region, or lies so near that a beam to it means
-/// nothing.
+/// Whether a point of the surface belongs to the fixed region, or is so near to it that a beam
+/// there would mean nothing.
 bool is_held(const Body& body, const glm::dvec3& point) {
   const glm::dvec3 from_fixed = point - body.fixed.point;
   if (body.fixed.kind == FixedKind::kFace) {
@@ -46,10 +46,9 @@ bool is_held(const Body& body, const glm::dvec3& point) {
   return glm::length(from_fixed) < 0.05 * body.size || in_fixed_volume(body, point);
 }
 
-// ------------------------------------------------------------------------------------------ where
-// the anchors are
+// Places of the anchors.
 
-/// Moves a point of the file's mesh onto the surface that contact uses; nullopt when that is not
+/// Moves a point of the file's mesh onto the surface that contact uses; nullopt if that is not
 /// near.
 std::optional<glm::dvec3> on_surface(const Body& body, glm::dvec3 point) {
   for (int i = 0; i < 3; ++i) {
@@ -66,8 +65,8 @@ std::optional<glm::dvec3> on_surface(const Body& body, glm::dvec3 point) {
   return point;
 }
 
-/// The k-th point of the two-dimensional sequence with the plastic number's ratios: as even as few
-/// points can be.
+/// The k-th point of the two-dimensional sequence with the plastic number's ratios, which is evenly
+/// spread even for few points.
 glm::dvec2 even_point(std::size_t k) {
   const double u = 0.5 + 0.7548776662466927 * static_cast<double>(k);
   const double v = 0.5 + 0.5698402909980532 * static_cast<double>(k);
@@ -157,19 +156,16 @@ std::vector<glm::dvec3> choose_anchors(const Body& body, const std::vector<glm::
   return anchors;
 }
 
-// ---------------------------------------------------------------------------------------------------
-// the sections
-
 /// Where a ray of a section leaves the body.
 struct RayEnd {
   double distance = 0.0;   // m
   glm::dvec2 normal{0.0};  // of the outline there: unit, section plane; zero where not known
 };
 
-/// Follows `direction` from a point inside the body to its surface, at most `reach` far. The
-/// distance is followed by steps that Newton's method lengthens, then the crossing is bracketed.
-/// Interior distances are concave in convex bodies, so a lengthened step can at most land outside,
-/// where the bracket catches it.
+/// Follows `direction` from a point inside the body to its surface, at most `reach` far. Steps by
+/// the distance, lengthened by Newton's method, are followed by bracketing. Interior distances of
+/// convex bodies are concave: there a lengthened step can only end outside, which the bracket
+/// corrects.
 RayEnd follow_ray(const Body& body, const glm::dvec3& start, const glm::dvec3& direction,
                   const TransverseAxes& axes, double reach) {
   const double smallest_step = 1e-3 * reach;
@@ -273,10 +269,10 @@ BeamSection scaled(const BeamSection& section, double factor) {
       section.bending_xy * factor, section.torsion_constant * factor, section.polar * factor};
 }
 
-/// Sections of one beam. A station where the straight beam is outside the body (it need not be
-/// convex) takes the section of the nearest station that is inside, the rootward one first; a beam
-/// that is never inside gets a thin round rod. What lies in a fixed volume is made so stiff that it
-/// adds nothing.
+/// Sections of one beam. Where the straight beam is outside the body (which need not be convex), a
+/// station takes the section of the nearest one inside, preferring the one towards the root; a beam
+/// that is never inside gets a thin round rod. Sections in a fixed volume are made so stiff that
+/// they add nothing.
 void cut_beam(const Body& body, const glm::dvec3& anchor, const glm::dvec3& reference,
               std::vector<glm::dvec2>& outline, std::span<BeamSection> sections) {
   constexpr double kRigid = 1e4;

@@ -23,8 +23,9 @@ constexpr std::size_t kFewestPorts = 4;
 constexpr double kClampOfPoint = 0.25;    // of the shortest side
 constexpr double kClampTolerance = 1e-6;  // of the longest side; of a mesh, what its edges are off
 
-/// How far beyond a face of the body what is on it may seem to lie, m. The distance to a mesh
-/// rounds edges by up to half a fine cell of its field: a face's rim would not be held.
+/// How far outside of a face of the body points on it may seem to lie, m. The distance to a mesh
+/// rounds edges by up to half a fine cell of its field: without this, a face's rim would not be
+/// held.
 double face_tolerance(const Model& model, std::uint32_t row) {
   const Bounds& bounds = model.bodies.at<Bounds>(row);
   const glm::dvec3 size = bounds.highest - bounds.lowest;
@@ -62,7 +63,7 @@ void add_bytes(std::vector<std::byte>& bytes, std::span<const T> values) {
   bytes.insert(bytes.end(), raw.begin(), raw.end());
 }
 
-/// All that tells the body's shape and clamp from another's.
+/// Everything that distinguishes the body's shape and clamp from another's.
 std::vector<std::byte> identity_of(const BodyDescription& description) {
   std::vector<std::byte> bytes;
   for (const PartDescription& part : description.parts) {
@@ -104,7 +105,7 @@ std::vector<std::byte> identity_of(const BodyDescription& description) {
   return bytes;
 }
 
-/// The first `rows` of a matrix, column by column: what one force does is together.
+/// The first `rows` of a matrix, column by column: the effects of one force lie together.
 void append_values(const Eigen::MatrixXd& matrix, std::size_t rows,
                    std::vector<ComplianceValue>& values) {
   for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
@@ -114,8 +115,8 @@ void append_values(const Eigen::MatrixXd& matrix, std::size_t rows,
   }
 }
 
-/// Elements through a wall, whichever way it stands: along the lattice's coarsest axis but those in
-/// which the body is no thicker than the wall and has eight.
+/// Elements through a wall in its worst orientation: along the coarsest axis of the lattice, but
+/// for axes along which the body is no thicker than the wall and has eight elements.
 double across_wall(const glm::dvec3& extent, std::uint32_t elements, double wall) {
   const double longest = std::max({extent.x, extent.y, extent.z});
   double coarsest = 0.0;  // m
@@ -128,7 +129,7 @@ double across_wall(const glm::dvec3& extent, std::uint32_t elements, double wall
   return coarsest > 0.0 ? wall / coarsest : 1.0 * kFewestLatticeCells;
 }
 
-/// Of the bounds' volume, what is in the solid.
+/// The solid's share of the bounds' volume.
 double filled_share(const ElasticSolid& solid) {
   constexpr int kAlong = 16;
   int inside = 0;
@@ -143,8 +144,8 @@ double filled_share(const ElasticSolid& solid) {
   return static_cast<double>(inside) / (kAlong * kAlong * kAlong);
 }
 
-/// More elements where walls are thin, so that three are in a wall, as long as that makes no more
-/// than 12000.
+/// More elements where walls are thin, so that a wall has three, as long as there are no more than
+/// 12000.
 std::uint32_t elements_for_walls(const ElasticSolid& solid, double wall, std::uint32_t elements) {
   constexpr double kAcrossWall = 3.0;
   constexpr double kInAll = 12000.0;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNoLoad = 1e-300;  // Pa: keeps 0 / 0 away
 
-/// Elastic trial, and the limit that caps it.
+/// The elastic trial, and the friction limit.
 TORSION_WIDEST
 void try_elastic(const BrushState& brush, BrushBlock& __restrict block) {
   const BrushState state = brush;
@@ -36,8 +36,8 @@ void try_elastic(const BrushState& brush, BrushBlock& __restrict block) {
   }
 }
 
-/// mu_s comes down to mu_d as a cell slips, and is back once it has been loaded the other way as
-/// far.
+/// mu_s falls to mu_d as a cell slips, and recovers once the cell has been loaded in the opposite
+/// direction by the same distance.
 TORSION_WIDEST
 void fall_and_recover(const BrushState& brush, BrushBlock& __restrict block) {
   const double inverse_limit = brush.inverse_limit;
@@ -70,7 +70,7 @@ void cap(const BrushState& brush, BrushBlock& __restrict block) {
 }
 
 /// The kinetic branch: the share of the region that slides goes to the limit against the cell's own
-/// motion, the share travelled(moved) of the way, and never beyond the limit.
+/// motion, by the share travelled(moved) of the distance, and never beyond the limit.
 TORSION_WIDEST
 void slide_on(const BrushState& brush, BrushBlock& __restrict block) {
   const BrushState state = brush;

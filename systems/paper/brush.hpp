@@ -16,7 +16,7 @@ namespace torsion {
 struct BrushState {
   double pressure = 0.0;               // Pa: F_n / A, uniform (f_max / n of the paper)
   double shear_modulus = 0.0;          // G, Pa
-  double translation_stiffness = 0.0;  // Pa/m: 8 G a / (2 - nu) spread over the area (physics B4)
+  double translation_stiffness = 0.0;  // Pa/m: 8 G a / (2 - nu) spread over the area
   double inverse_slip_displacement =
       0.0;                     // 1/m: elastic deflection at which the translating region slips
   double inverse_limit = 0.0;  // 1/Pa: of the static friction limit
@@ -72,9 +72,8 @@ struct alignas(64) BrushLanes {
   Lanes stuck_couple{}, stuck_stiffness{};
 };
 
-/// The return map of every cell (physics C2 points 5 and 6): elastic trial, capped at the friction
-/// limit; with the region sliding, towards the limit against the cell's own motion. Adds to
-/// `lanes`.
+/// The return map of every cell: elastic trial, capped at the friction limit; where the region
+/// slides, towards the limit against the cell's own motion. Adds to `lanes`.
 void update_brushes(const BrushState& brush, BrushBlock& block, BrushLanes& lanes);
 
 /// What the lanes come to.

@@ -10,11 +10,11 @@
 namespace torsion {
 namespace {
 
-/// Of a cell: a grid that has moved less than this is left as it is, for every interpolation
-/// smooths the tractions a little.
+/// Of a cell. A grid that has moved less is not interpolated, because every interpolation smooths
+/// the tractions a little.
 constexpr double kStill = 1e-4;
 
-/// From cells of the new grid, counted from 0, to cells of the old one, by fractions.
+/// Maps cells of the new grid, counted from 0, to cells of the old one, with fractions.
 struct CellMap {
   glm::dvec2 origin;  // where cell (0, 0) of the new grid is
   glm::dvec2 x;       // what one cell along x is
@@ -47,9 +47,9 @@ double farthest_move(const CellMap& map, std::uint32_t side) {
   return farthest;
 }
 
-/// A copy of the old cells within a border without traction, so that no tap falls outside.
-/// Tractions are per area of contact, so they count with its coverage.
-/// @param copy  its border is zero and stays so
+/// Copies the old cells within a border without traction, so that interpolation never reads
+/// outside. Tractions are per area of contact, so they are multiplied by their coverage.
+/// @param copy  its border is zero and stays zero
 void copy_with_border(std::span<const CellTraction> cells, std::uint32_t side,
                       std::span<CarriedCell> copy) {
   for (std::uint32_t j = 0; j < side; ++j) {
@@ -68,7 +68,7 @@ struct CarriedRow {
   std::array<CarriedCell, kMaxGridSide> carried;
 };
 
-/// Where the row's cells lie among the old ones, which have a border of one cell.
+/// Places of the row's cells in the old grid, which has a border of one cell.
 /// @param first  the row's first cell
 TORSION_WIDEST
 void locate(const glm::dvec2& first, const glm::dvec2& along, std::uint32_t side,
@@ -93,7 +93,7 @@ void locate(const glm::dvec2& first, const glm::dvec2& along, std::uint32_t side
   }
 }
 
-/// Between the four old cells around each of the row's.
+/// Interpolates between the four old cells around each cell of the row.
 TORSION_WIDEST
 void mix_row(const CarriedCell* old, std::uint32_t side, CarriedRow& __restrict row) {
   for (std::uint32_t i = 0; i < side; ++i) {
@@ -106,13 +106,13 @@ void mix_row(const CarriedCell* old, std::uint32_t side, CarriedRow& __restrict 
   }
 }
 
-/// Turns a traction of the old grid's plane into the new one's.
+/// Turns a traction from the old grid's plane to the new one's.
 glm::dvec2 turned(const RegionFrame& old, const RegionFrame& now, const glm::dvec2& traction) {
   return glm::dvec2(body_to_grid_direction(now, tangent_to_body(old, traction)));
 }
 
-/// Gives each cell that is in contact the traction of the place where it is. What is new of a
-/// cell's contact has no traction: spread over all of it there is less.
+/// Each cell in contact takes the traction of its place. Newly covered parts of a cell have no
+/// traction, so the cell's mean falls.
 void follow_grid(StepContext& context, const CellMap& map, const RegionFrame& old,
                  const RegionFrame& now, Range rows) {
   const std::uint32_t side = context.model.settings.grid_side;
@@ -142,7 +142,7 @@ void follow_grid(StepContext& context, const CellMap& map, const RegionFrame& ol
   }
 }
 
-/// As follow_grid, for a grid that stays.
+/// As follow_grid, for a grid that has not moved.
 void dilute(CellTraction& cell, double coverage) {
   if (coverage > cell.coverage) {
     cell.traction *= cell.coverage / coverage;

@@ -15,8 +15,8 @@
 namespace torsion {
 namespace {
 
-// Of the body's smallest side and of the beam's length: beyond it no small-strain law means
-// anything, and the cubic term would grow without bound.
+// Of the body's smallest side and of the beam's length. Small-strain laws do not hold beyond it,
+// and the cubic term would grow without bound.
 constexpr double kDeepestOfSide = 0.5;
 
 double deepest_allowed(const Bounds& bounds, const BeamSpring& beam) {
@@ -33,7 +33,7 @@ PaperNormalLaw paper_normal_law(double contact_modulus, double radius, double ax
   if (radius <= 0.0) {
     return law;
   }
-  const double punch = 2.0 * contact_modulus * radius;  // Boussinesq's flat punch (physics B3)
+  const double punch = 2.0 * contact_modulus * radius;  // Boussinesq's flat punch
   if (axial_stiffness <= 0.0) {
     law.linear = punch;
     return law;
@@ -68,8 +68,7 @@ void paper_normal_forces(StepContext& context) {
 
 namespace {
 
-/// Projected distance to what is fixed as a linear function over the grid (the paper's l_i, physics
-/// C2 point 4).
+/// Projected distance to the fixed part, the paper's l_i, as a linear function over the grid.
 void set_levers(const FixedRegion& fixed, const RegionFrame& frame, const RegionMotion& motion,
                 double radius, BrushState& brush) {
   glm::dvec3 direction = glm::dot(motion.axis, motion.axis) > 0.0 ? motion.axis : frame.normal;
@@ -125,8 +124,8 @@ void put(const BrushState& brush, const BrushBlock& block, std::size_t place, Ce
   cell.sticks = block.sticks[place] > 0.0 ? 1U : 0U;
 }
 
-/// The region's cells in contact, kBrushBlock at a time: out of the tables, through the return map,
-/// back. Cells without contact carry nothing.
+/// Updates the region's cells in contact, kBrushBlock at a time: from the tables, through the
+/// return map, and back. Cells without contact carry nothing.
 BrushSums update_cells(const Model& model, State& state, std::uint32_t region,
                        const BrushState& brush) {
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
@@ -178,9 +177,9 @@ BrushSums update_cells(const Model& model, State& state, std::uint32_t region,
   return total(lanes);
 }
 
-/// How far the region has gone over to sliding: by the path it slid, back by the path it moved
-/// elastically. With a second region on the same pair every motion of the region that the axis goes
-/// through counts as sliding (14).
+/// The share of the region that has gone over to sliding: it grows with the path slid and falls
+/// with the path moved elastically. Where a second region is on the same pair, every motion of a
+/// region that the axis passes through counts as sliding (14).
 double next_kinetic_share(const BrushState& brush, const BrushSums& sums, double axis_share) {
   const double stiffness = brush.translation_stiffness * sums.area;
   // Mean translation that the elastic limit cut off, m.
@@ -197,7 +196,7 @@ double next_kinetic_share(const BrushState& brush, const BrushSums& sums, double
 }
 
 /// r_m and phi_m of (6), (11)-(13): inside r_m the surface turns with the tool by phi_m; outside,
-/// the limit traction stands for a turn that falls as 1/r.
+/// the friction limit corresponds to a turn that falls as 1/r.
 void set_stick_radius(const BrushState& brush, const BrushSums& sums, const Contact& contact,
                       const RegionMotion& motion, RegionFriction& friction) {
   const double kinetic = friction.kinetic_share;
@@ -206,8 +205,8 @@ void set_stick_radius(const BrushState& brush, const BrushSums& sums, const Cont
   const double limit_arc =
       limit * motion.lever / brush.shear_modulus;  // m: r phi that the limit stands for
   if (sums.stuck_stiffness > 0.0) {
-    // What the springs of the cells that stick are turned by, all together: of tractions that the
-    // region's sliding left in them little is left.
+    // The mean turn of the springs of the cells that stick. After sliding little traction is left
+    // in them, so it is small.
     friction.stick_turn = -sums.stuck_couple / sums.stuck_stiffness;
     const double twist = std::abs(friction.stick_turn);
     friction.stick_radius = twist * contact.radius > limit_arc ? limit_arc / twist : contact.radius;
@@ -234,7 +233,7 @@ void paper_friction_forces(StepContext& context) {
     const RegionMotion& motion = state.regions.at<RegionMotion>(region);
     RegionFriction& friction = state.regions.at<RegionFriction>(region);
     friction.force = sums.force;
-    // An axis that misses the region leaves T = r x F alone (1).
+    // Where the axis misses the region, the torque is r x F alone (1).
     friction.couple = motion.axis_share * sums.couple;
     friction.stick_share = sums.area > 0.0 ? sums.stuck_area / sums.area : 0.0;
     friction.kinetic_share = next_kinetic_share(brush, sums, motion.axis_share);
@@ -263,7 +262,8 @@ constexpr System<StepContext> kSolve[] = {
 
 }  // namespace
 
-// The force is a formula of the depth, which stiffens without bound, and knows of no other region.
+// The force is a formula of the depth, which stiffens without bound and takes no account of other
+// regions.
 const ContactLaw kPaperLaw{
     .model = ContactModel::kPaper,
     .answers_from = std::numeric_limits<double>::infinity(),

@@ -17,7 +17,7 @@ namespace {
 constexpr double kNearlyNone = 1e-300;  // keeps 0 / 0 away
 constexpr double kOnRim = 1.0 - 1e-12;  // of a limit's square
 
-/// Where the cells go when each changes as if alone.
+/// The result of each cell when it changes alone.
 TORSION_WIDEST
 void find_trials_alone(std::size_t count, const double* __restrict stiffness,
                        const double* __restrict traction, const double* __restrict target,
@@ -27,8 +27,9 @@ void find_trials_alone(std::size_t count, const double* __restrict stiffness,
   }
 }
 
-/// Where a whole step along the search direction leads before cells are brought onto their discs.
-/// One that slips is as far out of its disc as it slips: so it takes that much to make it stick.
+/// Where a full step along the search direction leads before cells are projected onto their discs.
+/// A slipping cell lies as far outside of its disc as it slips: it takes that much to make it
+/// stick.
 TORSION_WIDEST
 void find_trials(const TractionColumns& cells, const DirectionShares& shares,
                  const double* __restrict stiffness, const double* __restrict direction_x,
@@ -78,7 +79,7 @@ void set_columns(const PatchProblem& problem, double stiffness, DiscColumns& dis
   }
 }
 
-/// The load on the body by the part of tractions or displacements by which cells can change.
+/// The load on the body by the part of tractions or displacements in which cells can change.
 SurfaceLoad free_load(const TractionColumns& cells, const double* x, const double* y,
                       PatchWork& work) {
   std::copy_n(x, cells.count, work.response_x.begin());  // not needed before there is a step
@@ -87,7 +88,7 @@ SurfaceLoad free_load(const TractionColumns& cells, const double* x, const doubl
   return load_of(work.discs, work.response_x.data(), work.response_y.data());
 }
 
-/// The preconditioned residual when the body moves along with the cells' change.
+/// The preconditioned residual when the body moves with the cells' change.
 /// @param load  on the body: in: for whose motion the residuals were found; out: with the change
 /// @return r' z, Pa m
 double precondition_in_balance(const PatchProblem& problem, const StepRequest& request,
@@ -114,7 +115,7 @@ double precondition_in_balance(const PatchProblem& problem, const StepRequest& r
     add_scaled(cells.count, share, work.rigid_tractions_x[k].data(), cells.preconditioned_x);
     add_scaled(cells.count, share, work.rigid_tractions_y[k].data(), cells.preconditioned_y);
   }
-  // The residual has two parts: the cells' and the body's motion.
+  // The residual has two parts: the motion of the cells and that of the body.
   const double residual_product =
       dot(cells.count, cells.residual_x, cells.residual_y, cells.preconditioned_x,
           cells.preconditioned_y) +
@@ -124,7 +125,7 @@ double precondition_in_balance(const PatchProblem& problem, const StepRequest& r
   return residual_product;
 }
 
-/// The step to the discs' results.
+/// The step that leads to the results of the disc projection.
 TractionStep step_to_results(const DiscColumns& discs, const TractionColumns& cells) {
   TractionStep step;
   for (std::size_t k = 0; k < cells.count; ++k) {
@@ -169,8 +170,8 @@ TractionIteration find_balanced_step(const PatchProblem& problem, const StepRequ
   set_columns(problem, request.stiffness, discs);
   const glm::dmat3& compliance = problem.support.slides;
   const SurfaceLoad before = load_of(discs, cells.traction_x, cells.traction_y);
-  // How far the body goes when each cell changes as if alone: the residuals are found with that,
-  // for without it all cells might seem to slip.
+  // The body's motion when each cell changes alone. The residuals are found with it: without it all
+  // cells might seem to slip.
   const double* const stiffness = discs.stiffness.data();
   find_trials_alone(cells.count, stiffness, cells.traction_x, cells.target_x, cells.moved_x,
                     discs.trial_x.data());

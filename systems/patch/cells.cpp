@@ -46,7 +46,7 @@ void take_off(std::size_t count, const double* __restrict known, const double* _
   }
 }
 
-/// Where cells start from: where they are held, or where they have moved to.
+/// The cells' starting values: where they are held, or where they have moved to.
 TORSION_WIDEST
 void find_starts(std::size_t count, const double* __restrict known, const double* __restrict held,
                  const double* __restrict moved, double* __restrict from) {
@@ -55,7 +55,7 @@ void find_starts(std::size_t count, const double* __restrict known, const double
   }
 }
 
-/// to = values, and `share` of what they have changed by.
+/// to = values + share * their last change.
 TORSION_WIDEST
 void carry_on(std::size_t count, double share, const double* __restrict values,
               const double* __restrict change, double* __restrict to) {
@@ -64,7 +64,7 @@ void carry_on(std::size_t count, double share, const double* __restrict values,
   }
 }
 
-/// values = now, change = what that changes.
+/// values = now, change = now - values.
 TORSION_WIDEST
 void take_over(std::size_t count, const double* __restrict now, double* __restrict values,
                double* __restrict change) {
@@ -74,7 +74,7 @@ void take_over(std::size_t count, const double* __restrict now, double* __restri
   }
 }
 
-/// Where friction holds a cell that sticks, or has left one that slips.
+/// Where friction holds a cell that sticks, or where it has left one that slips.
 TORSION_WIDEST
 void find_held(std::size_t count, const double* __restrict slips, const double* __restrict target,
                const double* __restrict moved, double* __restrict held) {
@@ -102,7 +102,7 @@ void extrapolate(std::size_t count, double share, const double* __restrict chang
   sums = total;
 }
 
-/// Of the complementary energy along a change.
+/// Slope and curvature of the complementary energy along a change.
 struct Slope {
   double slope = 0.0;      // Pa m, downhill
   double stiffness = 0.0;  // Pa m
@@ -129,8 +129,9 @@ void add_slope(std::size_t count, const double* __restrict target, const double*
   stiffnesses = stiffness;
 }
 
-/// @param target, moved  m: what is asked for, and what there is
-/// @param change, moves  Pa, and m that it moves: of the last step
+/// Adds to the slope along the last step's change.
+/// @param target, moved  m: wanted displacement, and the present one
+/// @param change, moves  Pa, and the displacement that it causes, m
 void add_slope(std::span<const double> target, std::span<const double> moved,
                std::span<const double> change, std::span<const double> moves, Slope& along) {
   Wide slopes;
@@ -148,7 +149,7 @@ double extrapolate(double share, std::span<const double> change, std::span<doubl
   return sum_of(sums);
 }
 
-/// What sum_cells adds up, in this order.
+/// The sums of sum_cells, in this order.
 enum Sum : std::size_t {
   kPressure,
   kPlaceX,  // what is named like PatchSums' numbers but for the pressure, times the pressure
@@ -347,7 +348,7 @@ void store_cells(const PatchColumns& columns, std::span<const double> support_x,
     to.pressure[cell] = pressure - traction.pressure;
     traction.traction = {-x, -y};
     traction.pressure = pressure;
-    // No branches, which a contact's ragged rim would often take the other way.
+    // Without branches, which a contact's ragged rim would often mispredict.
     traction.coverage = static_cast<double>(pressure > 0.0);
     traction.sticks = static_cast<std::uint32_t>(from.slips[cell] == 0.0);
   }
@@ -395,7 +396,7 @@ PatchSums sum_cells(const PatchColumns& columns, const PatchPlaces& places, doub
   const double second_moment =
       sum_of(totals[kSecondMoment]) - pressure * glm::dot(sums.center, sums.center);
   sums.turn = second_moment > 0.0 ? moment / second_moment : 0.0;
-  // The columns' tractions are on the body.
+  // The columns' tractions act on the body.
   sums.friction = -cell_area * glm::dvec2(sum_of(totals[kTractionX]), sum_of(totals[kTractionY]));
   sums.couple = -cell_area * sum_of(totals[kCouple]);
   sums.loaded_cells = sum_of(totals[kLoaded]);

@@ -20,14 +20,14 @@ using TangentMatrix = Eigen::Matrix<double, 2 * kTerms, 2 * kTerms, Eigen::RowMa
 using AllMatrix = Eigen::Matrix<double, kAll, kAll>;
 
 constexpr std::uint32_t kDiscSide = 20;  // squares across the disc
-/// The contact's ellipse has the cells' second moments; what it holds may reach beyond it, as a
-/// rectangle's corners do, and grow by some before the support is refitted.
+/// The contact's ellipse has the cells' second moments. The loaded cells may reach beyond it, as a
+/// rectangle's corners do, and may grow before the support is refitted.
 constexpr double kHolds = 1.4;
-/// At nu < 0.5 pressure and traction help each other: a bonded punch is 9.9 % stiffer than one
-/// without friction at nu = 0, ln 3 (Johnson, Contact Mechanics, 1985, 3.8).
+/// At nu < 0.5 pressure and traction couple: a bonded punch is stiffer than a frictionless one, by
+/// 9.9 % (ln 3) at nu = 0 (Johnson, Contact Mechanics, 1985, 3.8).
 constexpr double kCoupledStiffer = 0.0986;
 
-/// Squares whose centres lie in the disc, and the terms at them.
+/// Squares whose centres lie in the disc, and the terms there.
 struct DiscSquares {
   std::vector<std::array<std::uint32_t, 2>> cells;
   Eigen::MatrixXd terms;  // (squares x kTerms)
@@ -55,7 +55,7 @@ DiscSquares squares_in_disc() {
   return disc;
 }
 
-/// Displacement by a force spread over a square, times shear modulus and the disc's radius.
+/// Displacement by a force spread over a square, multiplied by shear modulus and the disc's radius.
 Eigen::MatrixXd influences_of(const DiscSquares& disc, const InfluenceTables& tables,
                               InfluenceKind kind) {
   constexpr double kLength = 2.0 / kDiscSide;
@@ -78,7 +78,7 @@ Eigen::MatrixXd factor_of_stiffness(const Eigen::MatrixXd& influences,
   return stiffness.llt().matrixL();
 }
 
-/// L of S for a support fit's contact in the support fit's axes (tangent_x, tangent_y, normal),
+/// L of S for a support fit's contact, in the support fit's axes (tangent_x, tangent_y, normal),
 /// axis by axis.
 AllMatrix scaled_factor(const DiscStiffness& disc, const Elasticity& elasticity,
                         const SupportFit& support_fit) {
@@ -87,7 +87,7 @@ AllMatrix scaled_factor(const DiscStiffness& disc, const Elasticity& elasticity,
   const double nu = elasticity.poisson_ratio;
   const double coupled = 1.0 + kCoupledStiffer * (1.0 - 2.0 * nu);
   const double unit = std::sqrt(coupled * elasticity.shear_modulus() * radius);
-  // Against pressure a half-space is stiffer by 1 / (1 - nu), here over that at 0.5.
+  // Under pressure a half-space is stiffer by 1 / (1 - nu), here relative to nu = 0.5.
   const double along_normal = std::sqrt(0.5 / (1.0 - nu));
   const Eigen::Map<const TermMatrix> normal(disc.normal.data());
   const Eigen::Map<const TangentMatrix> tangential(disc.tangential.data());
@@ -95,13 +95,13 @@ AllMatrix scaled_factor(const DiscStiffness& disc, const Elasticity& elasticity,
   lower.topLeftCorner<2 * kTerms, 2 * kTerms>() = unit * tangential;
   lower.bottomRightCorner<kTerms, kTerms>() = unit * along_normal * normal;
   for (int row = 0; row < kAll; ++row) {
-    // A term of the disc's coordinates over one of the support fit's, to its degree.
+    // A term in the disc's coordinates over the one in the support fit's, to its degree.
     lower.row(row) *= std::pow(share, kSupportDegrees[static_cast<std::size_t>(row % kTerms)]);
   }
   return lower;
 }
 
-/// Of a response, which has 16 rows an axis and body axes, the 45 x 45 in the support fit's.
+/// A response has 16 rows an axis, in body axes; this is its 45 x 45 matrix in the support fit's.
 AllMatrix in_support_fit(const SupportFit& support_fit, const SupportResponse& response) {
   const std::array<glm::dvec3, 3> axes{support_fit.tangent_x, support_fit.tangent_y,
                                        support_fit.normal};

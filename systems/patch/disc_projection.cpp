@@ -67,14 +67,14 @@ void project(std::size_t count, const SurfaceMotion& motion, const double* __res
     const double answer = stiffness[k] * share;
     result_x[k] = share * x;
     result_y[k] = share * y;
-    // The disc's rim answers along itself only.
+    // On the disc's rim a cell responds only along the rim.
     answer_xx[k] = answer * (1.0 - out_x * out_x);
     answer_xy[k] = -answer * out_x * out_y;
     answer_yy[k] = answer * (1.0 - out_y * out_y);
   }
 }
 
-/// Load of what the cells answer to the motions x, y and turning: xx, xy, yy, xt, yt, tt.
+/// Sums of the cells' responses to the motions x, y and turning: xx, xy, yy, xt, yt, tt.
 TORSION_WIDEST
 void add_answers(const DiscColumns& columns, std::array<Wide, 6>& totals) {
   std::array<Wide, 6> sums{};
@@ -105,8 +105,8 @@ glm::dmat3 answers_of(const DiscColumns& columns) {
   return {sum_of(totals[0]), xy, xt, xy, sum_of(totals[2]), yt, xt, yt, sum_of(totals[5])};
 }
 
-/// The x of matrix x = right: with pivots, for a body may yield along some motion alone, and by a
-/// million times what its cells do.
+/// Solves matrix x = right, with pivots: a body may be compliant along one motion alone, and a
+/// million times more than the cells.
 glm::dvec3 solved(const glm::dmat3& matrix, const glm::dvec3& right) {
   const Eigen::Map<const Eigen::Matrix3d> columns(&matrix[0][0]);
   const Eigen::Vector3d x =
@@ -114,17 +114,17 @@ glm::dvec3 solved(const glm::dmat3& matrix, const glm::dvec3& right) {
   return {x[0], x[1], x[2]};
 }
 
-/// The farthest that a cell goes by a motion, m.
+/// The largest displacement of a cell by a motion, m.
 double farthest(const DiscColumns& columns, const SurfaceMotion& motion) {
-  // The first cell is at the grid's corner.
+  // The first cell lies at the grid's corner.
   const double reach = std::abs(columns.place_x.front()) + std::abs(columns.place_y.front());
   return std::abs(motion.x) + std::abs(motion.y) + reach * std::abs(motion.z);
 }
 
-/// Where the search is.
+/// The state of the search.
 struct NewtonSearch {
   BodyAnswer answer;
-  // Of all of the body's motion, and of the load that makes it, less those by the results.
+  // The body's whole motion and the load that causes it, less those of the cells' results.
   SurfaceMotion lacking{0.0};
   SurfaceLoad lacking_load{0.0};  // the function's gradient
 };
@@ -140,7 +140,7 @@ void go_to(const BodyAnswer& answer, const BodyInBalance& body, const double* li
   search = {answer, answer.motion + body.yields * (body.known - found), answer.load - found};
 }
 
-/// A step of Newton's method, shortened where the function goes up at its end.
+/// A step of Newton's method, shortened while the function rises at its end.
 void take_newton_step(const BodyInBalance& body, const double* limit, DiscColumns& columns,
                       NewtonSearch& search) {
   const NewtonSearch from = search;
@@ -156,7 +156,7 @@ void take_newton_step(const BodyInBalance& body, const double* limit, DiscColumn
     if (!(slope > kUphill * std::abs(downhill))) {
       return;
     }
-    // To where the slope would be 0 if it grew evenly.
+    // To where the slope would be 0 if it changed linearly.
     length *= std::clamp(downhill / (downhill - slope), 0.1, 0.9);
   }
 }

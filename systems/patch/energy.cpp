@@ -14,14 +14,14 @@
 namespace torsion {
 namespace {
 
-// At most, of the elastic change of a step and of the normal force; what is lacking beyond that is
+// At most, of a step's elastic change and of the normal force. What is missing beyond that is
 // charged later.
 constexpr double kMostCharge = 0.25;
 constexpr double kMostDrag = 0.02;
-// Of what is held: regridding lends up to 0.2 % of it.
+// Of the energy held: regridding lends up to 0.2 % of it.
 constexpr double kMostLent = 0.01;
-// Likewise, where a grid moves: the longer a tool rolls in steps so small that little drag comes of
-// them, the more it would owe.
+// Likewise, where a grid moves: a tool that rolls in steps so small that they cause little drag
+// would owe ever more.
 constexpr double kMostOwed = 0.01;
 
 struct EnergySums {
@@ -47,7 +47,7 @@ void add_up(std::size_t count, const PatchColumns& columns, const double* __rest
     const Wide moved_y = lanes_at(&columns.moved_y[cell]).all;
     const Wide sticks = one - lanes_at(&columns.slips[cell]).all;
     const Wide gap = down + lanes_at(sunk + cell).all - lanes_at(&columns.depth[cell]).all;
-    // No choice within a choice, which the compiler makes cell by cell.
+    // No branch inside a branch, which the compiler would take cell by cell.
     const Wide overlap = gap < 0.0 ? gap : none;
     const Wide apart = pressure > 0.0 ? gap - overlap : none;
     const Wide z = overlap + apart;
@@ -85,7 +85,7 @@ double held_energy(const PatchSolution& solution, double cell_area) {
          cell_area * (0.5 * sum_of(sums.stored) - sum_of(sums.left) + 0.5 * stiffest * product);
 }
 
-/// A step's motion as the region's stiffness sees it.
+/// A step's motion, measured with the region's stiffness.
 struct Drag {
   glm::dvec2 slide{0.0};  // m, grid
   double deepened = 0.0;  // m
@@ -113,7 +113,7 @@ Drag drag_of(const StuckStiffness& stiffness, const RegionFrame& frame, double r
   return drag;
 }
 
-/// The drag against rolling moves the pressure's centre ahead.
+/// The drag against rolling moves the centre of pressure ahead.
 void charge(const Model& model, State& state, std::uint32_t region, const glm::dvec3& shift,
             const glm::dvec3& turn, double lacking) {
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
@@ -126,7 +126,7 @@ void charge(const Model& model, State& state, std::uint32_t region, const glm::d
     return;
   }
   const double most = std::min(kMostCharge, kMostDrag * normal.force * drag.size / drag.work);
-  // By the mean of the wrenches before and after, so that half of it counts.
+  // Work is computed with the mean of the wrenches before and after: half of the charge counts.
   const double share = std::min(2.0 * lacking / drag.work, most);
   friction.force -= share * stiffness.along_tangents * drag.slide;
   friction.couple -= share * stiffness.about_normal * drag.spin;
@@ -138,13 +138,13 @@ void charge(const Model& model, State& state, std::uint32_t region, const glm::d
   }
 }
 
-/// By the other regions, at a point, m.
+/// Displacement by the other regions at a point, m.
 glm::dvec3 translation_by_others(const RegionSupport& support, const glm::dvec3& point) {
   return support.translation_by_others +
          glm::cross(support.rotation_by_others, point - support.about);
 }
 
-/// Writes what the next step's work is computed from.
+/// Stores what the next step's work is computed from.
 void note_forces(const State& state, std::uint32_t region, PatchEnergy& energy) {
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const RegionNormal& normal = state.regions.at<RegionNormal>(region);
@@ -158,8 +158,9 @@ void note_forces(const State& state, std::uint32_t region, PatchEnergy& energy) 
   energy.rotation_by_others = support.rotation_by_others;
 }
 
-/// How the tool moves over what the region holds. Where that is the whole body's motion under its
-/// own load, too, only the other regions' share of it carries the material.
+/// The tool's motion over the material that the region holds. Where the material's motion is also
+/// the body's motion under the region's own load, only the other regions' share of it carries the
+/// material.
 MotionOverBody motion_over_held(const Model& model, const State& state, std::uint32_t region,
                                 bool holds_body, const PatchEnergy& before) {
   MotionOverBody motion = motion_over_body(model, state, region);
@@ -172,9 +173,9 @@ MotionOverBody motion_over_held(const Model& model, const State& state, std::uin
   return motion;
 }
 
-/// The holder's work over a step by the mean of the forces before and after, J. The normal force is
-/// bent over it: by Hertz' law, F ~ d^(3/2), the trapezoidal rule's first correction is that of its
-/// slope, F h^2 (d1 - d0) / (16 d^2), which is nothing in small steps.
+/// The holder's work over a step from the mean of the forces before and after, J. The normal force
+/// is curved over the step: by Hertz, F ~ d^(3/2), the first correction of the trapezoidal rule is
+/// F h^2 (d1 - d0) / (16 d^2), negligible in small steps.
 double work_between(const PatchEnergy& before, const PatchEnergy& after,
                     const MotionOverBody& motion, const glm::dvec3& normal) {
   const glm::dvec3 shift = shift_after(motion, after.point);
@@ -188,8 +189,8 @@ double work_between(const PatchEnergy& before, const PatchEnergy& after,
   return -0.5 * twice - bent;
 }
 
-/// While the tool lifts off the force is less in the proportion of what was lent to what is held,
-/// so that both come to an end together.
+/// While the tool lifts off, the force is reduced in the proportion of lent to held energy, so that
+/// both reach zero together.
 /// @param lifted  m, in this step
 /// @param taken   N, in the step before
 void take_back(const Model& model, State& state, std::uint32_t region, double lifted, double taken,
@@ -234,7 +235,7 @@ void settle_energy(const Model& model, State& state, std::uint32_t region,
   if (start == SolutionStart::kMovedGrid) {
     now.owed = std::min(now.owed, kMostOwed * now.held);
   }
-  // What friction takes beyond that pays for what was lent, too.
+  // What friction dissipates beyond that also repays what was lent.
   now.lent = std::max(now.lent + std::min(lacking, 0.0), 0.0);
   take_back(model, state, region, glm::dot(frame.normal, shift_after(motion, now.point)),
             before.taken, now);

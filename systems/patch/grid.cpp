@@ -29,7 +29,7 @@ struct CellBox {
   glm::ivec2 end{0};
 };
 
-/// The cells with pressure, of rims those of which most are in contact.
+/// The cells with pressure. Of rim cells, those that are mostly in contact.
 struct LoadedArea {
   CellBox box;  // empty when there are none
   CellMoments moments;
@@ -76,8 +76,8 @@ bool reaches_edge(const Grid& grid, const CellBox& box) {
   return box.first.x < 1 + spare || box.first.y < 1 || box.end.x > side - 1 || box.end.y > side - 1;
 }
 
-/// Takes in the contact points outside the grid that lie deeper than the pressure can have pushed
-/// the surface away there.
+/// Includes the contact points outside of the grid that are deeper than the pressure can have
+/// displaced the surface there.
 void include_lobes(const Grid& grid, std::uint32_t region, const RegionPoints& contact,
                    CellBox& box) {
   const Model& model = grid.model;
@@ -97,7 +97,8 @@ void include_lobes(const Grid& grid, std::uint32_t region, const RegionPoints& c
       continue;
     }
     const double distance = glm::length(place - center);
-    // Points are found against the rest shape: what the whole body has sunk there is no overlap.
+    // Points are found against the rest shape: the depth by which the whole body has sunk is no
+    // overlap.
     const double sunk = -glm::dot(
         grid.frame.normal,
         support.translation + glm::cross(support.rotation, point.position - support.about));
@@ -124,8 +125,7 @@ glm::dmat2 rotation_by(double angle) {
 }
 
 /// The loaded cells' extent along axes that are turned from the grid's. Their rim runs between
-/// cells, so that askew to the axes the outermost of many centres lies nearer to it than half a
-/// cell.
+/// cells; askew to the axes, the outermost of many centres is nearer to the rim than half a cell.
 PlaneBox extent_along(const Grid& grid, double least, double angle) {
   const auto tractions = grid.state.cells.rows<CellTraction>(grid.identity.cells);
   const glm::dmat2 turn = rotation_by(angle);
@@ -146,14 +146,14 @@ PlaneBox extent_along(const Grid& grid, double least, double angle) {
   return extent;
 }
 
-/// Moves the grid by whole cells where that brings the box well into it.
-/// @return false where it does not: nothing has changed
+/// Moves the grid by whole cells if that brings the box well into it.
+/// @return false if it does not: nothing has changed
 bool shift_frame(const Grid& grid, const CellBox& box, CellMove& move) {
   const double side = static_cast<double>(grid.side);
   const glm::dvec2 half = 0.5 * cell_size(grid) * glm::dvec2(box.end - box.first);
   const glm::dvec2 growth =
       tabulated_half_size(half / fill_of_new(grid.side)) / grid.frame.half_size;
-  // With a free row or column on either side, or the next step would regrid.
+  // With a free row or column on either side: otherwise the next step would regrid.
   const glm::ivec2 room = glm::ivec2(static_cast<int>(grid.side)) - (box.end - box.first) -
                           glm::ivec2(static_cast<int>(patch_spare(grid.side)), 0);
   if (growth.x != growth.y || growth.x <= 0.8 || growth.x >= 1.2 || std::min(room.x, room.y) < 2) {
@@ -176,12 +176,13 @@ struct GridFit {
   bool has_rims = false;     // a long one with straight rims
   ContactAxes axes;
 
-  /// Whether the grid is to follow the contact's axes: then what slips keeps its way.
+  /// Whether the grid follows the contact's axes, so that slipping cells keep their direction of
+  /// slip.
   [[nodiscard]] bool takes_axes() const { return has_rims || axes.angle != 0.0; }
 };
 
-/// Whether the contact goes from one edge of the grid to the other, so that both may cut it off:
-/// over most of its width, for of one that lies askew two corners come to the edges together.
+/// Whether the contact reaches two opposite edges of the grid, so that both may cut it off: over
+/// most of the width, because two corners of a contact that lies askew reach the edges together.
 bool fills_side(const Grid& grid, double least, const CellBox& box) {
   constexpr double kMost = 0.5;
   const auto side = static_cast<int>(grid.side);
@@ -207,8 +208,8 @@ bool fills_side(const Grid& grid, double least, const CellBox& box) {
   return both.x > kMost * (end.y - first.y) || both.y > kMost * (end.x - first.x);
 }
 
-/// Whether so many loaded cells fill their box along axes that are turned by `angle`, as those of a
-/// punch with straight rims do.
+/// Whether the loaded cells fill so much of their box along turned axes as those of a punch with
+/// straight rims.
 bool fill_their_box(const Grid& grid, double least, double loaded, double angle) {
   constexpr double kRectangular = 0.9;  // of an ellipse 0.79
   const PlaneBox box = extent_along(grid, least, angle);
@@ -220,7 +221,7 @@ GridFit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& conta
   GridFit fit;
   LoadedArea loaded = loaded_cells(grid, fit.least);
   if (loaded.box.end.x == 0) {
-    // Not one: an edge or a corner, finer than the cells.
+    // There is none: the contact is an edge or a corner, finer than the cells.
     fit.least = 0.0;
     loaded = loaded_cells(grid, fit.least);
   }
@@ -230,8 +231,8 @@ GridFit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& conta
   }
   fit.cut = reaches_edge(grid, fit.box);
   if (!fit.cut) {
-    // Only then: a contact that has outgrown its grid has points outside of it anyway, and which
-    // ones is chance.
+    // Only in this case: a contact that has outgrown its grid has points outside of it, and which
+    // of them were found is chance.
     include_lobes(grid, region, contact, fit.box);
     fit.has_lobes = fit.box.first != loaded.box.first || fit.box.end != loaded.box.end;
     fit.cut = reaches_edge(grid, fit.box);
@@ -248,7 +249,7 @@ GridFit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& conta
     fit.axes = contact_axes(grid, loaded.moments);
     fit.has_rims = fit.axes.is_long() && !(fit.cut && fills_side(grid, fit.least, fit.box)) &&
                    fill_their_box(grid, fit.least, loaded.moments.weight, fit.axes.angle);
-    // A contact whose pressure ends smoothly gains nothing from axes that are a little better.
+    // Slightly better axes gain nothing for a contact whose pressure ends smoothly.
     const double enough = (fit.has_rims ? kAligned : 1.0) * fit.axes.allowance;
     if (std::abs(fit.axes.angle) <= enough) {
       fit.axes.angle = 0.0;
@@ -257,7 +258,7 @@ GridFit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& conta
   return fit;
 }
 
-/// Lays the grid along the loaded cells' axes and around them.
+/// Places the grid along the loaded cells' axes and around them.
 void lay_frame(const Grid& grid, const RegionPoints& contact, const GridFit& fit, double depth) {
   const PlaneBox loaded = fit.axes.angle == 0.0 ? extent_of(grid, fit.box)
                                                 : extent_along(grid, fit.least, fit.axes.angle);
@@ -270,14 +271,14 @@ void lay_frame(const Grid& grid, const RegionPoints& contact, const GridFit& fit
   }
 }
 
-/// What sticks goes with the tool in this step, too. Cells that only followed a step later would
-/// lie at other depths in between, for which nobody has worked.
+/// Sticking cells follow the tool in this step already. If they followed a step later, they would
+/// be at other depths in between, by a motion that nobody has done work for.
 void extrapolate_carrier(const Model& model, State& state, std::uint32_t region) {
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const double share = state.regions.at<RegionFriction>(region).stick_share;
   const MotionOverBody motion = motion_over_body(model, state, region);
-  // As a rigid body about the contact's middle, so that it does not matter where the grid has its
-  // origin.
+  // As a rigid body about the contact's middle, so that the place of the grid's origin does not
+  // matter.
   const glm::dvec3 middle = state.regions.at<Contact>(region).equivalent_point;
   const glm::dvec3 shift = shift_at(motion, middle);
   const double turn = share * glm::dot(turn_of(motion), frame.normal);
@@ -331,7 +332,7 @@ void regrid_around_loaded(StepContext& context, std::uint32_t region, const Regi
 void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   State& state = context.state;
   if (state.regions.at<RegionNormal>(region).force <= 0.0) {
-    // It has nothing to keep, and its grid may lie beside the points, where it would stay.
+    // The region has nothing to keep, and its grid may lie beside the points, where it would stay.
     state.patch_cells.zero(state.regions.at<RegionIdentity>(region).cells);
     state.regions.at<PatchState>(region) = PatchState{};
     place_new_grid(context, region, contact);

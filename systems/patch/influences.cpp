@@ -20,8 +20,8 @@ bool is_layer_like(const LayerGrid& filled, double thickness, const glm::dvec2& 
          std::abs(thickness - filled.thickness) < kThicker * filled.thickness;
 }
 
-/// Whether tables are nearly those of the bend: at their ends, where it counts for most beside the
-/// half-space.
+/// Whether tables are nearly those of the bend, compared at their ends, where the bend is largest
+/// beside the half-space's values.
 bool are_bent_like(const InfluenceTables& tables, const InfluenceTables& half_space,
                    const SurfaceBend& bend, double poisson_ratio, const glm::dvec2& cell) {
   const CurvedResponse response = curved_response(bend.curvature, poisson_ratio);
@@ -41,7 +41,7 @@ bool are_bent_like(const InfluenceTables& tables, const InfluenceTables& half_sp
   return change <= kBent * most;
 }
 
-/// One region's tables at work.
+/// The tables that one region works with.
 struct RegionTables {
   const Model& model;
   State& state;
@@ -74,8 +74,8 @@ void take_layer(const RegionTables& at, double thickness, double poisson_ratio) 
   at.result.coupled = true;
 }
 
-/// On a body with body model compliance, whose ports say how far the curvature has to reach. They
-/// count from the step after the region's first, when it has a support fit.
+/// For a body with body model compliance, whose ports determine how far the curvature reaches. They
+/// apply from the second step of the region, when it has a support fit.
 void take_bend(const RegionTables& at, double poisson_ratio) {
   const RegionFrame& frame = at.state.regions.at<RegionFrame>(at.region);
   const RegionIdentity& identity = at.state.regions.at<RegionIdentity>(at.region);

@@ -30,7 +30,8 @@ struct CellsBetween {
   std::int32_t aspect = 0;
 };
 
-/// Those that leave the narrower error of the rims along y, where x is exact, and are many.
+/// The cell counts for which the error of the rims along y is smallest while the rims along x are
+/// exact, and which are many.
 CellsBetween choose_cells(const glm::dvec2& size, std::uint32_t side) {
   constexpr double kCoarse = 0.3;  // relative error of the torque per cell's width over the contact
   constexpr double kKnown = 0.02;  // relative: the rims are not known better
@@ -56,12 +57,13 @@ CellsBetween choose_cells(const glm::dvec2& size, std::uint32_t side) {
   return best;
 }
 
-/// Where the middle of so many cells lies, in cells from the corner, so that rims lie between.
+/// Place of the middle of so many cells, counted from the corner, for which rims fall between
+/// cells.
 double middle_of(double cells, double wanted) {
   return std::round(wanted - 0.5 * cells) + 0.5 * cells;
 }
 
-/// Whether so many covered cells cover their box, as a punch's with straight rims do.
+/// Whether the covered cells cover so much of their box as those of a punch with straight rims.
 bool cover_their_box(const Grid& grid, double covered, const PlaneBox& box) {
   const glm::dvec2 size = box.highest - box.lowest;
   return covered * cell_area(grid.frame, grid.side) > kRectangularOverlap * size.x * size.y;
@@ -84,7 +86,7 @@ GridLayout layout_around(const PlaneBox& loaded, std::uint32_t side) {
 
 GridLayout layout_between_rims(const PlaneBox& covered, bool sharp_x, bool sharp_y,
                                std::uint32_t side) {
-  // What is thinner than the longest cells allow has room beside it.
+  // An overlap that is thinner than the longest cells allow leaves room beside it.
   const glm::dvec2 covers = covered.highest - covered.lowest;
   const glm::dvec2 size =
       glm::max(covers, glm::dvec2(std::ldexp(std::max(covers.x, covers.y), -kMostAspect)));
@@ -97,7 +99,7 @@ GridLayout layout_between_rims(const PlaneBox& covered, bool sharp_x, bool sharp
     cell.y = std::ldexp(cell.x, -cells.aspect);
   } else {
     const double ratio = std::log2(cell.x / cell.y);
-    // The axis that is not sharp takes what cells' shapes leave it, and no less than it needs.
+    // The other axis takes the size that the cells' shape leaves, but at least what it needs.
     const auto aspect = static_cast<std::int32_t>(std::clamp(
         sharp_x ? std::floor(ratio) : std::ceil(ratio), -1.0 * kMostAspect, 1.0 * kMostAspect));
     (sharp_x ? cell.y : cell.x) = std::ldexp(sharp_x ? cell.x : cell.y, sharp_x ? -aspect : aspect);
@@ -130,7 +132,7 @@ void lay_along_contact(const Grid& grid, const RegionPoints& contact, double dep
   if (!sharp_x && !sharp_y) {
     return;
   }
-  // Pressure ends in the middle of an overlap that is wider.
+  // The pressure ends in the middle of a wider overlap.
   const glm::dvec2 half(sharp_x ? 0.5 * axes.size.x : 0.5 * loaded.x,
                         sharp_y ? 0.5 * axes.size.y : 0.5 * loaded.y);
   const GridLayout layout =
@@ -155,7 +157,7 @@ constexpr int kMostPasses = 12;
 constexpr double kNearGrid = 2e-3;  // of the grid: so near, cells keep what they know of the tool
 constexpr double kLeastShare = 1.0 / 32;  // of its size, that a grid has after a pass
 
-/// How a pass moves and resizes a grid, in its own plane, m.
+/// How a pass moves and resizes a grid, in its plane, m.
 struct GridStep {
   glm::dvec2 shift{0.0};
   glm::dvec2 growth{0.0};  // of the half sides
@@ -179,11 +181,11 @@ double product(const GridStep& a, const GridStep& b) {
   return glm::dot(a.shift, b.shift) + glm::dot(a.growth, b.growth);
 }
 
-/// Finds where x = g(x) from what is left to do at the places gone to, g(x) - x (Anderson, J. ACM
-/// 12 (1965) 547, with the last two steps): on meshes plain passes leave three quarters of it each.
+/// Solves x = g(x) from the residuals g(x) - x at the places visited (Anderson, J. ACM 12 (1965)
+/// 547, with the last two steps): on meshes, each plain pass leaves three quarters of the residual.
 class FixedPoint {
  public:
-  /// @param left  to do at the place where the last step has led
+  /// @param left  residual at the place to which the last step has led
   /// @return the step to take
   GridStep next(const GridStep& left) {
     if (any_) {
@@ -195,8 +197,8 @@ class FixedPoint {
     left_ = left;
     step_ = left;
     GridStep rest = left;
-    // By Gram and Schmidt: each change of `left` takes its part of it away. The older one is made
-    // normal to the newer one first.
+    // By Gram and Schmidt: each change of the residual removes its component. The older change is
+    // made normal to the newer one first.
     std::array<Change, 2> normal = changes_;
     for (std::size_t k = 0; k < count_; ++k) {
       for (std::size_t before = 0; before < k; ++before) {
@@ -245,10 +247,10 @@ double largest_share(const GridStep& step, const glm::dvec2& half_size) {
   return std::max(share.x, share.y);
 }
 
-/// Whether passes come nearer.
+/// Whether passes converge.
 class Progress {
  public:
-  /// @param left  what is left to do, as a share of the grid
+  /// @param left  the residual, as a share of the grid
   void note(double left) {
     const bool nearer = left < kNearer * least_;
     stalled_ = nearer ? 0 : stalled_ + 1;
@@ -258,7 +260,7 @@ class Progress {
   [[nodiscard]] bool is_at_end() const {
     return least_ < kCentered || blurred_ || stalled_ > kMostStalled;
   }
-  /// Steps as along a staircase (the rim of a flat face goes by whole cells) lead nowhere.
+  /// Steps as along a staircase (the rim of a flat face moves by whole cells) do not converge.
   [[nodiscard]] bool stalls() const { return stalled_ > 2; }
 
  private:
@@ -287,8 +289,8 @@ glm::dvec2 overlap_middle(const Grid& grid) {
   return sum > 0.0 ? moment / sum : glm::dvec2(0.0);
 }
 
-/// How much a grid may grow in one pass: where many samples of the tool touch, they have said
-/// already how large the contact is.
+/// How much a grid may grow in one pass: many samples in contact show already how large the contact
+/// is.
 double most_growth(const Grid& grid, const RegionPoints& contact) {
   constexpr std::ptrdiff_t kMany = 4;
   const auto own = [&contact](const ContactPoint& point) {
@@ -297,8 +299,8 @@ double most_growth(const Grid& grid, const RegionPoints& contact) {
   return std::ranges::count_if(points_of(grid.scratch, contact), own) < kMany ? 16.0 : 1.5;
 }
 
-/// How many times as large a grid that cuts the contact off has to be, 1 if none does: by the depth
-/// at its edges, as if that fell with the square of the distance.
+/// By what factor a grid that cuts the contact off must grow (1 if none does), from the depth at
+/// its edges, as if the depth fell with the square of the distance.
 double growth_beyond_edges(const Grid& grid, const CellBits& covered, double most) {
   constexpr double kLeast = 1.25;
   constexpr double kShallow = 0.25;  // of the largest depth: the next pass finds that as well
@@ -326,13 +328,13 @@ double growth_beyond_edges(const Grid& grid, const CellBits& covered, double mos
   return fall > 0.0 ? std::clamp(kGridMargin / std::sqrt(fall), kLeast, most) : most;
 }
 
-/// Half the sides of a grid that holds the whole overlap on either side of its middle, so that none
-/// of it is cut off: a grid that cuts it off sees a smaller one, and no pass leads far from there.
+/// Half sides of a grid that holds the whole overlap on both sides of its middle. A grid that cuts
+/// it off sees a smaller overlap, and passes would not leave that state.
 glm::dvec2 half_size_around(const Grid& grid, const glm::dvec2& middle, const PlaneBox& box) {
   const glm::dvec2 reach = glm::max(box.highest - middle, middle - box.lowest);
   const glm::dvec2 least = kGridMargin * glm::max(reach, glm::dvec2(kSmallestHalf));
-  // Cells are made longer only where the overlap is so by more than a doubling and a half, or they
-  // might go to and fro between two shapes.
+  // Cells are made longer only where the overlap is longer by more than a doubling and a half:
+  // otherwise they might alternate between two shapes.
   constexpr double kLonger = 0.6;  // of a doubling
   const std::int32_t now = table_aspect(grid.frame.half_size);
   const std::int32_t wanted = table_aspect(least);
@@ -341,9 +343,9 @@ glm::dvec2 half_size_around(const Grid& grid, const glm::dvec2& middle, const Pl
   return tabulated_half_size(least, keeps ? now : wanted);
 }
 
-/// Passes over a grid whose axes stay until it lies around the contact.
+/// Passes over a grid with constant axes until it lies around the contact.
 void find_middle(const Grid& grid, const RegionPoints& contact, double start_depth) {
-  // Of the half sides: where the contact's middle is wanted.
+  // Of the half sides: the wanted place of the contact's middle.
   const glm::dvec2 off = patch_middle(grid.side) / static_cast<double>(grid.side) * 2.0 - 1.0;
   grid.frame.half_size = glm::dvec2(std::max(grid.frame.half_size.x, grid.frame.half_size.y));
   const double most = most_growth(grid, contact);
@@ -357,7 +359,7 @@ void find_middle(const Grid& grid, const RegionPoints& contact, double start_dep
       return;
     }
     const glm::dvec2 before = grid.frame.half_size;
-    // Until it has held all of the contact once: what a pass has seen whole is cut off by little.
+    // Until it has held the whole contact once: later passes cut off little of it.
     const double beyond = seen_whole ? 1.0 : growth_beyond_edges(grid, covered, most);
     seen_whole = beyond == 1.0;
     const glm::dvec2 middle = overlap_middle(grid);
@@ -392,7 +394,7 @@ void center_patch(const Grid& grid, const RegionPoints& contact, double start_de
   const ContactAxes axes = contact_axes(grid, covered_moments(grid));
   if (axes.is_askew()) {
     turn_axes(grid.frame, axes.angle);
-    // What fits the grid along its diagonal fits it along its sides, then.
+    // What fits along the grid's diagonal then fits along its sides.
     grid.frame.half_size *= std::numbers::sqrt2;
     restart_heights(grid, start_depth);
     find_middle(grid, contact, start_depth);

@@ -7,7 +7,7 @@
 namespace torsion {
 namespace {
 
-/// What a row adds to the local inverse's product, at eight cells.
+/// What a row adds to the product with the local inverse, at eight cells.
 struct InverseOfRow {
   Wide here;    // in the row itself
   Wide beside;  // in the rows below and above
@@ -22,7 +22,7 @@ TORSION_LANES InverseOfRow apply_row(const LocalInverse& inverse, const double* 
           inverse.along_y * middle + inverse.corner * sides};
 }
 
-/// The inverse at eight columns of all rows.
+/// The product with the local inverse at eight columns of all rows.
 TORSION_LANES void apply_columns(const LocalInverse& inverse, std::uint32_t side,
                                  const double* values, double* product) {
   const std::size_t width = std::size_t{side} + 2;
@@ -125,7 +125,7 @@ void apply_local_inverse(const LocalInverse& inverse, double scale, std::uint32_
     }
   }
   for (std::size_t i = 0; side >= kLanes && i < side; i += kLanes) {
-    // The last eight end with the row: some are asked twice, for the same.
+    // The last eight end with the row: some are computed twice, with the same result.
     const std::size_t at = i + kLanes <= side ? i : side - kLanes;
     apply_columns(by, side, residual + width + 1 + at, preconditioned + at);
   }
@@ -136,8 +136,8 @@ double quadratic_form(const LocalInverse& inverse, double scale, std::uint32_t s
                       const double* __restrict displacement) {
   const std::size_t width = std::size_t{side} + 2;
   const std::size_t count = whole_lanes(side * width);
-  // Every pair of neighbours once, and half of each cell itself. The border is zero, so that the
-  // end of a row and the beginning of the next are no neighbours.
+  // Every pair of neighbours once, and half of each cell itself. The border is zero, so the end of
+  // a row and the beginning of the next do not interact.
   const double here = 0.5 * inverse.here;
   const double along_x = inverse.along_x;
   const double along_y = inverse.along_y;

@@ -20,28 +20,28 @@
 namespace torsion {
 namespace {
 
-// Most iterations for a region that begins or whose grid has moved: of the pressures or the
-// tractions in one round, of all rounds and all such regions together, and with those of the other
-// regions. Regions share what there is, so that the step does not get long; what is left to do is
-// done in the next steps.
+// Most iterations for a region that begins or whose grid has moved: for the pressures or the
+// tractions of one round; of all rounds and all such regions together; and the same beside other
+// regions. Regions share the total, so that no step gets long. The remaining residual is reduced in
+// the next steps.
 constexpr std::uint32_t kIterationsAnew = 8;
 constexpr std::uint32_t kIterationsOfAll = 16;
 constexpr std::uint32_t kIterationsOfStep = 24;
 constexpr std::uint32_t kRoundsAnew = 8;  // of pressures and tractions in turn
 constexpr double kSkipAnew = 1e-5;        // largest change, relative, that ends them
-// Share of the last step's change by which a solution is extrapolated, at most. With s that share
+// Largest share of the last step's change by which a solution is extrapolated. With s that share
 // and r the part of an error that a step's iterations leave, the errors e of successive steps
-// follow e_n = r (1 + s) e_(n-1) - r s e_(n-2), which decays for every r < 1 only where s <= 1.
+// follow e_n = r (1 + s) e_(n-1) - r s e_(n-2), which decays for every r < 1 only if s <= 1.
 constexpr double kMostExtrapolation = 1.0;
-// A contact rolls where the tool tilts over it in a step by so much that the depth at its rim
-// changes by more than kRolls of the mean depth: material comes in of which the last solution knows
-// nothing. With two iterations a step the friction of rolling with spin was 2.3 % of the largest
-// off, with eight 0.8 %, as with any more (patch_steady_rolling_test.cpp).
+// A contact rolls if the tool tilts so much in a step that the depth at the contact's rim changes
+// by more than kRolls of the mean depth: new material comes in, of which the last solution knows
+// nothing. With two iterations a step the friction of rolling with spin was off by 2.3 % of the
+// largest, with eight, and with more, by 0.8 % (patch_steady_rolling_test.cpp).
 constexpr std::uint32_t kIterationsOfRolling = 8;  // at most
 constexpr double kRolls = 2e-3;
 
-/// Component of this step's motion along the last one's, over that: 1 in steady motion, -1 where it
-/// turns back.
+/// Component of this step's motion along the last one's, divided by the last one's size: 1 in
+/// steady motion, -1 where it turns back.
 double share_of_last(const Patch& patch, double deepened) {
   const double radius = patch.state.regions.at<Overlap>(patch.region).radius;
   const PatchState& last = patch.own;
@@ -53,7 +53,7 @@ double share_of_last(const Patch& patch, double deepened) {
   return square > 0.0 ? std::clamp(along / square, -1.0, 1.0) : 0.0;
 }
 
-/// By how much of the last step's change the solution is extrapolated.
+/// The share of the last step's change by which the solution is extrapolated.
 ExtrapolationShares extrapolation_shares(const Patch& patch) {
   if (has_support(patch)) {
     const double share = std::clamp(patch.own.along_last, 0.0, kMostExtrapolation);
@@ -70,7 +70,7 @@ bool rolls(const Patch& patch) {
   return glm::length(tilt) * overlap.radius > kRolls * overlap.mean_depth;
 }
 
-/// Allows the iterations of a solution that has far to go.
+/// Solves with the iterations of a solution that is far from converged.
 /// @param iterations  at most
 void solve_longer(Patch& patch, std::uint32_t iterations) {
   const std::uint32_t least = patch.model.settings.iterations;
@@ -81,8 +81,8 @@ void solve_longer(Patch& patch, std::uint32_t iterations) {
   patch.problem.settled = 0.0;
 }
 
-/// After the grid has moved, or at a region's beginning: displacements of the tractions that are
-/// there.
+/// Begins a solution after the grid has moved or at a region's beginning: finds the displacements
+/// of the present tractions.
 /// @param iterations  at most
 void start_anew(Patch& patch, std::uint32_t iterations) {
   const PatchColumns& columns = patch.columns;
@@ -110,8 +110,8 @@ void start_anew(Patch& patch, std::uint32_t iterations) {
   solve_longer(patch, iterations);
 }
 
-/// A typical pressure, by which changes are measured: the mean, or before there is any, what the
-/// depth will need.
+/// A typical pressure, to which changes are compared: the mean, or, where there is none yet, the
+/// pressure that the depth will need.
 double reference_pressure(const Patch& patch, double depth) {
   const double mean = mean_pressure(patch.columns);
   if (mean > 0.0) {
@@ -121,12 +121,12 @@ double reference_pressure(const Patch& patch, double depth) {
   return depth / (reach * patch.problem.compliance * static_cast<double>(patch.side)) * reach;
 }
 
-/// That of the disc of the loaded cells' area, m.
+/// Radius of the disc with the loaded cells' area, m.
 double contact_radius(const Patch& patch, const PatchSums& sums) {
   return std::sqrt(sums.loaded_cells * cell_area(patch.frame, patch.side) / std::numbers::pi);
 }
 
-/// Static friction falls to dynamic with the path slipped, and comes back with the elastic
+/// Static friction falls to dynamic friction with the path slipped, and recovers with the elastic
 /// path.
 /// @param radius  m, of the contact
 void update_kinetic_shares(const Patch& patch, double force, double radius) {
@@ -157,7 +157,7 @@ void update_kinetic_shares(const Patch& patch, double force, double radius) {
   }
 }
 
-/// What the region's components become.
+/// Writes the region's components.
 void summarize(const Patch& patch, const PatchSums& sums) {
   const Model& model = patch.model;
   State& state = patch.state;
@@ -188,9 +188,9 @@ void summarize(const Patch& patch, const PatchSums& sums) {
   friction.stick_radius = std::sqrt(sums.stuck_cells * cell / std::numbers::pi);
   friction.stick_turn = sums.turn;
   const double turn = friction.stick_turn;
-  // As a rotation about the contact's middle, so that it does not matter where the grid has its
-  // origin; displacements turn by a cross product, however far. Not about the pressure's centre:
-  // the grid would follow that, and the contact's rim over its cells would move the centre in turn.
+  // As a rotation about the contact's middle, so that the place of the grid's origin does not
+  // matter. The middle is not the centre of pressure: the grid would follow that, and the contact's
+  // rim, moving over the cells, would move the centre in turn.
   const glm::dvec2 about = sums.middle;
   const glm::dvec2 from_center = about - sums.center;
   const glm::dvec2 moved = sums.moved + turn * glm::dvec2(-from_center.y, from_center.x);
@@ -201,11 +201,11 @@ void summarize(const Patch& patch, const PatchSums& sums) {
   carrier.rotation = patch.frame.normal * turn;
 }
 
-/// While a region settles on a grid with other axes its displacements are found on other cells, and
-/// differ a little from those before, as if the material had moved under the tool that has not:
-/// fresh cells would come into contact that carry no traction, less traction would let the material
-/// spring back farther, and so on. It is the grid that goes back by as much instead, to where the
-/// material under it stands as it stood.
+/// While a region settles on a grid with other axes, its displacements are found on other cells and
+/// differ a little from those before, as if the material had moved under a tool at rest. Newly
+/// covered cells, without traction, would reduce the traction, the material would spring back
+/// farther, and so on. Instead the grid moves back by the difference, to where the material under
+/// it was.
 /// @param before  when the cells' depths were found
 void keep_place(const Patch& patch, const RegionCarrier& before) {
   RegionFrame& frame = patch.state.regions.at<RegionFrame>(patch.region);
@@ -215,7 +215,7 @@ void keep_place(const Patch& patch, const RegionCarrier& before) {
   frame.origin += shift - frame.normal * glm::dot(shift, frame.normal);
 }
 
-/// True where the last step's displacements are no start.
+/// True where the last step's displacements can't be started from.
 bool is_anew(const PatchState& state) {
   return state.started == 0 || state.moved != 0;
 }
@@ -236,7 +236,7 @@ struct IterationLimits {
   std::uint32_t of_rolling = 0;
 };
 
-/// Where the solution of this step starts from, and how long it may take.
+/// Where this step's solution starts, and how many iterations it may take.
 void begin_solution(Patch& patch, const IterationLimits& iterations) {
   if (is_anew(patch.own)) {
     extrapolate_cells(patch.rows, {}, patch.columns, patch.problem);
@@ -254,7 +254,7 @@ void begin_solution(Patch& patch, const IterationLimits& iterations) {
   }
 }
 
-/// The first solution is no change from which the next step could go on.
+/// The first solution is not a change that the next step could extrapolate.
 void forget_change(const PatchChange& change) {
   for (const std::span<double>& each : {change.traction_x, change.traction_y, change.pressure,
                                         change.moved_x, change.moved_y, change.depression}) {

@@ -10,15 +10,15 @@
 namespace torsion {
 namespace {
 
-// A body that deflects takes more iterations: its motions have compliances of their own, beside
-// those that the local inverse knows.
+// A deflecting body takes more iterations: its motions have compliances of their own, which the
+// local inverse does not contain.
 constexpr std::uint32_t kSweepsOnSoftBody = 4;  // times the settings'
 constexpr std::uint32_t kRoundsOnSoftBody = 3;  // at most: pressing moves it sideways, too
-// Where the body as a whole deflects, what a step leaves undone builds up, under a hand that is
-// not steady the more so: by ends as early as elsewhere, played-back recordings went 7 % astray.
+// Where the body as a whole deflects, the residuals of steps accumulate, most of all under an
+// unsteady hand: with the usual tolerance, played-back recordings deviated by 7 %.
 constexpr double kSettledOnBody = 0.01;  // PatchProblem::settled
 
-/// As the tool goes over cells that stay where they are, while RegionMotion's pivot goes with it.
+/// The tool's motion over cells that stay in place, while RegionMotion's pivot moves with the tool.
 RegionMotion motion_over_cells(const Model& model, const State& state, std::uint32_t region,
                                const RegionFrame& frame) {
   RegionMotion motion = state.regions.at<RegionMotion>(region);

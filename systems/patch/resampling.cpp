@@ -12,7 +12,7 @@
 namespace torsion {
 namespace {
 
-/// What the cells were before the grid moved.
+/// The cells before the grid moved.
 struct Before {
   std::span<const double> held_x, held_y;  // m
   std::span<const CellTraction> tractions;
@@ -27,7 +27,8 @@ struct Before {
   }
 };
 
-/// On a cell's centre but for rounding: there, so that mirror images fall on the same side of it.
+/// Rounds a place that is a cell's centre but for rounding to the centre, so that mirror images
+/// fall on the same side.
 glm::dvec2 on_centers(const glm::dvec2& place) {
   constexpr double kOnCenter = 1e-6;
   const glm::dvec2 nearest = glm::round(place);
@@ -35,7 +36,8 @@ glm::dvec2 on_centers(const glm::dvec2& place) {
           std::abs(place.y - nearest.y) < kOnCenter ? nearest.y : place.y};
 }
 
-/// Pressure and traction between the four cells around a place; nothing outside of the grid.
+/// Pressure and traction, interpolated between the four cells around a place; zero outside of the
+/// grid.
 CellTraction linear_traction(const Before& before, const glm::dvec2& place) {
   const glm::dvec2 low = glm::floor(place);
   const glm::dvec2 part = place - low;
@@ -61,8 +63,9 @@ std::array<double, 4> cubic_weights(double x) {
           x * (0.5 + x * (2.0 - 1.5 * x)), x * x * (-0.5 + 0.5 * x)};
 }
 
-/// The displacement is smooth: four points a way keep it, two would wear it down.
-/// @return false where they do not all lie in the grid
+/// The displacement is smooth: interpolation by four points a direction keeps it, by two would
+/// flatten it.
+/// @return false if not all of them lie in the grid
 bool cubic_held(const Before& before, const glm::dvec2& place, glm::dvec2& held) {
   const glm::dvec2 low = glm::floor(place);
   const glm::dvec2 part = place - low;
@@ -90,8 +93,8 @@ struct Slip {
   double kinetic_share = 0.0;
 };
 
-/// By the nearest loaded cells: linear between those next to the place, and beyond the contact's
-/// rim those up to two cells away.
+/// From the nearest loaded cells: linear between those next to the place, and beyond the contact's
+/// rim from those up to two cells away.
 Slip slip_at(const Before& before, const glm::dvec2& place) {
   constexpr double kReach = 2.0;        // cells
   constexpr double kFar = 1e-6;         // what a cell that is not next to the place counts
@@ -108,7 +111,7 @@ Slip slip_at(const Before& before, const glm::dvec2& place) {
       }
       const CellTraction& from = before.tractions[before.index(at)];
       const glm::dvec2 away = glm::abs(glm::dvec2(at) - place);
-      // Every cell that is nearer than the reach along both axes is among the sixteen.
+      // All cells that are nearer than the reach along both axes are among the sixteen.
       const double near = std::max(1.0 - away.x, 0.0) * std::max(1.0 - away.y, 0.0);
       const double far = std::max(kReach - away.x, 0.0) * std::max(kReach - away.y, 0.0);
       const double weight = near + kFar * far;

@@ -16,8 +16,8 @@
 namespace torsion {
 namespace {
 
-// Share of the preconditioned residual where there is no telling how far to go: the local inverse
-// gives too much for what is smooth, the more so the more cells lie across it.
+// Share of the preconditioned residual that is taken where no step length can be computed: the
+// local inverse overestimates smooth residuals, and more so over more cells.
 constexpr double kDamping = 0.6;
 constexpr double kDampingSide = 16.0;  // cells along a side, beyond which it is less
 constexpr double kShort = 0.05;        // of a step: so bent that it leads nowhere
@@ -62,7 +62,7 @@ double stiffness_alone(const PatchProblem& problem) {
   return 1.0 / (softest * problem.compliance);
 }
 
-/// Where an iteration begins.
+/// The state at the beginning of an iteration.
 struct IterationStart {
   bool outside = false;  // a traction is out of its disc
   bool alone = false;    // the last step was as good as none
@@ -70,7 +70,7 @@ struct IterationStart {
   double before = 0.0;  // r' z of the last iteration, 0: a new search begins
 };
 
-/// The step of cells on a body that does not deflect as a whole.
+/// The step of the cells on a body that does not deflect as a whole.
 TractionIteration find_cells_step(const PatchProblem& problem, const StepRequest& request,
                                   const TractionColumns& cells, PatchWork& work) {
   find_residuals(cells, request.stiffness);
@@ -91,7 +91,8 @@ TractionIteration find_step(const PatchProblem& problem, double stiffness,
   const double share = start.outside ? start.damping : 1.0;
   TractionIteration iteration = find(problem, {stiffness, false, share, start.before}, cells, work);
   if (!start.outside && (start.alone || iteration.step.slope <= 0.0)) {
-    // Beside cells that slip the neighbours' share may lead uphill; each cell's own does not.
+    // Beside slipping cells the neighbours' part of the preconditioner may lead uphill; each cell's
+    // own part does not.
     const double clipped = iteration.step.clipped;
     iteration.step = find(problem, {stiffness, true, 1.0, 0.0}, cells, work).step;
     iteration.step.clipped += clipped;
@@ -118,12 +119,13 @@ PatchOutcome solve_tractions(const PatchProblem& problem, const PatchColumns& co
     const TractionIteration iteration = find_step(problem, alone_stiffness, start, cells, work);
     const double curvature = respond(problem, cells, work);
     if (curvature <= 0.0) {
-      // Nothing is left to do; or the equations have no solution, which is no small residual.
+      // Either nothing is left to do, or the equations have no solution, which must not look like a
+      // small residual.
       outcome.last_change = iteration.residual_product > 0.0 ? 1.0 : 0.0;
       break;
     }
-    // A first step brings all tractions into their discs, so it goes all the way. Where something
-    // slips, a step ends on the discs' rims: no farther.
+    // A first step brings all tractions into their discs, so it is taken in full. Where cells slip,
+    // a step ends on the discs' rims, so it is at most a full one.
     const double best = start.outside ? 1.0 : iteration.step.slope / curvature;
     const double alpha = iteration.step.slips > 0.0 ? std::clamp(best, 0.0, 1.0) : best;
     const bool exact = !start.outside && iteration.step.clipped == 0.0;
@@ -161,10 +163,10 @@ void find_rigid_motions(const PatchProblem& problem, PatchWork& work) {
   std::ranges::copy(problem.support.place_y, work.rigid_x[2].begin());
 }
 
-/// The body as a whole deflects, too, which the local inverse does not know: z of a soft body would
-/// be far too large. With B the local inverse, Z the rigid motions and C their compliance,
-/// the preconditioner is the inverse of
-/// B^-1 + Z C Z' (Woodbury's formula). Golub and Van Loan, Matrix Computations, 2.1.
+/// The body as a whole deflects, which the local inverse does not contain: z of a soft body would
+/// be far too large. With B the local inverse, Z the rigid motions and C their compliance, the
+/// preconditioner is the inverse of B^-1 + Z C Z' (Woodbury's formula). Golub and Van Loan, Matrix
+/// Computations, 2.1.
 void add_rigid_compliance(const PatchProblem& problem, PatchWork& work) {
   const std::size_t count = work.preconditioned_x.size();
   glm::dmat3 stiffness(0.0);  // Z' B Z
@@ -207,15 +209,15 @@ double precondition_residual(const PatchProblem& problem, const PatchColumns& co
   return mask_preconditioned(count, work.residual_x.data(), work.preconditioned_x.data());
 }
 
-/// The step: changes pressures by alpha d and displaces the surface.
-/// @param tension  out: the largest negative pressure that there is then, Pa
+/// Takes the step: changes the pressures by alpha d and displaces the surface.
+/// @param tension  out: the largest negative pressure after it, Pa
 IterationChange go(double alpha, const PatchColumns& columns, PatchWork& work, double& tension) {
   return step_pressures(work.direction_x.size(), alpha, work.response_x.data(),
                         work.direction_x.data(), columns.pressure.data(), columns.depression.data(),
                         tension);
 }
 
-/// Takes pressure away from cells under tension.
+/// Sets the pressure of cells under tension to zero.
 void release_tension(const PatchProblem& problem, const PatchColumns& columns, PatchWork& work) {
   find_tension(work.direction_x.size(), columns.pressure.data(), work.direction_x.data());
   move_by_pressure(problem, work);
@@ -243,7 +245,8 @@ PatchOutcome solve_pressures(const PatchProblem& problem, const PatchColumns& co
     move_by_pressure(problem, work);
     const double curvature = dot(count, work.direction_x.data(), work.response_x.data());
     if (curvature <= 0.0) {
-      // Nothing is left to do; or the equations have no solution, which is no small residual.
+      // Either nothing is left to do, or the equations have no solution, which must not look like a
+      // small residual.
       outcome.last_change = residual_product > 0.0 ? 1.0 : 0.0;
       break;
     }
@@ -274,7 +277,7 @@ double residual_of_pressures(const PatchColumns& columns) {
 
 namespace {
 
-/// Pressures move the surface sideways, tractions in and out.
+/// Whether pressures displace the surface along itself, and tractions along its normal.
 bool is_coupled(const PatchProblem& problem) {
   return problem.coupled || problem.support.response != nullptr;
 }
@@ -286,7 +289,7 @@ void take_change(std::span<const double> now, std::vector<double>& change) {
   }
 }
 
-/// One solution for the pressures with the tractions as they are, then one the other way round.
+/// Solves for the pressures at fixed tractions, then for the tractions at fixed pressures.
 PatchOutcome solve_in_turn(const PatchProblem& problem, const PatchColumns& columns,
                            PatchWork& work) {
   const bool coupled = is_coupled(problem);
@@ -332,7 +335,7 @@ void PatchWork::reserve(std::uint32_t side) {
   }
   discs.reserve(count);
   bordered.assign(std::size_t{side + 2} * (side + 2) + kLanes, 0.0);
-  // One more: what does not count is written, too.
+  // One more: the unused last value is written, too.
   for (std::vector<double>* each : {&scales_x, &scales_y, &scales}) {
     each->assign(2 * (most_pairs(side) + 1), 0.0);
   }

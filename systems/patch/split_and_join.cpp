@@ -27,8 +27,8 @@ void copy_component(State& state, std::uint32_t from, std::uint32_t region) {
   state.regions.at<Component>(region) = state.regions.at<Component>(from);
 }
 
-/// Lets go of the cells that are not in the region's contact.
-/// @return the pressure that is left, Pa, summed over the cells
+/// Releases the cells that are not in the region's contact.
+/// @return the pressure that remains, Pa, summed over the cells
 double keep_covered(State& state, std::uint32_t region) {
   const PatchRows rows = patch_rows(state, state.regions.at<RegionIdentity>(region).cells);
   double sum = 0.0;
@@ -41,7 +41,7 @@ double keep_covered(State& state, std::uint32_t region) {
   return sum;
 }
 
-/// Cells that are as near to the one region's contact as to the other's count in both.
+/// Cells that are equally near to both regions' contacts count half in each.
 void halve_shared(State& state, std::uint32_t from, std::uint32_t region) {
   const PatchRows theirs = patch_rows(state, state.regions.at<RegionIdentity>(from).cells);
   const PatchRows mine = patch_rows(state, state.regions.at<RegionIdentity>(region).cells);
@@ -64,14 +64,15 @@ std::uint32_t copied_from(const State& state, const PatchState& copy) {
   return static_cast<std::uint32_t>(found - regions.begin());
 }
 
-/// Lays the grid around what is left, at once: in the next step that would be a second event.
+/// Regrids around the remaining cells in this step: in the next it would be a second event.
 void regrid_around_rest(StepContext& context, std::uint32_t region) {
   const Grid grid = grid_of(context, region);
   const RegionPoints& contact = context.scratch.region_points[block_of(grid.identity)];
   regrid_around_loaded(context, region, contact);
   find_cells(grid, contact);
   context.state.regions.at<Overlap>(region) = summarize_cells(grid);
-  // They are held where they will have moved to without the other region's tractions.
+  // The cells are held at the displacements that they will have without the other region's
+  // tractions.
   std::ranges::fill(patch_rows(context.state, grid.identity.cells).surface.known, 0.0);
 }
 
@@ -125,7 +126,7 @@ void share_out_patch(StepContext& context, std::uint32_t region) {
 
 namespace {
 
-/// Takes in the loaded cells of a region, as seen in the grid of `frame`.
+/// Extends a box by the loaded cells of a region, seen in the grid of `frame`.
 void include_loaded(const Grid& of, const RegionFrame& frame, PlaneBox& box) {
   const auto tractions = of.state.cells.rows<CellTraction>(of.identity.cells);
   const glm::dvec2 half = cell_half_size(of);
@@ -145,7 +146,7 @@ void include_loaded(const Grid& of, const RegionFrame& frame, PlaneBox& box) {
   }
 }
 
-/// Whether a box lies in the grid with a free row and column on either side.
+/// Whether a box lies in the grid with a free row and column on every side.
 bool holds(const Grid& grid, const PlaneBox& box) {
   const glm::dvec2 cell = 2.0 * cell_half_size(grid);
   const glm::dvec2 spare(patch_spare(grid.side) * cell.x, 0.0);
@@ -153,7 +154,7 @@ bool holds(const Grid& grid, const PlaneBox& box) {
          glm::all(glm::lessThan(box.highest, grid.frame.half_size - cell));
 }
 
-/// Whether a region has tractions that are worth keeping.
+/// Whether a region has tractions worth keeping.
 bool has_settled(const State& state, std::uint32_t region) {
   constexpr double kSolved = 0.1;  // PatchState::residual
   const PatchState& own = state.regions.at<PatchState>(region);
@@ -183,7 +184,7 @@ void join_patch(StepContext& context, std::uint32_t ended, std::uint32_t heir) {
   }
   add_cells(grid, move_between(other.frame, grid.frame, grid.side),
             state.cells.rows<CellTraction>(other.identity.cells));
-  // All are displaced by the others' tractions, too, from now on: they are held where that is.
+  // From now on all cells are displaced by the other region's tractions, too, and are held there.
   std::ranges::fill(patch_rows(state, grid.identity.cells).surface.known, 0.0);
   const RegionSupport support = state.regions.at<RegionSupport>(heir);
   const BodyLaw& body = body_law_of(model, state.regions.at<RegionIdentity>(heir).body);

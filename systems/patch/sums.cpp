@@ -12,7 +12,7 @@ void add(std::span<double> to, double scale, const std::vector<double>& values) 
   }
 }
 
-/// displacement = what the sources do by one table.
+/// displacement = the sources' influence by one table.
 void sum_influences(const PatchProblem& problem, const InfluenceSources& sources,
                     InfluenceKind kind, const std::vector<double>& scales,
                     std::vector<double>& displacement) {
@@ -20,7 +20,7 @@ void sum_influences(const PatchProblem& problem, const InfluenceSources& sources
                 nullptr, displacement.data());
 }
 
-/// response_x, response_y = displacement along the surface by what has been gathered.
+/// response_x, response_y = displacement along the surface by the gathered sources.
 void sum_tractions(const PatchProblem& problem, const InfluenceSources& sources, PatchWork& work) {
   const InfluenceTables& tables = problem.influences;
   const GridBlock block = block_of(tables);
@@ -35,11 +35,11 @@ void sum_tractions(const PatchProblem& problem, const InfluenceSources& sources,
                 work.response_y.data());
 }
 
-/// Two rows of changes of one component, one above the other.
+/// Two rows of changes of one component, one below the other.
 struct ChangeRows {
   const double* low = nullptr;
   const double* high = nullptr;
-  /// Not zero where one of the two is not: faster than two comparisons of numbers.
+  /// Not zero if one of the two is not: faster than two floating point comparisons.
   [[nodiscard]] std::uint64_t any(std::uint32_t i) const {
     constexpr std::uint32_t kSign = 1;
     return (std::bit_cast<std::uint64_t>(low[i]) | std::bit_cast<std::uint64_t>(high[i])) << kSign;
@@ -54,7 +54,7 @@ void scale_pairs(const ChangeRows& rows, double first, double second, std::uint3
   }
 }
 
-/// Gathers pairs of cells: of every two rows those from the first to the last with a change that is
+/// Gathers pairs of cells: in every two rows those from the first to the last with a change that is
 /// not zero. Scales become displacements per table.
 /// @param change_x, change_y  Pa, (side x side); change_y may be empty
 InfluenceSources gather_sources(const PatchProblem& problem, std::span<const double> change_x,
@@ -104,8 +104,8 @@ void precondition(const PatchProblem& problem, const LocalInverse& inverse, cons
                   PatchWork& work, double* preconditioned) {
   const std::uint32_t side = problem.influences.side;
   const std::span<const double>& root = problem.rims.root;
-  // With A the influences and D the softness at rims, whose diagonals are alike but for the roots
-  // R: R B R for the inverse of A + D as B for that of A.
+  // With A the influences and D the softness at rims, whose diagonals differ only by the roots R, R
+  // B R approximates the inverse of A + D as B does that of A.
   if (!root.empty()) {
     multiply(root.size(), root.data(), residual, preconditioned);
   }

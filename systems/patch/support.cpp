@@ -16,12 +16,13 @@
 namespace torsion {
 namespace {
 
-// Of a body's compliances over those of its contact (yielding_ratio): where the solver has to know.
+// A body's compliances over those of its contact (yielding_ratio), above which the solver takes
+// them into account.
 constexpr double kSoft = 0.5;
 using Half = double __attribute__((vector_size(sizeof(double) * kLanes / 2)));
 constexpr std::size_t kAxisColumn = kSupportColumn;
 
-/// Moments of tractions with the terms, sums over the cells.
+/// Moments of tractions with the terms, summed over the cells.
 /// @param cells    a multiple of kLanes, of terms and tractions
 /// @param moments  (kAxisColumn) out
 TORSION_WIDEST
@@ -136,7 +137,7 @@ void find_columns(const SupportFit& support_fit, const RegionFrame& frame, std::
 
 using Wrenches = std::array<std::array<glm::dvec3, 2>, 3>;  // force and couple of three tractions
 
-/// Motions by three tractions as those do work on them, through a 6 x 6 compliance.
+/// Mutual work of three tractions through a 6 x 6 compliance.
 glm::dmat3 between(const std::array<double, 36>& compliance, const Wrenches& wrenches,
                    double area) {
   const auto part = [](const std::array<glm::dvec3, 2>& wrench, std::size_t k) {
@@ -157,7 +158,7 @@ glm::dmat3 between(const std::array<double, 36>& compliance, const Wrenches& wre
   return motions;
 }
 
-/// 6 x 6: what of a body yields under a region when the others have answered.
+/// 6 x 6: a region's compliance by the body, including the other regions' reactions.
 std::array<double, 36> yielding_of(const SupportFit& support_fit, const RegionReaction& reaction) {
   std::array<double, 36> motion = support_fit.own;
   for (std::size_t k = 0; reaction.active != 0 && k < motion.size(); ++k) {
@@ -166,8 +167,8 @@ std::array<double, 36> yielding_of(const SupportFit& support_fit, const RegionRe
   return motion;
 }
 
-/// Adds how the other regions answer to the tractions' wrench: as a rigid motion.
-/// @param change  the tractions are a change of those that they have answered to
+/// Adds the other regions' reaction to the tractions' wrench, as a rigid motion.
+/// @param change  the tractions are a change since the other regions reacted
 void add_answer(const PatchSupport& support, const SupportPolynomials& moments, bool change,
                 SupportPolynomials& polynomials) {
   const SupportFit& support_fit = *support.support_fit;
@@ -197,14 +198,14 @@ void add_answer(const PatchSupport& support, const SupportPolynomials& moments, 
   }
 }
 
-/// By how much the body deflects beside its contact: the sum of its compliances over those of the
+/// How much the body deflects beside its contact: the sum of its compliances over those of the
 /// contact.
 double yielding_ratio(const Model& model, const RegionIdentity& region,
                       const SupportFit& support_fit, const std::array<double, 36>& yielding) {
   const Elasticity& elasticity = model.bodies.at<Elasticity>(region.body);
   const double a = support_fit.radius;
-  // Those of a contact: at most that of a disc pressed, 1 / (2 E* a), and tilted, 3 / (4 E* a^3).
-  // Johnson, Contact Mechanics, 1985, (3.36) and 3.5.
+  // The contact's compliances: at most those of a disc that is pressed, 1 / (2 E* a), and tilted, 3
+  // / (4 E* a^3). Johnson, Contact Mechanics, 1985, (3.36) and 3.5.
   const double force = 2.0 * elasticity.contact_modulus() * a;
   const double couple = 4.0 / 3.0 * elasticity.contact_modulus() * a * a * a;
   double sum = 0.0;

@@ -57,7 +57,7 @@ void across(std::size_t count, const double* __restrict slips, const double* __r
   }
 }
 
-/// What every cell comes to, and whether that is on the rim of its disc.
+/// The result of every cell, and whether it lies on the rim of its disc.
 TORSION_WIDEST
 void mix_directions(std::size_t count, const DirectionShares& shares,
                     const double* __restrict traction_x, const double* __restrict traction_y,
@@ -115,7 +115,7 @@ TORSION_WIDEST
 double slope_of(const TractionColumns& cells, const double* x, const double* y) {
   Wide slope{};
   for (std::size_t k = 0; k < cells.count; k += kLanes) {
-    // What is left of the way is small beside the way: the difference first.
+    // The remaining distance is small beside the distance: subtract first.
     const Wide left_x = lanes_at(cells.target_x + k).all - lanes_at(cells.moved_x + k).all;
     const Wide left_y = lanes_at(cells.target_y + k).all - lanes_at(cells.moved_y + k).all;
     slope += left_x * lanes_at(x + k).all + left_y * lanes_at(y + k).all;
@@ -123,7 +123,7 @@ double slope_of(const TractionColumns& cells, const double* x, const double* y) 
   return sum_of(slope);
 }
 
-/// @return the most that the square of a traction is over that of its limit, Pa^2
+/// @return the largest excess of a traction's square over its limit's square, Pa^2
 TORSION_WIDEST
 double limits(std::size_t count, const double* __restrict pressure,
               const double* __restrict friction, const double* __restrict traction_x,
@@ -171,7 +171,7 @@ void keep_slips(std::size_t count, const double* __restrict traction_x,
   }
 }
 
-/// (q - P(q + k s)) / k, by which a cell's traction is not what its slip asks for.
+/// (q - P(q + k s)) / k: how far a cell's traction deviates from what its slip requires.
 TORSION_WIDEST
 void find_lacking(std::size_t count, double stiffness, const double* __restrict limits,
                   const double* __restrict traction_x, const double* __restrict traction_y,
@@ -191,7 +191,7 @@ void find_lacking(std::size_t count, double stiffness, const double* __restrict 
   }
 }
 
-/// Sum of (friction's coefficient times depth)^2 where there is pressure.
+/// Sum of (friction's coefficient times depth)^2 over the cells with pressure.
 TORSION_WIDEST
 double slip_scale(std::size_t count, const double* __restrict pressure,
                   const double* __restrict friction, const double* __restrict depth) {

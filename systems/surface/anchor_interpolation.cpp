@@ -27,8 +27,8 @@ std::vector<InterpolationRow> invert_interpolation(std::span<const glm::dvec3> c
     matrix.block<1, 4>(i, count) = affine.transpose();
     matrix.block<4, 1>(count, i) = affine;
   }
-  // Complete orthogonal: centers that lie in one plane leave part of the affine field open; it is
-  // set to zero.
+  // Complete orthogonal decomposition: centers in one plane leave a part of the affine field
+  // undetermined, which is set to zero.
   const Eigen::MatrixXd inverse = pseudo_inverse(matrix);
   std::vector<InterpolationRow> rows;
   rows.reserve(static_cast<std::size_t>(side * side));

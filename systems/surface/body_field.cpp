@@ -24,9 +24,8 @@ double distance_share_from_volume(const FixedVolume& volume, const glm::dvec3& p
   return smooth_step((away - 1.0) / kBand);
 }
 
-/// Displacements at the interpolation's centers: what the body model says, and zero at the held
-/// points. Where a dent's far field would add to them it is taken out, so that the sum still goes
-/// through the anchors.
+/// Displacements at the interpolation's centers: those of the body model, and zero at the held
+/// points. The dents' far fields are subtracted, so that the sum passes through the anchors.
 std::vector<glm::dvec3> center_values(const Snapshot& snapshot, const FrameBody& data,
                                       std::span<const Slot> slots,
                                       std::span<const glm::dvec3> centers) {
@@ -42,8 +41,8 @@ std::vector<glm::dvec3> center_values(const Snapshot& snapshot, const FrameBody&
   return values;
 }
 
-/// Regions in their order of formation: each one's dent is what the skeleton and the dents before
-/// it leave of its overlap.
+/// Regions in the order in which they began: each dent is what the skeleton and the dents before it
+/// leave of the overlap.
 void fill_slots(const Snapshot& snapshot, BodyField& field) {
   for (std::uint32_t region = 0; region < snapshot.regions.size(); ++region) {
     const RegionIdentity& identity = snapshot.regions.at<RegionIdentity>(region);
@@ -63,7 +62,7 @@ void fill_slots(const Snapshot& snapshot, BodyField& field) {
   }
 }
 
-/// All regions of a tool that its axis misses turn one beam: together no farther than the tool.
+/// All regions of a tool that its axis misses turn one beam: together at most as far as the tool.
 void limit_past_turns(const Snapshot& snapshot, BodyField& field) {
   for (std::uint32_t tool = 0; tool < snapshot.tools.size(); ++tool) {
     double sum = 0.0;
@@ -98,8 +97,8 @@ void fill_touchers(const Snapshot& snapshot, BodyField& field) {
 
 constexpr double kLeastTurn = 1e-4;  // rad; what is below half of it moves along tangents
 
-/// Angles of the anchors about a slot's axis as far as they are drawn as turns; empty where there
-/// are none worth it. Between half of the least turn and that they fade in.
+/// Angles of the anchors about a slot's axis, as far as they are drawn as turns; empty if all are
+/// too small. They fade in between half of the least turn and that.
 /// @param share  out: how far
 std::vector<double> anchor_turns(const Snapshot& snapshot, const Slot& slot, std::size_t anchors,
                                  std::size_t centers, double& share) {
@@ -124,8 +123,8 @@ std::vector<double> anchor_turns(const Snapshot& snapshot, const Slot& slot, std
   return turns;
 }
 
-/// The turn of the whole body about each slot's axis. What it does to the anchors if angles were
-/// small is taken out of their displacements, so that what is left is small however far they turn.
+/// The turn of the whole body about each slot's axis. The anchors' displacements by it, to first
+/// order, are subtracted from theirs, so that the rest stays small however far they turn.
 /// @param values  m: of the interpolation's centers; in and out
 void fill_turns(const Snapshot& snapshot, std::span<const InterpolationRow> inverse,
                 std::size_t anchors, std::span<const glm::dvec3> centers, BodyField& field,
@@ -154,7 +153,7 @@ void fill_turns(const Snapshot& snapshot, std::span<const InterpolationRow> inve
   }
 }
 
-/// How far a ring about a turn's axis goes round it by the interpolated displacements alone, rad.
+/// How far the interpolated displacements alone move a ring around a turn's axis, rad.
 double ring_turn(const BodyField& field, const BodyTurn& turn, double radius) {
   constexpr int kPlaces = 8;
   const glm::dvec3 other =
@@ -171,11 +170,11 @@ double ring_turn(const BodyField& field, const BodyTurn& turn, double radius) {
   return sum / (kPlaces * radius);
 }
 
-/// The material under a contact has turned as the step says, from which the tool was seen; the
-/// interpolation is off by some percent of it, and knows nothing of what is finer than the anchors.
-/// What the displacements left to interpolate go round there is in it, and is taken out of them: an
-/// anchor's angle is its material's, more than it has gone round the axis where turns grow
-/// outwards.
+/// The material under a contact has turned as the step computed it; the interpolation differs from
+/// that by some percent, and does not resolve what is finer than the anchors. The part of the
+/// remaining displacements that goes around the axis is counted in the turn and subtracted from
+/// them: an anchor's angle is its material's, and larger than its way around the axis where turns
+/// grow outwards.
 void meet_supports(const Snapshot& snapshot, std::span<const glm::dvec3> centers,
                    BodyField& field) {
   for (Slot& slot : field.slots) {
@@ -251,7 +250,7 @@ BodyField body_field(const Model& model, const Snapshot& snapshot, const FrameWo
   if (!field.has_weights || field.slots.empty()) {
     return field;
   }
-  // A body with compliance has what its contacts do to the half-space in the dents alone.
+  // On a body with compliance, only the dents contain the contacts' half-space displacements.
   const bool anchors_have_dents = model.bodies.at<BodyModels>(body).body == BodyModel::kSkeleton;
   std::vector<glm::dvec3> values = anchors_have_dents
                                        ? center_values(snapshot, data, field.slots, centers)

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kHeldPoints =
     12;  // how many points of the fixed region the interpolation keeps in place
 
-/// Points spread over the body's fixed vertices, clear of its anchors: each next one is the
+/// Points spread over the body's fixed vertices, away from its anchors: each next one is the
 /// farthest from all before.
 std::vector<glm::dvec3> held_points(const BodyDescription& body, const FixedRegion& fixed,
                                     const Bounds& bounds, std::span<const AnchorRest> anchors) {
@@ -46,7 +46,7 @@ std::vector<glm::dvec3> held_points(const BodyDescription& body, const FixedRegi
   return points;
 }
 
-/// Centers of the interpolation of one body: its anchors, then points that stay put.
+/// Centers of the interpolation of one body: its anchors, then points that are held in place.
 struct BodyCenters {
   std::vector<glm::dvec3> held;
   std::vector<InterpolationRow> inverse;

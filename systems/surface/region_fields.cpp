@@ -27,7 +27,7 @@ double surface_turn(double r, double s) {
   return 2.0 / std::numbers::pi * (std::asin(x) - x * std::sqrt(1.0 - x * x));
 }
 
-/// Least squares' matrix and right sides: what the rings have, and what the couple is.
+/// Matrix and right sides of the least squares: the rings' turns, and the couple.
 struct TurnFit {
   std::array<double, std::size_t{kFieldDiscs} * kFieldDiscs> matrix{};
   std::array<double, std::size_t{kFieldDiscs} * 2> right{};
@@ -47,8 +47,8 @@ void add_rings(const RingProfiles& profiles, const RingTurns& rings, TurnFit& fi
   }
 }
 
-/// Neighbours' differences, and a little of the discs themselves, so that two alike are still told
-/// apart.
+/// Differences of neighbours, and a little of the discs themselves, so that two equal ones remain
+/// distinguishable.
 void add_calm(double weight, TurnFit& fit) {
   constexpr double kOfItself = 1e-6;
   for (std::size_t j = 0; j < kFieldDiscs; ++j) {
@@ -70,8 +70,8 @@ double couple_share(std::size_t disc) {
 }  // namespace
 
 RingProfiles make_ring_profiles() {
-  // A ring's points lie to both sides of it, with the weights that RingTurns::add gives them: its
-  // profile is the mean over them, where they are spread evenly.
+  // A ring's points lie on both sides of it, with the weights of RingTurns::add: its profile is the
+  // mean over evenly spread points.
   constexpr int kSlices = 64;
   RingProfiles profiles;
   for (std::size_t ring = 0; ring < kRings; ++ring) {
@@ -121,7 +121,8 @@ void discs_of_ring_turns(const RingProfiles& profiles, const RingTurns& rings, d
     fit.right[2 * j + 1] = couple_share(j);
   }
   solve_symmetric(kFieldDiscs, kFieldDiscs, fit.matrix.data(), 2, fit.right.data(), 1e-12);
-  // What the rings ask for, and as much of what raises the couple at the least cost as is lacking.
+  // The rings' turns, and of the profile that raises the couple at the least cost as much as is
+  // missing.
   double found = 0.0;
   double raised = 0.0;
   for (std::size_t j = 0; j < kFieldDiscs; ++j) {
@@ -136,18 +137,18 @@ void discs_of_ring_turns(const RingProfiles& profiles, const RingTurns& rings, d
 
 namespace {
 
-// A square load of width b sinks in its middle as deep as a point load spread over b / (4 ln(1 +
-// sqrt(2))) (Johnson, 1985, eq. 3.25).
+// A uniform pressure on a square of width b displaces its middle as far as a point load spread over
+// b / (4 ln(1 + sqrt(2))) (Johnson, 1985, eq. 3.25).
 constexpr double kSpreadOverBlock = 0.2837;
 
-/// By trying on a ball's partial slip, 8 to 24 cells a side: less lets single cells show, more
-/// bends the field.
+/// Found by trial on a ball's partial slip, 8 to 24 cells a side: with less, single cells show;
+/// with more, the field is distorted.
 double calm_of(std::uint32_t side) {
   const double share = 0.12 / static_cast<double>(side);
   return share * share;
 }
 
-/// One region at work.
+/// One region.
 struct Source {
   const RegionFrame& frame;
   std::uint32_t side;
@@ -155,7 +156,8 @@ struct Source {
   std::span<const CellTraction> tractions;
 };
 
-/// Shares `force` among the blocks as the cells press; the pressure centre.
+/// Divides `force` among the blocks in proportion to the cells' pressures.
+/// @return the pressure centre
 glm::dvec2 press_blocks(const Source& source, double force_in_all, RegionField& field) {
   glm::dvec2 center(0.0);
   double total = 0.0;
@@ -183,8 +185,8 @@ glm::dvec2 press_blocks(const Source& source, double force_in_all, RegionField& 
   return total > 0.0 ? center / total : glm::dvec2(0.0);
 }
 
-/// That of the disc with the second moment of the loaded cells about the centre, m: what turns lies
-/// farther out in a blade than in a disc of its area.
+/// Radius of the disc with the second moment of the loaded cells about the centre, m: a blade's
+/// turn acts farther out than that of a disc of its area.
 double radius_of_moment(const Source& source, const glm::dvec2& center) {
   double squares = 0.0;
   double count = 0.0;
@@ -216,7 +218,8 @@ double couple_of(const Source& source, const RegionField& field) {
   return couple;
 }
 
-/// How far the cells have gone around the field's centre, all of the grid's, in contact or not.
+/// How far the cells have gone around the field's centre: all of the grid's cells, in contact or
+/// not.
 RingTurns turns_of_cells(const State& state, std::uint32_t region, const Source& source,
                          const RegionField& field) {
   const Range cells = state.regions.at<RegionIdentity>(region).cells;
@@ -244,7 +247,8 @@ RingTurns turns_of_cells(const State& state, std::uint32_t region, const Source&
   return rings;
 }
 
-/// Puts a disc of any radius on the two nearest of the field's, with its angle and its couple.
+/// Divides a disc of any radius between the two nearest ones of the field, with its angle and its
+/// couple.
 void add_disc(RegionField& field, double radius_share, double turn) {
   const double place = std::clamp(radius_share * kFieldDiscs, 1.0, double{kFieldDiscs});
   const auto lower = std::min(static_cast<std::size_t>(place), std::size_t{kFieldDiscs - 1});

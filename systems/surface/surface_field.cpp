@@ -80,7 +80,7 @@ bool inside_box(const Bounds& bounds, const glm::dvec3& point) {
          glm::all(glm::lessThan(point, bounds.highest));
 }
 
-/// The slot of this tool whose region is nearest, measured in its radius.
+/// The slot of this tool whose region is nearest, in units of its radius.
 const Slot& nearest_slot(std::span<const Slot> slots, std::uint32_t tool, const glm::dvec3& point) {
   const Slot* nearest = nullptr;
   double least = 0.0;
@@ -97,9 +97,9 @@ const Slot& nearest_slot(std::span<const Slot> slots, std::uint32_t tool, const 
   return *nearest;
 }
 
-/// How far a point inside the tool must go along `direction` (tool frame) to come out: Newton's
+/// How far a point inside the tool must go along `direction` (tool frame) to leave it. Newton's
 /// method on the distance, bracketed, because interior distances of tools that are not convex are
-/// not monotone; where the distance hardly changes on the way, steps that double.
+/// not monotone; where the distance hardly changes along the way, steps that double.
 double way_out(const Model& model, const Toucher& toucher, const glm::dvec3& start,
                const glm::dvec3& direction, Distance distance) {
   const double tolerance = 1e-7 * glm::length(toucher.bounds.highest - toucher.bounds.lowest);
@@ -126,9 +126,9 @@ double way_out(const Model& model, const Toucher& toucher, const glm::dvec3& sta
   return distance.value < 0.0 && std::isfinite(outside) ? outside : t;
 }
 
-/// Which way the body yields to a tool at a point: against the outward normals of the tool's
-/// regions, weighted by the fourth power of how near they are, so that the nearest counts and
-/// nothing jumps between two of them. Body frame, unit.
+/// The direction in which the body yields to a tool at a point: against the outward normals of the
+/// tool's regions, weighted by the fourth power of their nearness, so that the nearest one counts
+/// and nothing jumps between two. Body frame, unit.
 glm::dvec3 way_into_body(const BodyField& field, std::uint32_t tool, const glm::dvec3& point) {
   glm::dvec3 sum(0.0);
   for (const Slot& slot : field.slots) {
@@ -142,8 +142,9 @@ glm::dvec3 way_into_body(const BodyField& field, std::uint32_t tool, const glm::
   return length > 0.0 ? sum / length : -nearest_slot(field.slots, tool, point).dent.normal;
 }
 
-/// Pushes a point that is still inside a tool out of it: half-way between into the body and the
-/// nearest way out, so that a point beside a steep wall goes to the wall, not down all of it.
+/// Moves a point that is still inside a tool out of it, in the direction halfway between into the
+/// body and the nearest way out: a point beside a steep wall goes to the wall, not all the way
+/// down.
 glm::dvec3 push_out(const BodyField& field, const glm::dvec3& rest_place, const glm::dvec3& place) {
   glm::dvec3 pushed = place;
   for (const Toucher& toucher : field.touchers) {
@@ -165,8 +166,7 @@ glm::dvec3 push_out(const BodyField& field, const glm::dvec3& rest_place, const 
   return pushed;
 }
 
-/// Contact pressure at a point, from how deep the tool would be in the body were it not dented
-/// there.
+/// Contact pressure at a point, from the tool's depth in the body without the dent there.
 double pressure_at(const BodyField& field, const glm::dvec3& turned, const glm::dvec3& undented) {
   double pressure = 0.0;
   for (const Toucher& toucher : field.touchers) {
@@ -191,7 +191,7 @@ struct VertexRows {
   std::span<const TwistAxis> axes;
 };
 
-/// A block of vertices at work.
+/// A block of vertices.
 struct VertexBlock {
   std::size_t first = 0;                             // row
   std::size_t count = 0;                             // of kPointBlock
@@ -238,7 +238,7 @@ void interpolate_block(const BodyField& field, VertexBlock& block) {
   }
 }
 
-/// Turns the vertices, noting the angles.
+/// Turns the vertices and stores the angles.
 void turn_vertices(const BodyField& field, const VertexRows& rows, VertexBlock& block) {
   block.turned = block.rest;
   block.turned_by_regions = block.rest;
@@ -267,7 +267,7 @@ void turn_vertices(const BodyField& field, const VertexRows& rows, VertexBlock& 
   }
 }
 
-/// Turns what moves the vertices with the body: a section's middle goes as it is pushed, the rest
+/// Turns the displacements with the body: a section's middle is displaced without a turn, the rest
 /// of the section turns about it.
 void turn_displacements(const BodyField& field, VertexBlock& block) {
   BlockVectors middles;

@@ -24,8 +24,8 @@ namespace {
 constexpr std::size_t kAnchorNumbers = std::size_t{3} * kAnchorsPerBody;
 using AnchorColumn = std::array<double, kAnchorNumbers>;
 
-/// to += the sum of a force's components times their rows, which are `pitch` apart; `count`
-/// numbers.
+/// to += the sum over a force's components of component times row. Rows are `pitch` apart and have
+/// `count` numbers.
 TORSION_WIDEST
 void add_rows(std::size_t count, const glm::dvec3& force, const ComplianceValue* __restrict rows,
               std::size_t pitch, double* __restrict to) {
@@ -43,9 +43,9 @@ glm::dvec3 vector_at(const AnchorColumn& column, std::size_t anchor) {
   return {column[3 * anchor], column[3 * anchor + 1], column[3 * anchor + 2]};
 }
 
-/// Adds what forces at a support fit's ports do to the anchors, which are the first of the ports:
-/// the compliance is symmetric, so that the row of a port's axis has what a force there does to
-/// all.
+/// Adds the displacements of the anchors, which are the first of the ports, by forces at a support
+/// fit's ports. The compliance is symmetric, so the row of a port's axis holds what a force there
+/// does everywhere.
 void move_anchors(const PortCompliance& body, const SupportFit& support_fit,
                   const PortVectors& forces, std::span<AnchorMotion> anchors, AnchorTurns& turns) {
   const std::size_t side = 3 * body.ports.size();
@@ -64,7 +64,7 @@ void move_anchors(const PortCompliance& body, const SupportFit& support_fit,
   }
 }
 
-/// Mean over a ring about the region's place by how far its SupportField has gone round it, rad.
+/// Mean over a ring around the region's place of how far its SupportField has moved around it, rad.
 double mean_turn(const State& state, std::uint32_t region, double radius) {
   constexpr int kPlaces = 8;  // a polynomial of the fourth degree has no more than five waves
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
@@ -79,8 +79,8 @@ double mean_turn(const State& state, std::uint32_t region, double radius) {
   return sum / (kPlaces * radius);
 }
 
-/// As the region's contact sees it: mdr knows the rigid part only. Of a polynomial of the fourth
-/// degree the mean turn of a ring is c + g r^2: two rings tell both.
+/// As the region's contact model uses it: mdr uses the rigid part only. For a polynomial of the
+/// fourth degree a ring's mean turn is c + g r^2: two rings determine both.
 void find_support_turn(const Model& model, const State& state, std::uint32_t region,
                        AnchorTurns& turns) {
   const RegionSupport& support = state.regions.at<RegionSupport>(region);
@@ -128,8 +128,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// What one region does to the main beam's tip, in the beam's frame: minus what the body does to
-/// the tool.
+/// A region's load on the main beam's tip, in the beam's frame: minus the body's load on the tool.
 struct TipLoad {
   glm::dvec3 force{0.0};   // N
   glm::dvec2 moment{0.0};  // N m, without torsion
@@ -144,8 +143,8 @@ TipLoad tip_load(const MainBeam& beam, const RegionFrame& frame, const RegionNor
       {glm::dot(couple, beam.first), glm::dot(couple, beam.second)}};
 }
 
-/// Distance from the root along the beam of the section that carries a point. Sections are
-/// perpendicular to the beam; over a fixed face they are parallel to the face, so that all of the
+/// Distance from the root along the beam of the section to which a point belongs. Sections are
+/// perpendicular to the beam; over a fixed face they are parallel to the face, so that the whole
 /// face belongs to the root.
 double place_along(const MainBeam& beam, const FixedRegion& fixed, const glm::dvec3& from_root) {
   if (fixed.kind != FixedKind::kFace) {

@@ -20,8 +20,8 @@ namespace {
 using std::numbers::pi;
 
 /// Height over the fixed region, one at `contact`: over a fixed face measured from the face, else
-/// along `direction` from q_f. Where the contact is less than `least` high the heights fade to zero
-/// instead of changing sign at once.
+/// along `direction` from q_f. Where the contact's height is less than `least`, the heights fade to
+/// zero instead of changing sign abruptly.
 HeightShare height_share(const FixedRegion& fixed, const glm::dvec3& contact,
                          const glm::dvec3& direction, double least) {
   const glm::dvec3 along = fixed.kind == FixedKind::kFace ? fixed.normal : direction;
@@ -115,7 +115,7 @@ PressedSurface pressed_surface(const Model& model, const Snapshot& snapshot, std
   for (const PressedBlock& block : field.blocks) {
     if (block.force > 0.0) {
       const glm::dvec3 force = (drag - frame.normal) * block.force;
-      // The grid is on the material, which has turned under the contact.
+      // The grid lies on the material, which has turned under the contact.
       const glm::dvec2 arm = block.place - field.center;
       const glm::dvec2 turned(cosine * arm.x - sine * arm.y, sine * arm.x + cosine * arm.y);
       const glm::dvec3 place(field.center + turned, 0.0);
@@ -232,13 +232,14 @@ RegionTwist region_twist(const Model& model, const Snapshot& snapshot, std::uint
     return twist;
   }
   if (is_half_space(model.bodies.at<BodyModels>(identity.body).contact)) {
-    // So new that there is no field yet: it has hardly turned anything.
+    // The region is so new that there is no field yet: it has hardly turned anything.
     twist.axis.point = glm::vec4(glm::vec3(place), 0.0F);
     twist.axis.direction = glm::vec4(glm::vec3(frame.normal), 0.0F);
     return twist;
   }
   twist.through = motion.axis_share;
-  // What the tractions stand for, of which some a slide has left: no more than the tool has turned.
+  // The turn that the tractions correspond to. A slide may have left some of them: at most the turn
+  // of the tool.
   twist.stick_turn = std::clamp(friction.stick_turn, -motion.largest_turn, motion.largest_turn);
   twist.stick_radius = std::max(friction.stick_radius, 1e-3 * contact.radius);
   twist.through_height = height_share(fixed, place, frame.normal, contact.radius);
@@ -252,15 +253,15 @@ RegionTwist region_twist(const Model& model, const Snapshot& snapshot, std::uint
     const ToolMotion& tool = snapshot.tools.at<ToolMotion>(identity.tool);
     const glm::dvec3 torque =
         glm::conjugate(pose.rotation) * snapshot.regions.at<RegionWrench>(region).on_tool.torque;
-    // The sense of the axis is free: it is chosen along the normal, so that both branches turn
+    // The sense of the axis is arbitrary: it is chosen along the normal, so that both branches turn
     // alike.
     const glm::dvec3 axis = glm::dot(motion.axis, frame.normal) < 0.0 ? -motion.axis : motion.axis;
     const glm::dvec3 center = to_inner(pose, tool.mass_center);
-    // A turn of less than a hundredth of a radian has hardly an axis yet: it grows in. A tool that
-    // keeps turning about one axis soon remembers twice as much (systems/contact/tool_motion.cpp).
+    // A turn of less than a hundredth of a radian hardly has an axis: it is faded in. A tool that
+    // goes on turning about one axis soon has twice as much (systems/contact/tool_motion.cpp).
     constexpr double kFirstTurn = 0.01;
     const double known = smooth_step(tool.axis_turn / kFirstTurn);
-    // A beam that is softer than the contact would turn farther than the tool that turns it.
+    // A beam softer than the contact would turn farther than the tool that turns it.
     twist.past_turn = past * known *
                       std::clamp(turn_past_region(model, identity.body, place, axis, center,
                                                   -glm::dot(torque, axis)),
@@ -276,7 +277,7 @@ RegionTwist region_twist(const Model& model, const Snapshot& snapshot, std::uint
 }
 
 /// Distance from the contact's centre over its radius. The surface near the contact need not be
-/// flat: heights of less than half a radius do not count.
+/// flat: heights of less than half a radius are ignored.
 double RegionDent::reach(const glm::dvec3& point) const {
   const glm::dvec3 offset = point - center;
   const double height = glm::dot(offset, normal);
@@ -313,9 +314,8 @@ RegionDent region_dent(const Model& model, const Snapshot& snapshot, std::uint32
   if (contact.radius <= 0.0 || depth <= 0.0) {
     return dent;
   }
-  // A paraboloid overlaps by half its depth in the mean and carries pressure on half the overlap's
-  // area (Hertz); a flat end overlaps by its full depth everywhere and carries pressure on all of
-  // it.
+  // A paraboloid overlaps by half its depth on average and has pressure on half the overlap's area
+  // (Hertz); a flat end overlaps by its full depth and has pressure everywhere.
   const double fullness = std::clamp(contact.depth / depth, 0.5, 1.0);
   dent.flatness = 2.0 * fullness - 1.0;
   dent.radius = contact.radius * std::sqrt(fullness);

@@ -1,5 +1,5 @@
 // The fields of systems/surface/twist_and_dent.hpp for blocks of points, in float. Most points of a
-// body are far from a region, where one force and one couple are all there is to it.
+// body are far from a region, and need one force and one couple only.
 
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kNearRadii = 4.0;  // radii: beyond there is nothing but the far field
 
-/// displacement_by_force() of a block, in float, with what is the same for all points taken out.
+/// displacement_by_force() for a block, in float, with what is equal for all points computed once.
 struct SpreadForce {
   glm::vec3 place;    // m, body
   glm::vec3 normal;   // body, unit
@@ -71,7 +71,7 @@ void add_displacements_by(const SpreadForce& by, const BlockVectors& points, std
   }
 }
 
-/// Where points are about discs' common centre.
+/// Places of points relative to the discs' common centre.
 struct PlacesAboutDiscs {
   BlockColumn height;  // m
   BlockColumn square;  // m^2: of the distance
@@ -124,8 +124,8 @@ inline float angle_over_disc(float zeta) {
   return (arccotangent - zeta / (1.0F + zeta * zeta)) / kHalfPi;
 }
 
-/// The sum over the discs of TurnedDiscs::angle(). Where a point is inside a disc's cylinder the
-/// root of zeta's equation is taken in the form that keeps its digits.
+/// The sum of TurnedDiscs::angle() over the discs. Inside a disc's cylinder the root of zeta's
+/// equation is taken in the form that loses no digits.
 /// @param angles  out
 TORSION_WIDEST
 void near_angles(const TurnedDiscs& discs, const PlacesAboutDiscs& places, std::size_t used,
@@ -160,7 +160,7 @@ void TurnedDiscs::angles(const BlockVectors& points, std::size_t used, BlockColu
   PlacesAboutDiscs places;
   find_places(*this, points, places);
   far_angles(*this, places, angles);
-  // Near points, packed together, and what they get instead.
+  // Near points, packed together, and their results.
   std::array<std::size_t, kPointBlock> rows;
   PlacesAboutDiscs near;
   std::size_t found = 0;
@@ -183,7 +183,7 @@ void TurnedDiscs::angles(const BlockVectors& points, std::size_t used, BlockColu
     const double distance = std::sqrt(static_cast<double>(near.square[k])) / radius;
     const auto share = static_cast<float>(1.0 - smooth_step(distance - 3.0));
     float& angle = angles[rows[k]];
-    // The far field has no end at the centre.
+    // The far field is unbounded at the centre.
     angle = share < 1.0F ? share * sums[k] + (1.0F - share) * angle : sums[k];
   }
   clamp_angles(limit, angles);
@@ -203,7 +203,7 @@ void PressedSurface::add_displacements(const BlockVectors& points, std::size_t u
                                        BlockVectors& sum) const {
   BlockVectors moved{};
   add_displacements_by(spread_force(*this, all), points, kPointBlock, moved);
-  // Near points, packed together, and what they get instead.
+  // Near points, packed together, and their results.
   std::array<std::size_t, kPointBlock> rows;
   BlockVectors near;
   std::size_t found = 0;

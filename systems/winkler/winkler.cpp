@@ -1,8 +1,8 @@
-// The contact model `winkler`: a bed of springs that do not know of each other, with Coulomb's
-// friction made smooth over a small velocity. It is what the engines of games and robots have for
-// soft contacts (hydroelastic contact: Elandt, Drumwright, Sherman and Ruina, IROS 2019; friction:
-// Drake's Stribeck model), and a yardstick here: 8/15 mu F a is its largest couple under a ball.
-// Springs that stick are not in it: what is at rest holds nothing sideways.
+// The contact model `winkler`: a bed of independent springs, with Coulomb friction smoothed over a
+// small velocity. Engines for games and robots use it for soft contacts (hydroelastic contact:
+// Elandt, Drumwright, Sherman and Ruina, IROS 2019; friction: Drake's Stribeck model). Here it is a
+// yardstick: its largest couple under a ball is 8/15 mu F a. It has no springs that stick: a
+// contact at rest has no tangential force.
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kStiction = 1e-3;  // m/s: the least velocity with all of the static friction
 
-/// Pressure over depth, Pa/m: it grows from the surface to E at half the body's smallest side.
+/// Pressure over depth, Pa/m. The pressure reaches E at half the body's smallest side.
 double bed_stiffness(const Model& model, std::uint32_t body) {
   const Bounds& bounds = model.bodies.at<Bounds>(body);
   const glm::dvec3 side = bounds.highest - bounds.lowest;
@@ -29,7 +29,8 @@ double bed_stiffness(const Model& model, std::uint32_t body) {
          (0.5 * std::min({side.x, side.y, side.z}));
 }
 
-/// Friction's coefficient at a velocity over kStiction: up to static at 1, down to dynamic at 3.
+/// The coefficient of friction at a velocity over kStiction: rises to the static one at 1, falls to
+/// the dynamic one at 3.
 double coefficient_at(const Friction& friction, double velocity) {
   const double falling = smooth_step(0.5 * (velocity - 1.0));
   return smooth_step(velocity) *

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <glm/geometric.hpp>
 
-#include "systems/body/compliance/region_stands.hpp"
+#include "systems/body/compliance/supported_regions.hpp"
 #include "systems/contact/law.hpp"
 #include "systems/contact/region_wrenches.hpp"
 #include "systems/contact/scratch.hpp"
@@ -15,14 +15,15 @@ namespace torsion {
 namespace {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-// Within the step, which takes nothing from the heap.
+// On the stack: a step takes nothing from the heap.
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6 * kMaxRegionsPerBody, 1>;
 
-/// No compliance of a body takes more than this of the contacts' own away (region_stands.cpp); what
-/// support fits of other steps make of it must not either.
+/// The other regions' answers take at most three quarters of a region's own compliance away
+/// (supported_regions.cpp); interpolation by support fits of different steps must not exceed that
+/// either.
 constexpr double kLeastPivot = 0.25;
 
-/// The material's motion at `point` as the region's support has it.
+/// The material's motion at `point` by the region's support.
 Vector6 support_at(const RegionSupport& support, const glm::dvec3& point) {
   Vector6 motion;
   motion << eigen(support.translation + glm::cross(support.rotation, point - support.about)),
@@ -30,7 +31,7 @@ Vector6 support_at(const RegionSupport& support, const glm::dvec3& point) {
   return motion;
 }
 
-/// The part of its last step that is the others' answer (take_answers).
+/// The part of its last step that comes from the other regions' answers (take_answers).
 Vector6 answer_at(const RegionSupport& support, const glm::dvec3& point) {
   Vector6 motion;
   motion << eigen(support.translation_step +
@@ -39,7 +40,7 @@ Vector6 answer_at(const RegionSupport& support, const glm::dvec3& point) {
   return motion;
 }
 
-/// The part of it that other regions have to do with.
+/// The part of it that depends on other regions.
 Vector6 support_by_others(const RegionSupport& support, const glm::dvec3& point) {
   Vector6 motion;
   motion << eigen(support.translation_by_others +
@@ -48,29 +49,29 @@ Vector6 support_by_others(const RegionSupport& support, const glm::dvec3& point)
   return motion;
 }
 
-/// The rest, by its own load.
-Vector6 own_support(const CompliantBody& body, const Stand& stand) {
-  const RegionSupport& support = body.state.regions.at<RegionSupport>(stand.region);
-  const glm::dvec3& center = support_fit_of(body, stand).center;
+/// The remaining part, by the region's own load.
+Vector6 own_support(const CompliantBody& body, const SupportedRegion& supported) {
+  const RegionSupport& support = body.state.regions.at<RegionSupport>(supported.region);
+  const glm::dvec3& center = support_fit_of(body, supported).center;
   return support_at(support, center) - support_by_others(support, center);
 }
 
-/// The motion that Newton's step starts from. A region with contact model patch, which knows in its
-/// own equations what its load does (patch/support.hpp), stands where that has moved it.
-Vector6 support_now(const CompliantBody& body, const Stand& stand) {
-  const RegionSupport& support = body.state.regions.at<RegionSupport>(stand.region);
-  const glm::dvec3& center = support_fit_of(body, stand).center;
-  return stand.solved ? Vector6(stand.motion + support_by_others(support, center))
-                      : support_at(support, center);
+/// The motion that Newton's step starts from. A region with contact model patch computes the
+/// displacement by its load in its own equations (patch/support.hpp), so it starts from there.
+Vector6 support_now(const CompliantBody& body, const SupportedRegion& supported) {
+  const RegionSupport& support = body.state.regions.at<RegionSupport>(supported.region);
+  const glm::dvec3& center = support_fit_of(body, supported).center;
+  return supported.solved ? Vector6(supported.motion + support_by_others(support, center))
+                          : support_at(support, center);
 }
 
-/// How a load's wrench about its support fit's centre changes by a translation of the material
-/// under it: the tool stands elsewhere on it, so that the load has the couple force x translation
-/// more. Nothing for a contact model that does not say where on the material its load lies.
-Matrix6 wrench_by_place(const Stand& stand) {
+/// How a load's wrench about its support fit's centre changes when the material under it is
+/// translated: the load then acts at another place of the material, which adds the couple force x
+/// translation. Zero for a contact model that does not say where on the material its load acts.
+Matrix6 wrench_by_place(const SupportedRegion& supported) {
   Matrix6 wrench = Matrix6::Zero();
-  if (stand.solved) {
-    const Eigen::Vector3d force = stand.load.wrench.head<3>();
+  if (supported.solved) {
+    const Eigen::Vector3d force = supported.load.wrench.head<3>();
     wrench.bottomLeftCorner<3, 3>() << 0.0, -force.z(), force.y(), force.z(), 0.0, -force.x(),
         -force.y(), force.x(), 0.0;
   }
@@ -80,31 +81,31 @@ Matrix6 wrench_by_place(const Stand& stand) {
 /// Newton's step of one body.
 struct NewtonStep {
   std::array<StiffnessRoot, kMaxRegionsPerBody> roots;
-  // Whether the regions' loads go with what moves them, all regions' together (add_sway), and by
-  // how much each region has been moved since its load was found.
+  // Whether the regions' loads move with the material, in one equation for all regions (add_sway);
+  // and how far each region has been moved since its load was found.
   bool sways_together = false;
   std::array<Vector6, kMaxRegionsPerBody> moved;
 };
 
-/// What the other regions are to have to do with such a region's motion: Newton's change du is that
-/// by them less what its own load deflects by it, (I + C K) du, less what the others' answer to
-/// its own change will be (RegionReaction), and less what its own load's place does (add_sway).
+/// The other regions' part of such a region's next motion. It is Newton's change du, less the
+/// deflection by the region's own load, (I + C K) du, less the others' answer to that load's change
+/// (RegionReaction), and less the effect of the own load's place (add_sway).
 /// @param scaled  y of fill_equations
 void move_by_others(const CompliantBody& body, std::size_t i, const NewtonStep& newton,
                     const Vector6& scaled) {
-  const Stand& stand = body.stands[i];
+  const SupportedRegion& supported = body.regions[i];
   const StiffnessRoot& root = newton.roots[i];
-  const SupportFit& support_fit = support_fit_of(body, stand);
-  RegionSupport& support = body.state.regions.at<RegionSupport>(stand.region);
+  const SupportFit& support_fit = support_fit_of(body, supported);
+  RegionSupport& support = body.state.regions.at<RegionSupport>(supported.region);
   Vector6 by_others = support_by_others(support, support_fit.center) + root.inverse * scaled;
   if (support_fit.on_layer == 0) {
     const Eigen::Map<const Matrix6> own(support_fit.own.data());
     by_others += own * (root.root * scaled);
     if (newton.sways_together) {
-      by_others -= own * (wrench_by_place(stand) * (newton.moved[i] + root.inverse * scaled));
+      by_others -= own * (wrench_by_place(supported) * (newton.moved[i] + root.inverse * scaled));
     }
   }
-  const RegionReaction& reaction = body.state.regions.at<RegionReaction>(stand.region);
+  const RegionReaction& reaction = body.state.regions.at<RegionReaction>(supported.region);
   if (reaction.active != 0) {
     by_others -= Eigen::Map<const Matrix6>(reaction.motion.data()) * (root.root * scaled);
   }
@@ -112,8 +113,9 @@ void move_by_others(const CompliantBody& body, std::size_t i, const NewtonStep& 
   support.rotation_by_others = {by_others[3], by_others[4], by_others[5]};
 }
 
-/// How a wrench on one region moves it or another one, as Newton's matrix has it.
-Matrix6 compliance_between(const CompliantBody& body, const Stand& to, const Stand& from) {
+/// Motion of one region by a wrench on it or on another one, as in Newton's matrix.
+Matrix6 compliance_between(const CompliantBody& body, const SupportedRegion& to,
+                           const SupportedRegion& from) {
   if (to.region == from.region) {
     const SupportFit& support_fit = support_fit_of(body, to);
     return support_fit.on_layer == 0 ? Matrix6(Eigen::Map<const Matrix6>(support_fit.own.data()))
@@ -126,21 +128,21 @@ Matrix6 compliance_between(const CompliantBody& body, const Stand& to, const Sta
 void move_supports(const CompliantBody& body, const Eigen::Map<Eigen::VectorXd>& change,
                    const NewtonStep& newton) {
   for (std::size_t i = 0; i < body.count; ++i) {
-    const Stand& stand = body.stands[i];
-    const glm::dvec3& center = support_fit_of(body, stand).center;
-    RegionSupport& support = body.state.regions.at<RegionSupport>(stand.region);
+    const SupportedRegion& supported = body.regions[i];
+    const glm::dvec3& center = support_fit_of(body, supported).center;
+    RegionSupport& support = body.state.regions.at<RegionSupport>(supported.region);
     const Vector6 before = support_at(support, center);
     const Vector6 scaled = change.segment<6>(static_cast<Eigen::Index>(6 * i));
-    // Where it is to be seen next. For contact model patch that extrapolates how its own load
-    // changes, which its equations then find: seen from where all of the others' change but nothing
-    // of its own answer has moved it, it would lie far from the tool on a body that sways much.
-    const Vector6 after = support_now(body, stand) + newton.roots[i].inverse * scaled;
-    if (stand.solved) {
+    // The predicted motion. For contact model patch it extrapolates the change of the region's own
+    // load, which its equations then compute. Predicted from the other regions' changes alone,
+    // without its own answer, it would lie far from the tool on a body that sways much.
+    const Vector6 after = support_now(body, supported) + newton.roots[i].inverse * scaled;
+    if (supported.solved) {
       move_by_others(body, i, newton, scaled);
     } else {
-      // The load that it is to have there.
-      Eigen::Map<Vector6>(body.state.regions.at<RegionReaction>(stand.region).wrench.data()) =
-          stand.load.wrench - newton.roots[i].root * scaled;
+      // The predicted load.
+      Eigen::Map<Vector6>(body.state.regions.at<RegionReaction>(supported.region).wrench.data()) =
+          supported.load.wrench - newton.roots[i].root * scaled;
     }
     const Vector6 step = after - before + answer_at(support, center);
     support.about = center;
@@ -151,30 +153,31 @@ void move_supports(const CompliantBody& body, const Eigen::Map<Eigen::VectorXd>&
   }
 }
 
-/// Newton's matrix and how far each region is from where all loads move it, du: with y = K^(1/2) du
+/// Newton's matrix, and each region's distance du from where all loads move it. With y = K^(1/2) du
 /// the equations (I + C K) du = r are (I + K^(1/2) C K^(1/2)) y = K^(1/2) r, symmetric. Fills the
 /// blocks on the diagonal and right of it.
 void fill_equations(const CompliantBody& body,
                     const std::array<StiffnessRoot, kMaxRegionsPerBody>& roots,
                     Eigen::Map<RowMatrix>& matrix, Eigen::Map<Eigen::VectorXd>& change) {
   for (std::size_t i = 0; i < body.count; ++i) {
-    const Stand& stand = body.stands[i];
-    const SupportFit& support_fit = support_fit_of(body, stand);
+    const SupportedRegion& supported = body.regions[i];
+    const SupportFit& support_fit = support_fit_of(body, supported);
     const auto at = static_cast<Eigen::Index>(6 * i);
     auto own = matrix.block<6, 6>(at, at);
     own.setIdentity();
     if (support_fit.on_layer == 0) {
       own += roots[i].root * Eigen::Map<const Matrix6>(support_fit.own.data()) * roots[i].root;
     }
-    change.segment<6>(at) += stand.motion - support_now(body, stand);
+    change.segment<6>(at) += supported.motion - support_now(body, supported);
     for (std::size_t j = i + 1; j < body.count; ++j) {
-      const Stand& other = body.stands[j];
-      const Eigen::Map<const Matrix6> stored(coupling_between(body, stand, other).motion.data());
-      const Matrix6 motion = stand.block > other.block ? Matrix6(stored) : stored.transpose();
+      const SupportedRegion& other = body.regions[j];
+      const Eigen::Map<const Matrix6> stored(
+          coupling_between(body, supported, other).motion.data());
+      const Matrix6 motion = supported.block > other.block ? Matrix6(stored) : stored.transpose();
       const auto there = static_cast<Eigen::Index>(6 * j);
       matrix.block<6, 6>(at, there).noalias() = roots[i].root * (motion * roots[j].root);
       change.segment<6>(at) += motion * other.load.wrench;
-      change.segment<6>(there) += motion.transpose() * stand.load.wrench;
+      change.segment<6>(there) += motion.transpose() * supported.load.wrench;
     }
   }
   for (std::size_t i = 0; i < body.count; ++i) {
@@ -183,32 +186,32 @@ void fill_equations(const CompliantBody& body,
   }
 }
 
-/// Of a region with contact model patch: where it is to be seen next by its own load. A body that
-/// sways much by couples would go to and fro, for what its sway does to them shows only in the next
-/// step. By one Newton step, with w the load and C the compliance: u + du = C w(u + du), where the
-/// wrench is w's own and G du more (wrench_by_place). Never farther than C w itself.
-void sway(const CompliantBody& body, Stand& stand) {
-  const SupportFit& support_fit = support_fit_of(body, stand);
-  if (!stand.solved || support_fit.on_layer != 0) {
+/// Predicts the motion of a region with contact model patch by its own load. A body that couples
+/// make sway much would oscillate, because the effect of the sway on the couples shows only in the
+/// next step. One Newton step, with w the load and C the compliance: u + du = C w(u + du), where
+/// the wrench w changes by G du (wrench_by_place). Never farther than C w itself.
+void sway(const CompliantBody& body, SupportedRegion& supported) {
+  const SupportFit& support_fit = support_fit_of(body, supported);
+  if (!supported.solved || support_fit.on_layer != 0) {
     return;
   }
-  const Vector6 now = own_support(body, stand);
-  const Vector6 plain = stand.motion - now;
+  const Vector6 now = own_support(body, supported);
+  const Vector6 plain = supported.motion - now;
   const Eigen::Map<const Matrix6> own(support_fit.own.data());
-  const Matrix6 newton = Matrix6::Identity() - own * wrench_by_place(stand);
+  const Matrix6 newton = Matrix6::Identity() - own * wrench_by_place(supported);
   const Vector6 step = solve_lu(newton, plain);
   if (step.allFinite() && step.head<3>().norm() <= plain.head<3>().norm()) {
-    stand.motion = now + step;
+    supported.motion = now + step;
   }
 }
 
-/// Whether the body deflects under two regions at least by so much, beside the contacts, that the
-/// one feels within a step how the other answers.
+/// Whether the body deflects so much beside the contacts, under at least two regions, that one of
+/// them feels within a step how the other answers.
 bool answers_within_a_step(const CompliantBody& body, const ContactLaw& law,
                            const std::array<StiffnessRoot, kMaxRegionsPerBody>& roots) {
   std::size_t soft = 0;
   for (std::size_t i = 0; i < body.count; ++i) {
-    const SupportFit& support_fit = support_fit_of(body, body.stands[i]);
+    const SupportFit& support_fit = support_fit_of(body, body.regions[i]);
     const Eigen::Map<const Matrix6> own(support_fit.own.data());
     const double share = (roots[i].root * own * roots[i].root).trace();
     soft += support_fit.on_layer == 0 && share > law.answers_from ? 1U : 0U;
@@ -216,11 +219,11 @@ bool answers_within_a_step(const CompliantBody& body, const ContactLaw& law,
   return soft >= 2;
 }
 
-/// Solves with Newton's symmetric matrix. Couplings between regions that lie in each other's reach
-/// are found through support fits of different steps and sizes, and may come to more than what they
-/// couple; the matrix then has no solution that means anything, of whatever size. It is solved with
-/// half of them, a quarter, none: the blocks on the diagonal are definite on their own.
-/// @param matrix  its part right of the diagonal; couplings become what they are solved with
+/// Solves with Newton's symmetric matrix. Couplings between regions that overlap are found through
+/// support fits of different steps and sizes, and may be larger than the compliances that they
+/// couple; the matrix is then indefinite and its solution arbitrarily large. Couplings are then
+/// halved, quartered, or left out: the blocks on the diagonal are definite.
+/// @param matrix  its part right of the diagonal; couplings are replaced by those used
 /// @param copy    is overwritten
 /// @param begin   sets `right` to the right sides, again for each try
 template <class Begin, class Right>
@@ -243,9 +246,9 @@ void solve_newton(Eigen::Map<RowMatrix>& matrix, Eigen::Map<RowMatrix>& copy, co
   }
 }
 
-/// What each region feels of its own load when the others have answered is the Schur complement of
-/// its block in Newton's matrix, the inverse of that block of the inverse: K^-1 + C_ii - D with D
-/// the answer. (Golub and Van Loan, Matrix Computations, 3.2.11)
+/// A region's compliance after the others have answered is the Schur complement of its block in
+/// Newton's matrix, which is the inverse of that block of the inverse: K^-1 + C_ii - D with D the
+/// answer. (Golub and Van Loan, Matrix Computations, 3.2.11)
 /// @param matrix  of fill_equations, which it makes definite
 /// @param copy    is overwritten
 void find_reactions(const CompliantBody& body,
@@ -255,9 +258,9 @@ void find_reactions(const CompliantBody& body,
   solve_newton(
       matrix, copy, [&inverse] { inverse.setIdentity(); }, inverse);
   for (std::size_t i = 0; i < body.count; ++i) {
-    const Stand& stand = body.stands[i];
-    const SupportFit& support_fit = support_fit_of(body, stand);
-    RegionReaction& reaction = body.state.regions.at<RegionReaction>(stand.region);
+    const SupportedRegion& supported = body.regions[i];
+    const SupportFit& support_fit = support_fit_of(body, supported);
+    RegionReaction& reaction = body.state.regions.at<RegionReaction>(supported.region);
     if (support_fit.on_layer != 0) {
       continue;
     }
@@ -265,7 +268,7 @@ void find_reactions(const CompliantBody& body,
     const Matrix6 block = inverse.block<6, 6>(at, at);
     Matrix6 answered = Matrix6::Zero();  // S - I, S the Schur complement
     const EigenSystem6 system = eigen_system(0.5 * (block + block.transpose()));
-    // The others take away at most what there is.
+    // The others take away at most the whole compliance.
     const Vector6 left =
         (system.values.cwiseMax(1e-12).cwiseInverse().array() - 1.0).cwiseMax(0.0).matrix();
     answered = system.vectors * left.asDiagonal() * system.vectors.transpose();
@@ -273,16 +276,16 @@ void find_reactions(const CompliantBody& body,
     const Matrix6 motion = own - roots[i].inverse * answered * roots[i].inverse;
     if (motion.allFinite()) {
       Eigen::Map<Matrix6>(reaction.motion.data()) = 0.5 * (motion + motion.transpose());
-      Eigen::Map<Vector6>(reaction.wrench.data()) = stand.load.wrench;
+      Eigen::Map<Vector6>(reaction.wrench.data()) = supported.load.wrench;
       reaction.active = 1;
     }
   }
 }
 
-/// sway() of all regions of a body together, for what moves the one moves the other as well: two
-/// tools that pinch a body sway it by their couples each, which cancel. With v what Newton's step
-/// finds and s what its regions have been moved by already since their loads were found, their
-/// answers included: (I + C K - C G) v = r + C G s.
+/// sway() for all regions of a body together, because their motions are coupled: the couples of two
+/// tools that pinch a body cancel. With v the result of Newton's step and s how far its regions
+/// have been moved since their loads were found, including their answers: (I + C K - C G) v = r + C
+/// G s.
 /// @param upper   of fill_equations
 /// @param full    n x n, is filled with Newton's matrix, not symmetric
 /// @param change  of fill_equations; K^(1/2) C G s is added
@@ -291,7 +294,7 @@ void add_sway(const CompliantBody& body, const Eigen::Map<RowMatrix>& upper, New
   newton.sways_together = true;
   full = upper.selfadjointView<Eigen::Upper>();
   for (std::size_t j = 0; j < body.count; ++j) {
-    const Stand& from = body.stands[j];
+    const SupportedRegion& from = body.regions[j];
     const RegionSupport& support = body.state.regions.at<RegionSupport>(from.region);
     newton.moved[j] = from.motion - own_support(body, from) +
                       answer_at(support, support_fit_of(body, from).center);
@@ -300,15 +303,14 @@ void add_sway(const CompliantBody& body, const Eigen::Map<RowMatrix>& upper, New
     for (std::size_t i = 0; i < body.count; ++i) {
       const auto at = static_cast<Eigen::Index>(6 * i);
       const Matrix6 sways =
-          newton.roots[i].root * compliance_between(body, body.stands[i], from) * by_place;
+          newton.roots[i].root * compliance_between(body, body.regions[i], from) * by_place;
       full.block<6, 6>(at, there) -= sways * newton.roots[j].inverse;
       change.segment<6>(at) += sways * newton.moved[j];
     }
   }
 }
 
-/// Where a region's equations have accounted for the body's answer to its own load
-/// (contact_load.hpp).
+/// For a region whose equations include the body's answer to its own load (contact_load.hpp).
 void take_own_answer(const SupportAnswer& answer, RegionSupport& support,
                      RegionReaction& reaction) {
   support.translation += answer.translation;
@@ -319,7 +321,7 @@ void take_own_answer(const SupportAnswer& answer, RegionSupport& support,
   reaction.active = 0;
 }
 
-/// Where a region's equations have accounted for the others' answer, that has moved it by now.
+/// For a region whose equations include the other regions' answers, which have moved it by now.
 void take_answers(StepContext& context, std::uint32_t row) {
   const Model& model = context.model;
   State& state = context.state;
@@ -358,11 +360,11 @@ void take_answers(StepContext& context, std::uint32_t row) {
 void deform_body(StepContext& context, std::uint32_t row) {
   take_answers(context, row);
   CompliantBody body{context.model, context.state, row, ports_of(context.model, row)};
-  find_stands(body);
+  find_supported_regions(body);
   find_couplings(body);
   NewtonStep newton;
   for (std::size_t i = 0; i < body.count; ++i) {
-    newton.roots[i] = stiffness_root(body, body.stands[i]);
+    newton.roots[i] = stiffness_root(body, body.regions[i]);
   }
   const std::size_t size = 6 * body.count;
   const auto rows = static_cast<Eigen::Index>(size);
@@ -375,7 +377,7 @@ void deform_body(StepContext& context, std::uint32_t row) {
   const bool sways_together = answers && law.by_cells;
   if (!sways_together) {
     for (std::size_t i = 0; i < body.count; ++i) {
-      sway(body, body.stands[i]);
+      sway(body, body.regions[i]);
     }
   }
   fill_equations(body, newton.roots, matrix, change);

@@ -4,14 +4,14 @@
 #include <Eigen/Core>
 #include <glm/geometric.hpp>
 
-#include "systems/body/compliance/region_stands.hpp"
+#include "systems/body/compliance/supported_regions.hpp"
 #include "systems/contact/law.hpp"
 #include "systems/contact/scratch.hpp"
 
 namespace torsion {
 namespace {
 
-/// What a wrench on one of two regions that were one does to the other.
+/// Motion of each of two regions that were one by a wrench on the other.
 struct ToEachOther {
   Matrix6 motion;
   Matrix6 known;  // of that, what it did as the one region's own load
@@ -26,12 +26,12 @@ ToEachOther to_each_other(const CompliantBody& body, const SupportFit& there,
   return both;
 }
 
-Stand solved_stand(const State& state, std::uint32_t region) {
-  Stand stand;
-  stand.region = region;
-  stand.block = block_of(state.regions.at<RegionIdentity>(region));
-  stand.solved = true;
-  return stand;
+SupportedRegion solved_stand(const State& state, std::uint32_t region) {
+  SupportedRegion supported;
+  supported.region = region;
+  supported.block = block_of(state.regions.at<RegionIdentity>(region));
+  supported.solved = true;
+  return supported;
 }
 
 /// A disc as large as the grid around a new region's contact points.
@@ -40,9 +40,9 @@ ContactEllipse disc_of_grid(const RegionFrame& frame) {
   return {frame.origin, radius * frame.tangent_x, radius * frame.tangent_y, frame.normal, radius};
 }
 
-/// Of a region's load a part has become another region's.
-/// @param motion  what it moves here, 6 x 6
-/// @param known   of that, what it has moved before
+/// Accounts for a part of a region's load that has become another region's.
+/// @param motion  by that load here, 6 x 6
+/// @param known   the part of it that has been applied before
 /// @param place   m, body: of the motion
 void move_by_part(const Matrix6& motion, const Matrix6& known, const Vector6& load,
                   const glm::dvec3& place, RegionSupport& support) {
@@ -124,10 +124,10 @@ void split_support(const Model& model, State& state, std::uint32_t from, std::ui
     return;
   }
   const CompliantBody body{model, state, identity.body, ports_of(model, identity.body)};
-  const Stand stand = solved_stand(state, region);
-  forget_couplings(state, stand.block);
-  lay_stand(body, stand, contact_ellipse(model, state, region));
-  const SupportFit& there = support_fit_of(body, stand);
+  const SupportedRegion supported = solved_stand(state, region);
+  forget_couplings(state, supported.block);
+  fit_region_support(body, supported, contact_ellipse(model, state, region));
+  const SupportFit& there = support_fit_of(body, supported);
   const ToEachOther both = to_each_other(body, there, here);
   RegionSupport& old = state.regions.at<RegionSupport>(from);
   RegionSupport& fresh = state.regions.at<RegionSupport>(region);
@@ -138,7 +138,7 @@ void split_support(const Model& model, State& state, std::uint32_t from, std::ui
                contact_load(model, state, region, there).wrench, here.center, old);
   RegionReaction& reaction = state.regions.at<RegionReaction>(from);
   if (reaction.active != 0) {
-    // They have answered to the whole load, and it is still there.
+    // The regions have answered to the whole load, and it is still there.
     Eigen::Map<Vector6>(reaction.wrench.data()) -= contact_load(model, state, region, here).wrench;
   }
 }

@@ -91,7 +91,7 @@ double torsion_constant(const std::vector<glm::dvec2>& polygon) {
   if (moments.area <= 0.0) {
     return 0.0;
   }
-  // Scaled to radius 1 about the centroid, so that the powers of z stay of one size.
+  // Scaled to radius 1 about the centroid, so that the powers of z have similar sizes.
   double radius = 0.0;
   for (const glm::dvec2& corner : polygon) {
     radius = std::max(radius, glm::length(corner - moments.centroid));

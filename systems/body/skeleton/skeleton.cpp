@@ -22,8 +22,8 @@ void add_section(const BeamSection& section, double weight, BeamSection& sum) {
 }
 
 /// Weights (1 - d/R)^2 / (d^2 + e^2) with R a little more than twice the distance of the nearest
-/// anchor: at least one anchor always counts, those that enter or leave the circle do so with
-/// weight zero.
+/// anchor: at least one anchor counts, and those that enter or leave the circle have weight zero
+/// there.
 void interpolate_sections(const Model& model, Range anchors, const glm::dvec3& tip, double size,
                           MainBeam& beam) {
   const auto rest = model.anchors.rows<AnchorRest>(anchors);
@@ -60,8 +60,8 @@ void interpolate_sections(const Model& model, Range anchors, const glm::dvec3& t
   beam.has_sections = true;
 }
 
-/// Timoshenko's shear coefficient: 6/7 for a circle, 5/6 for a rectangle, by how near J is to the
-/// polar moment.
+/// Timoshenko's shear coefficient: between 6/7 for a circle and 5/6 for a rectangle, by how near J
+/// is to the polar moment.
 double shear_coefficient(const BeamSection& section) {
   constexpr double kSquare = 0.14057701 * 6.0;  // J / polar moment of a square
   const double roundness = (section.torsion_constant / section.polar - kSquare) / (1.0 - kSquare);
@@ -84,8 +84,7 @@ MainBeam main_beam(const Model& model, std::uint32_t body, const glm::dvec3& tip
   const double size = glm::length(bounds.highest - bounds.lowest);
   const glm::dvec3 reference = beam_reference(fixed, bounds);
   MainBeam beam;
-  // A contact at the fixed point itself has no beam: a very short one along the reference stands
-  // in.
+  // A contact at the fixed point has no beam: a very short one along the reference is used instead.
   const double shortest = 1e-3 * size;
   const glm::dvec3 along = tip - fixed.point;
   const double length = glm::length(along);
@@ -108,7 +107,8 @@ BeamDeflection deflect(const MainBeam& beam, const Elasticity& elasticity, const
   const double shear_modulus = elasticity.shear_modulus();
   const double length = beam.length / kStations;
   deflection.piece_length = length;
-  // Moment over a piece: m + (lever - t) B, lever from its start to the tip, B = direction x force.
+  // Moment over a piece: m + (lever - t) B, with the lever from its start to the tip, B = direction
+  // x force.
   const glm::dvec2 lever_moment(-force.y, force.x);
   glm::dvec2 turn(0.0);
   glm::dvec3 shift(0.0);
@@ -133,7 +133,7 @@ BeamDeflection deflect(const MainBeam& beam, const Elasticity& elasticity, const
     piece.shift1 = {turn.y + shear * force.x, -turn.x + shear * force.y, deflection.strain[k]};
     piece.shift2 = {0.5 * bent.y, -0.5 * bent.x};
     piece.shift3 = {-1.0 / 6.0 * falls.y, 1.0 / 6.0 * falls.x};
-    // The end of this piece is the start of the next one.
+    // The next piece starts at the end of this one.
     const SectionMotion end = motion_in_piece(piece, length);
     turn = end.turn;
     shift = end.shift;

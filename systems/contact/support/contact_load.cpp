@@ -51,7 +51,7 @@ bool by_cells(const Model& model, const State& state, std::uint32_t region) {
   return law_of(model, state.regions.at<RegionIdentity>(region).body).by_cells;
 }
 
-/// A disc at the region's place.
+/// A disc at the region's origin.
 ContactEllipse disc_of(const State& state, std::uint32_t region) {
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const Contact& contact = state.regions.at<Contact>(region);
@@ -89,8 +89,9 @@ ContactEllipse ellipse_of(const Model& model, const State& state, std::uint32_t 
   xx = xx / count - middle.x * middle.x + side.x * side.x / 12.0;
   yy = yy / count - middle.y * middle.y + side.y * side.y / 12.0;
   xy = xy / count - middle.x * middle.y;
-  // An ellipse has a quarter of its half axes' squares: axes are twice a root of the moments, here
-  // Cholesky's; any root makes the same ellipse of the unit disc.
+  // The second moments of an ellipse's area are a quarter of its half axes' squares. So its axes
+  // are twice a square root of the moments' matrix; Cholesky's root will do, because any root maps
+  // the unit disc to the same ellipse.
   const double first = std::sqrt(xx);
   const double across = xy / first;
   const double second = std::sqrt(std::max(yy - across * across, 1e-6 * yy));
@@ -111,11 +112,11 @@ void add_wrench(ContactLoad& load, const glm::dvec3& arm, const glm::dvec3& forc
 /// One row of loaded cells.
 struct LoadedRow {
   std::size_t count = 0;
-  // A place in the support fit's coordinates, and the traction on the tool, Pa, grid.
+  // A cell's place in the support fit's coordinates, and the traction on the tool, Pa, grid axes.
   std::array<double, kMaxGridSide> x, y, along_x, along_y, pressure;
 };
 
-/// Terms of a SupportField and one of zero, to fill vectors.
+/// The terms of a SupportField and a zero, which fills the vectors.
 constexpr std::size_t kPaddedTerms = kSupportTerms + 1;
 
 /// Sums of term times traction, Pa, grid.
@@ -123,7 +124,7 @@ struct TermSums {
   std::array<double, kPaddedTerms> along_x{}, along_y{}, pressure{};
 };
 
-/// Adds a row's. The terms lie side by side in vectors, so that no sum is split.
+/// Adds a row. Terms lie side by side in vectors: no sum is split over lanes.
 TORSION_WIDEST
 void add_terms(const LoadedRow& __restrict row, TermSums& __restrict sums) {
   for (std::size_t cell = 0; cell < row.count; ++cell) {
@@ -241,9 +242,10 @@ ContactLoad contact_load(const Model& model, const State& state, std::uint32_t r
 
 namespace {
 
-// Of what the loads move, in the step in which they are found. The rest is compliance's, a step
-// later, which takes energy; an answer that went too far, of a support fit that no longer quite
-// fits, would be taken back, which feeds some.
+// Share of the displacement by the loads that is taken over in the step in which they are found.
+// Compliance adds the rest one step later, which dissipates energy. The answer of a support fit
+// that no longer quite fits may be too large and would have to be taken back, which would feed
+// energy in.
 constexpr double kFirst = 0.9;
 
 using LoadColumns = Eigen::Matrix<double, 6, 4>;  // wrenches by loads
@@ -274,7 +276,7 @@ LoadColumns unit_loads(const RegionFrame& frame, const SupportFit& support_fit,
   return columns;
 }
 
-/// What the region's own loads move it by: less what the others' answers take back.
+/// What the region's own loads displace it by, less what the reactions of other regions take back.
 Matrix6 yielding(const State& state, std::uint32_t region, const SupportFit& support_fit) {
   const RegionReaction& reaction = state.regions.at<RegionReaction>(region);
   Matrix6 motion = Eigen::Map<const Matrix6>(support_fit.own.data());

@@ -30,8 +30,8 @@ constexpr double kLeastFacing = 0.4;     // cosine between a port's normal and t
 constexpr double kMoved = 0.04;          // of its reach: a contact moved farther is fitted again
 constexpr double kGrown = 1.12;          // likewise the contact's radius
 constexpr double kTurned = 0.9997;       // likewise the cosine of the normal
-/// Against wiggles where ports are few, over the sum of the weights: by degree. Constants and
-/// slopes are left alone.
+/// Added to the diagonal against oscillating fits where ports are few, over the sum of the weights,
+/// by degree. Constants and slopes are left free.
 constexpr std::array<double, 5> kStiffer{0.0, 0.0, 1e-6, 1e-5, 1e-4};
 
 double stiffer(int degree, double size) {
@@ -39,8 +39,8 @@ double stiffer(int degree, double size) {
   return base * std::pow(size, -2.0 * degree);
 }
 
-/// Distance that takes in kLeastPorts ports; a little more than the farthest where there are
-/// fewer.
+/// Distance within which there are kLeastPorts ports; where the body has fewer, a little more than
+/// the farthest one's.
 double distance_to_enough(const PortCompliance& body, const ContactEllipse& contact) {
   std::array<double, kLeastPorts> nearest;
   nearest.fill(kNeverSeen);
@@ -60,7 +60,7 @@ double distance_to_enough(const PortCompliance& body, const ContactEllipse& cont
   return nearest.back() < kNeverSeen ? farthest : 1.2 * farthest;
 }
 
-/// Ports within reach, those that are spread widest first (choose_ports), and their weights.
+/// Ports within reach, widest spread first (choose_ports), and their weights.
 void find_ports(const PortCompliance& body, const ContactEllipse& contact, double size,
                 SupportFit& support_fit, std::array<double, kSupportPorts>& weights) {
   support_fit.count = 0;
@@ -96,14 +96,15 @@ void fit_terms(const PortCompliance& body, const std::array<double, kSupportPort
     }
   }
   for (std::size_t k = 0; k < kSupportTerms; ++k) {
-    // The last part only keeps what no port speaks of at zero.
+    // The last summand keeps terms that no port determines at zero.
     normal[k * (kStride + 1)] += sum * (stiffer(kSupportDegrees[k], size) + 1e-12);
   }
   solve_symmetric(kSupportTerms, kStride, normal.data(), kSupportPorts, support_fit.fit[0].data(),
                   1e-13 * sum);
 }
 
-/// Moments of a unit force or couple on the contact along each axis, spread as by a rigid disc.
+/// Moments of a unit force or couple on the contact along each axis, with the pressure of a rigid
+/// disc.
 std::array<SupportMoments, 6> moments_of_wrenches(const SupportFit& support_fit,
                                                   const ContactEllipse& contact) {
   std::array<DiscForces, 6> spread;
@@ -168,7 +169,7 @@ DiscForces spread_wrench(const ContactEllipse& contact, double DiscPoint::*share
     planar += point.*shares * glm::outerProduct(arm, arm);
   }
   // Normal forces n (arm . g) have the couple sum of (arm . g) arm x n: g = planar^-1 (n x tilt).
-  // Over polar, for beside n n' a contact of nanometres would be lost in rounding.
+  // Divided by polar first: beside n n' a contact of nanometres would be lost in rounding.
   const glm::dvec3 slope =
       glm::inverse(planar / polar + glm::outerProduct(contact.normal, contact.normal)) *
       (glm::cross(contact.normal, tilt) / polar);
@@ -318,7 +319,7 @@ Matrix6 motion_between(const PortCompliance& body, const SupportFit& to, const S
 
 namespace {
 
-/// Values of one port or one row: the terms side by side in vectors, so that no sum is split.
+/// Values of one port or one row. Terms lie side by side in vectors: no sum is split over lanes.
 using TermRow = std::array<double, kSupportColumn>;
 
 TORSION_WIDEST
@@ -349,7 +350,7 @@ void find_response(const PortCompliance& body, const SupportFit& support_fit,
   const std::size_t side = 3 * body.ports.size();
   for (std::size_t force = 0; force < 3; ++force) {
     for (std::size_t to = 0; to < support_fit.count; ++to) {
-      // What unit moments of this axis do to the port, along each axis.
+      // Displacement of the port by the unit moments of this axis, along each axis.
       std::array<TermRow, 3> moved{};
       for (std::size_t from = 0; from < support_fit.count; ++from) {
         for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -11,12 +11,11 @@
 namespace torsion {
 namespace {
 
-/// Of the elements' length: nearer to each other than this, ports know no more of each other than
-/// at this distance, for the elements' loads and the fits of their motions are as wide
-/// (model/finite_elements/loads.cpp). Measured on a sphere 24 elements across: what ports at
-/// distances of 0, 1, 2, 3 and 4 elements do to each other, less the sphere's rocking, is that
-/// of 2.1, 2.2, 2.4, 3.2 and 4. Twice as much would be 0.4 % of a contact's sideways compliance at
-/// a / R = 0.01.
+/// Of the elements' length. Ports that are nearer to each other than this influence each other as
+/// at this distance, because the elements' loads and the fits of their motions are as wide
+/// (model/finite_elements/loads.cpp). Measured on a sphere 24 elements across: ports at distances
+/// of 0, 1, 2, 3 and 4 elements act, less the sphere's rocking, as at 2.1, 2.2, 2.4, 3.2 and 4.
+/// Twice this value would change a contact's tangential compliance by 0.4 % at a / R = 0.01.
 constexpr double kElementsSee = 2.1;
 constexpr double kFlat = 1e-3;  // curvature times reach: less is not worth tables
 constexpr double kEdge = 0.9;   // cosine between normals a reach apart: no gentle curve
@@ -28,8 +27,8 @@ double port_spacing(const Model& model, std::uint32_t body) {
   return std::max({extent.x, extent.y, extent.z}) / compliance_elements(bounds);
 }
 
-/// The mean logarithm of the distance between the forces at the ports that a force on the contact
-/// is, and their displacements that its own is.
+/// The mean logarithm of the distance between the ports at which a force on the contact acts and
+/// those whose displacements make the contact's own.
 double mean_reach(const Model& model, std::uint32_t body, const SupportFit& support_fit) {
   const auto ports = model.ports.rows<CompliancePort>(model.bodies.at<OwnedRows>(body).ports);
   const double nearest = kElementsSee * port_spacing(model, body);

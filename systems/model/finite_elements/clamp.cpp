@@ -8,11 +8,11 @@
 namespace torsion {
 namespace {
 
-/// A clamped node this near to the clamp's end is there already: what finds a face to be held
-/// allows for rounding.
+/// A clamped node that is this near to the clamp's end stays: the search for a face's nodes allows
+/// for rounding.
 constexpr double kAtEnd = 0.01;  // of an edge
 
-/// Where a node may go: the end of the clamp on one of its edges.
+/// The place that a node moves to: the end of the clamp on one of its edges.
 struct Target {
   glm::dvec3 position{0.0};                                   // m
   double distance = std::numeric_limits<double>::infinity();  // m
@@ -38,8 +38,8 @@ std::vector<std::uint8_t> surface_nodes(const SolidGrid& grid) {
   return on_surface;
 }
 
-/// The nearest target of each node that has one: of free nodes those in the half of an edge towards
-/// the clamp, of clamped ones all. A surface node goes along the surface only.
+/// The nearest target of each node that has one. Free nodes: in the half of an edge towards the
+/// clamp; clamped nodes: anywhere on it. Nodes of the surface move along the surface only.
 std::vector<Target> find_targets(const ElasticSolid& solid, const SolidGrid& grid,
                                  const std::vector<std::uint8_t>& on_surface, bool of_free) {
   std::vector<Target> targets(grid.nodes.size());
@@ -96,7 +96,7 @@ void fit_clamp(const ElasticSolid& solid, SolidGrid& grid) {
   const std::vector<std::uint8_t> on_surface = surface_nodes(grid);
   move_nodes(solid, find_targets(solid, grid, on_surface, true), on_surface, grid);
   move_nodes(solid, find_targets(solid, grid, on_surface, false), on_surface, grid);
-  // Back where that squashes an element that can still deform.
+  // Moves nodes back where that would squash an element that could still deform.
   bool all_sound = false;
   while (!all_sound) {
     all_sound = true;

@@ -57,7 +57,7 @@ std::vector<std::byte> to_bytes(const SmoothCompliance& compliance) {
   return bytes;
 }
 
-/// nullopt when those are no matrices of so many rows.
+/// nullopt if the bytes are no matrices with so many rows.
 std::optional<SmoothCompliance> from_bytes(std::span<const std::byte> bytes, std::size_t rows,
                                            bool couples) {
   const std::size_t matrix_bytes = rows * rows * sizeof(double);
@@ -94,7 +94,7 @@ Result<SmoothCompliance> load_or_build_smooth_compliance(const ElasticSolid& sol
     found = from_bytes(*cached, width_of(options) * ports.size(), options.couples);
   }
   if (!found) {
-    // For 1 Pa, so that the same bits come out whether they were cached or not, and by whom.
+    // For a modulus of 1 Pa, so that the bits are the same whether cached or not.
     ElasticSolid unit = solid;
     unit.elasticity.youngs_modulus = 1.0;
     Result<SmoothCompliance> built = build_smooth_compliance(unit, ports, options);
@@ -112,14 +112,14 @@ Result<SmoothCompliance> load_or_build_smooth_compliance(const ElasticSolid& sol
 
 namespace {
 
-/// Of the shear modulus: keeps nu = 0.5 solvable. Volumes then change by a ten-thousandth of what
-/// shapes do.
+/// Of the shear modulus: keeps nu = 0.5 solvable. Changes of volume are then a ten-thousandth of
+/// changes of shape.
 constexpr double kLargestBulkModulus = 1e4;
 constexpr std::size_t kPortsAtOnce = 8;  // solved together: enough for the matrix products' speed
 constexpr double kShareOfFactor = 0.3;   // of the time, roughly, for the progress
 
-/// Eigen cuts large products into blocks by the processor's caches, and with them the order in
-/// which sums are rounded. These sizes make it the same on every machine.
+/// Eigen cuts large products into blocks by the sizes of the processor's caches, which determine
+/// the order of rounding. Fixed sizes give the same bits on every machine.
 void fix_product_blocks() {
   constexpr int kL1 = 48 << 10;  // bytes; other sizes cost little
   constexpr int kL2 = 1280 << 10;
@@ -134,7 +134,7 @@ double bulk_modulus(double poisson_ratio) {
   return softness * kLargestBulkModulus > 1.0 ? 1.0 / softness : kLargestBulkModulus;
 }
 
-/// What all ports share. Shear modulus 1.
+/// What all ports share. The shear modulus is 1.
 struct Problem {
   const SolidGrid& grid;
   const StiffnessFactor& factor;
@@ -147,7 +147,7 @@ struct Problem {
   int width;             // rows and columns of a port: 3 without torques and rotations, else 6
 };
 
-/// Moves what clamped nodes do over to the loads on the free ones.
+/// Moves the prescribed displacements of clamped nodes to the loads on the free ones.
 void add_held(const Problem& problem, const PortLoads& loads, Eigen::Ref<Eigen::MatrixXd> forces) {
   const SolidGrid& grid = problem.grid;
   for (std::size_t e = 0; e < grid.elements.size(); ++e) {
@@ -169,10 +169,10 @@ void add_held(const Problem& problem, const PortLoads& loads, Eigen::Ref<Eigen::
   }
 }
 
-/// Translation and rotation at a port for each column of nodal displacements. The surface is free
-/// of shear there, so the tangential rotation is the slope of the normal displacement: only
-/// derivatives along the surface enter, which the elements know best. add_shear() puts right that
-/// it is the whole field, not its smooth part alone, whose shear is zero.
+/// Translation and rotation at a port for each column of nodal displacements. The surface there is
+/// free of shear, so the tangential rotation is the slope of the normal displacement: only
+/// derivatives along the surface are needed, which elements give best. Free of shear is the whole
+/// field, not its smooth part alone: add_shear() corrects for that.
 void add_motion(const MotionFit& fit, const glm::dvec3& normal, const NodeColumns& motion,
                 Eigen::Ref<Eigen::MatrixXd> rows) {
   const Eigen::Vector3d n(normal.x, normal.y, normal.z);
@@ -188,8 +188,8 @@ void add_motion(const MotionFit& fit, const glm::dvec3& normal, const NodeColumn
   }
 }
 
-/// Half the shear strain that the half-space's field of each unit wrench at `load` has at `port`,
-/// as a rotation.
+/// Half the shear strain that each unit wrench's half-space field at `load` has at `port`, as a
+/// rotation.
 void add_shear(const Problem& problem, const Port& load, const Port& port,
                Eigen::Ref<Eigen::MatrixXd> rows) {
   for (int column = 0; column < problem.width; ++column) {
@@ -243,7 +243,7 @@ void solve_ports(const Problem& problem, std::size_t first, std::size_t count,
   }
 }
 
-/// All columns, port by port, from as many threads as asked for; six rows a port.
+/// All columns, port by port, in the given number of threads; six rows a port.
 Eigen::MatrixXd solve_all(const Problem& problem, const SmoothComplianceOptions& options) {
   const auto ports = static_cast<Eigen::Index>(problem.ports.size());
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(6 * ports, problem.width * ports);
@@ -269,7 +269,7 @@ Eigen::MatrixXd solve_all(const Problem& problem, const SmoothComplianceOptions&
   return matrix;
 }
 
-/// Of each port's six rows the three from `first` on.
+/// Three of each port's six rows, from `first` on.
 Eigen::MatrixXd rows_of_ports(const Eigen::MatrixXd& rows, Eigen::Index first) {
   Eigen::MatrixXd chosen(rows.rows() / 2, rows.cols());
   for (Eigen::Index port = 0; 6 * port < rows.rows(); ++port) {
@@ -278,7 +278,7 @@ Eigen::MatrixXd rows_of_ports(const Eigen::MatrixXd& rows, Eigen::Index first) {
   return chosen;
 }
 
-/// How far the whole compliance between the ports, half-spaces included, is from symmetric.
+/// How far the whole compliance between the ports, including the half-spaces', is from symmetric.
 double asymmetry_of(const Problem& problem, const Eigen::MatrixXd& smooth) {
   const Eigen::Index each = problem.width;
   Eigen::MatrixXd whole = smooth;

@@ -17,11 +17,11 @@
 namespace torsion {
 namespace {
 
-/// How near the surface counts as the contact's own surroundings. It must be wide enough for the
-/// elements to follow, and a large contact's size at most.
+/// The distance from a port within which the surface counts as the contact's own surroundings: wide
+/// enough for the elements to resolve, and at most the size of a large contact.
 constexpr double kNearOfSide = 0.15;     // of the shortest side
 constexpr double kNearInElements = 1.5;  // at least
-/// On surfaces across an edge, where tractions are bounded, only what no contact could fit into.
+/// On surfaces across an edge, where tractions are bounded, only as far as no contact could fit in.
 constexpr double kNearAcrossEdge = 0.02;  // of the shortest side
 
 Eigen::Index row_of(std::uint32_t node) {
@@ -37,7 +37,7 @@ Eigen::Matrix<double, 6, 3> wrench_of_force(const glm::dvec3& point, const glm::
   return wrench;
 }
 
-/// The radii of these, m.
+/// These radii, m.
 struct Near {
   double around;
   double across_edge;
@@ -63,13 +63,13 @@ FacePoint face_point(const std::array<glm::dvec3, 4>& corners, double s, double 
   return point;
 }
 
-/// What a port's surroundings lack once its loads are on the rest of the surface.
+/// The loads that are left out around a port when its tractions act on the rest of the surface.
 struct LeftOut {
   Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> wrench;  // about the port, for each unit wrench
   Eigen::VectorXd area;                                      // m^2, of each node
 };
 
-/// Adds minus the tractions on one face to loads and to `left_out`, less what is near the port.
+/// Adds minus the tractions on one face to loads and to `left_out`, without those near the port.
 void add_face(const SolidGrid& grid, const std::array<std::uint32_t, 4>& face,
               const Elasticity& elasticity, const Port& port, const Near& near, PortLoads& loads,
               LeftOut& left_out) {
@@ -87,7 +87,8 @@ void add_face(const SolidGrid& grid, const std::array<std::uint32_t, 4>& face,
   if (in_plane && distance > 1.5 * near.around + size) {
     return;
   }
-  // Two points along each side of parts that are at most half as wide as they are far.
+  // Two points along each side of parts that are at most half as wide as they are far from the
+  // port.
   const int parts = static_cast<int>(std::clamp(std::ceil(2.0 * size / distance), 1.0, 8.0));
   const auto coordinate = [&](int k) {
     constexpr double kGauss = 0.2113248654051871;
@@ -124,7 +125,7 @@ void add_face(const SolidGrid& grid, const std::array<std::uint32_t, 4>& face,
   }
 }
 
-/// Stress that goes with the displacement of a field that need not be in equilibrium, nu < 0.5.
+/// The stress by a field's displacement, nu < 0.5; the field need not be in equilibrium.
 glm::dmat3 stress_of_motion(const Port& port, const Elasticity& elasticity, const Wrench& wrench,
                             const glm::dvec3& point) {
   const glm::dmat3 gradient = half_space_gradient(port, elasticity, wrench, point);
@@ -135,14 +136,14 @@ glm::dmat3 stress_of_motion(const Port& port, const Elasticity& elasticity, cons
   return shear * (gradient + glm::transpose(gradient)) + glm::dmat3(spread);
 }
 
-/// Where a concave body reaches high over the port's plane, and nu < 0.5, the half-space's formulas
-/// are held finite and are no solution: their tractions on the surface do not say what they lack.
+/// Where a concave body rises far above the port's plane and nu < 0.5, the half-space's formulas
+/// are kept finite and are no solution: their tractions on the surface are not all that is missing.
 /// Elements there get minus the formulas' own stresses instead, and their faces' tractions back.
 void add_overhang(const SolidGrid& grid, const std::array<std::uint32_t, 8>& element,
                   const std::array<glm::dvec3, 8>& corners, const Elasticity& elasticity,
                   const Port& port, const Near& near, PortLoads& loads, LeftOut& left_out) {
   for (const std::array<std::uint32_t, 4>& side : kElementSides) {
-    // the other way round: what two such elements share cancels
+    // In the opposite sense: what two such elements share cancels.
     add_face(grid, {element[side[3]], element[side[2]], element[side[1]], element[side[0]]},
              elasticity, port, near, loads, left_out);
   }
@@ -169,7 +170,7 @@ void add_overhang(const SolidGrid& grid, const std::array<std::uint32_t, 8>& ele
   }
 }
 
-/// Whether a corner is so steeply over the port that half_space_motion is no solution near it.
+/// Whether a corner is so steeply above the port that half_space_motion is no solution near it.
 bool overhangs(const std::array<glm::dvec3, 8>& corners, const Port& port, const Near& near) {
   return std::any_of(corners.begin(), corners.end(), [&](const glm::dvec3& corner) {
     const glm::dvec3 offset = corner - port.position;
@@ -178,8 +179,8 @@ bool overhangs(const std::array<glm::dvec3, 8>& corners, const Port& port, const
   });
 }
 
-/// Puts the missing wrenches on the nodes around the port: forces in proportion to the area left
-/// out and linear in the position, which is what any force and torque can be made of.
+/// Puts the missing wrenches on the nodes around the port: forces proportional to the area left out
+/// and linear in the position, which can make up any force and torque.
 void add_left_out(const SolidGrid& grid, const Port& port, LeftOut left_out, PortLoads& loads) {
   if (left_out.area.maxCoeff() <= 0.0) {  // a coarse grid: the nearest node's surroundings
     for (std::size_t node = 0; node < grid.nodes.size(); ++node) {
@@ -253,7 +254,7 @@ MotionFit fit_motion(const SolidGrid& grid, const glm::dvec3& point) {
   });
   std::vector<std::uint32_t> rows(grid.nodes.size());
   std::iota(rows.begin(), rows.end(), 0U);
-  // All that can be wanted, if there are enough of them: then there is little to sort.
+  // All nodes that can be needed, if there are enough of them: then there is little to sort.
   const auto far = std::stable_partition(
       rows.begin(), rows.end(), [&](std::uint32_t row) { return reach[row] <= 2.0 * kReach; });
   if (static_cast<std::size_t>(far - rows.begin()) >= kFewest) {

@@ -13,8 +13,7 @@
 namespace torsion {
 namespace {
 
-/// The end of the middle line that goes from the clamp through the body: where contacts are
-/// likeliest.
+/// The end of the line from the clamp through the middle of the body: where contacts are likeliest.
 std::size_t far_end(const Bounds& bounds, const std::vector<Port>& candidates,
                     const std::vector<glm::dvec3>& clamped) {
   if (clamped.empty()) {
@@ -86,7 +85,7 @@ std::vector<Port> images_of(const Port& port, const Mirrors& mirrors) {
   return images;
 }
 
-/// How far a port is from the nearest of its own images, m.
+/// The distance between a port and its nearest mirror image, m.
 double to_own_images(const Port& port, const Mirrors& mirrors) {
   double nearest = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -98,7 +97,7 @@ double to_own_images(const Port& port, const Mirrors& mirrors) {
   return nearest;
 }
 
-/// A candidate next to a middle plane, but for rounding in it, is put there.
+/// Moves a candidate that is, but for rounding, in a middle plane into it.
 void center(const Mirrors& mirrors, double spacing, std::vector<Port>& candidates) {
   constexpr double kSameSide = 1e-6;
   for (Port& port : candidates) {
@@ -118,9 +117,9 @@ struct Focus {
   double radius = 0.0;     // m
 };
 
-/// How far apart ports are to be at each candidate, over how far in the focus.
-/// @param reach    m: beyond the focus, until it is the largest
-/// @param largest  of them
+/// The wanted distance of ports at each candidate, over the one in the focus.
+/// @param reach    m: from the focus to where the distance is largest
+/// @param largest  of these ratios
 std::vector<double> wanted_sizes(const std::vector<Port>& candidates, const Focus& focus,
                                  double reach, double largest) {
   std::vector<double> sizes(candidates.size());
@@ -132,7 +131,7 @@ std::vector<double> wanted_sizes(const std::vector<Port>& candidates, const Focu
   return sizes;
 }
 
-/// Where ports are to be densest, and by how much.
+/// Where ports are densest, and by how much.
 struct Density {
   Focus focus;
   double reach = 0.0;    // m
@@ -146,7 +145,7 @@ std::size_t nearest_to(const std::vector<Port>& ports, const glm::dvec3& point) 
       ports.begin());
 }
 
-/// At the end opposite of the clamp.
+/// Densest at the end opposite to the clamp.
 Density usual_density(const ElasticSolid& solid, const std::vector<Port>& candidates,
                       const SurfacePoints& points) {
   const glm::dvec3 extent = solid.bounds.highest - solid.bounds.lowest;
@@ -155,14 +154,14 @@ Density usual_density(const ElasticSolid& solid, const std::vector<Port>& candid
   return {{candidates[end].position, half}, 2.0 * half};
 }
 
-/// On thin walls, where contacts are expected.
+/// Densest on thin walls where contacts are expected.
 /// @param wall  m, thickness
 Density density_on_walls(const ExpectedPlace& expected, double wall) {
   return {{expected.center, expected.radius + 2.0 * wall}, 4.0 * wall, 6.0};
 }
 
-/// Candidates and their mirror images, each next one farthest from all before it and from the
-/// clamp, in distances over what is wanted there.
+/// Chooses candidates and their mirror images: each next one is the farthest from all before it and
+/// from the clamp, relative to the wanted distance there.
 void choose_spread(const std::vector<Port>& candidates, const Mirrors& mirrors,
                    const std::vector<glm::dvec3>& clamped, const Density& density, double spacing,
                    std::size_t count, std::vector<Port>& ports) {
@@ -193,7 +192,7 @@ void choose_spread(const std::vector<Port>& candidates, const Mirrors& mirrors,
   }
 }
 
-/// A point of the surface, and the ports that a contact there would see.
+/// A point of the surface, and the ports that a contact there would use.
 struct Sight {
   Port point;
   double reach = 0.0;           // m: one port is to be nearer
@@ -201,22 +200,22 @@ struct Sight {
   std::size_t count = 0;        // of those that are seen at all and not far away
 };
 
-/// As few tell of all rigid motions of a small face, and of how it bends.
+/// So few determine all rigid motions of a small face, and how it bends.
 constexpr std::size_t kFewestSeen = 7;
 
-/// How much a point lacks a port; nothing where it is not above 0.
+/// How urgently a point needs a port; not at all if it is not above 0.
 double lack_of(const Sight& sight, double spacing) {
   if (sight.count == 0) {
     return kNeverSeen;
   }
-  // Of the spacing. The end of a rod 1 : 100 has room for kFewestSeen ports that far apart.
+  // Of the spacing. At this distance the end of a rod 1 : 100 has room for kFewestSeen ports.
   constexpr double kTooNear = 0.2;
   const bool few = sight.count < kFewestSeen && sight.nearest > kTooNear * spacing;
   return few || sight.nearest > sight.reach ? sight.nearest : 0.0;
 }
 
-/// Ports for faces that have too few of their own, such as the end of a rod or the narrow rim of a
-/// tube: one at the point from which the nearest is seen farthest, again and again.
+/// Adds ports to faces that have too few of their own, such as the end of a rod or the narrow rim
+/// of a tube: always at the point whose nearest port is the farthest.
 /// @param most  how many
 void add_seen_ports(std::vector<Sight> sights, double spacing, std::size_t most,
                     std::vector<Port>& ports) {
@@ -249,8 +248,8 @@ void add_seen_ports(std::vector<Sight> sights, double spacing, std::size_t most,
 constexpr double kWithoutPorts = 3.0;
 constexpr double kApartOnWalls = 0.6;  // of a wall's thickness, where contacts are expected
 
-/// Of the points to which neither an edge nor the clamp is near.
-/// @param walls  where contacts are expected on thin walls; null: on none
+/// Of the points that are near neither an edge nor the clamp.
+/// @param walls  where contacts are expected on thin walls; null: nowhere
 std::vector<Sight> sights_of(const ElasticSolid& solid, const SurfacePoints& points,
                              const Focus* walls, double wall, double spacing) {
   const double inset = std::min(spacing / 3.0, wall / 8.0);

@@ -34,7 +34,7 @@ std::optional<Port> on_surface(const ElasticSolid& solid, glm::dvec3 point, doub
 SurfacePoints sample_solid_surface(const ElasticSolid& solid, double cells_along) {
   const glm::dvec3 extent = solid.bounds.highest - solid.bounds.lowest;
   const double size = std::max({extent.x, extent.y, extent.z}) / cells_along;
-  // Odd: a symmetric body has candidates in its middle planes.
+  // Odd numbers: a symmetric body has candidates in its middle planes.
   const glm::uvec3 cells = glm::uvec3(glm::max(glm::ceil(extent / size), glm::dvec3(6.0))) | 1U;
   const glm::dvec3 spacing = extent / glm::dvec3(cells);
   const double reach = 0.5 * glm::length(spacing);
@@ -49,7 +49,7 @@ SurfacePoints sample_solid_surface(const ElasticSolid& solid, double cells_along
                                                glm::dvec3(0.5 + 1e-9) * spacing))) {
           continue;
         }
-        // the share of the cell's section that the surface is
+        // The share of the cell's section that the surface makes up.
         const glm::dvec3 n = glm::abs(port->normal);
         points.area += spacing.x * spacing.y * spacing.z /
                        std::max({n.x * spacing.x, n.y * spacing.y, n.z * spacing.z});

@@ -20,7 +20,7 @@ using Modes = Eigen::Matrix<double, 6, kModes>;  // rows xx, yy, zz, xy, yz, zx
 using Strains = Eigen::Matrix<double, 6, 24>;    // engineering shear strains
 using Compliance = Eigen::Matrix<double, 6, 6>;
 
-/// a b' made symmetric, as a stress.
+/// a b', symmetrised, as a stress.
 Eigen::Matrix<double, 6, 1> dyad(const glm::dvec3& a, const glm::dvec3& b) {
   return {a.x * b.x,
           a.y * b.y,
@@ -30,8 +30,9 @@ Eigen::Matrix<double, 6, 1> dyad(const glm::dvec3& a, const glm::dvec3& b) {
           0.5 * (a.z * b.x + a.x * b.z)};
 }
 
-/// Constant stresses, and for each of the element's axes the direct stress along it, varying with
-/// the other two and their product, and the shear in the plane of the other two, varying along it.
+/// Constant stresses; and for each of the element's axes the direct stress along it, which varies
+/// with the two other coordinates and their product, and the shear in their plane, which varies
+/// along it.
 Modes stress_modes(const glm::dmat3& axes, const glm::dvec3& local) {
   Modes modes = Modes::Zero();
   modes.leftCols<6>().setIdentity();
@@ -95,8 +96,8 @@ namespace {
 
 constexpr std::size_t kLeafNodes = 24;  // fewer make more fronts than they save arithmetic
 
-/// Orders `nodes` after what is ordered already: both sides of a plane of the lattice, then the
-/// plane. Returns the rows of the fronts at the top of what it made.
+/// Orders `nodes` behind those ordered before: both sides of a plane of the lattice, then the plane
+/// itself. Returns the rows of the fronts at the top of this tree.
 std::vector<std::uint32_t> dissect(const SolidGrid& grid, std::vector<std::uint32_t> nodes,
                                    StiffnessFactor& factor) {
   if (nodes.empty()) {
@@ -180,7 +181,7 @@ void find_boundary(const SolidGrid& grid, const std::vector<std::uint32_t>& elem
   boundary.erase(std::unique(boundary.begin(), boundary.end()), boundary.end());
 }
 
-/// Where a node of the order is in a front's matrix.
+/// The place of a node in a front's matrix.
 std::uint32_t place_in(const StiffnessFront& front, std::uint32_t node) {
   if (node < front.first + front.count) {
     return node - front.first;
@@ -204,8 +205,8 @@ void add_blocks(const Part& part, const std::vector<std::uint32_t>& places,
   }
 }
 
-/// Eliminates a front's own nodes; leaves in the lower triangle of `rest` what that makes of its
-/// boundary. False when a pivot is not positive.
+/// Eliminates a front's own nodes, and leaves the Schur complement on its boundary in the lower
+/// triangle of `rest`. False if a pivot is not positive.
 bool eliminate(Eigen::MatrixXd& matrix, StiffnessFront& front, Eigen::MatrixXd& rest) {
   const Eigen::Index own = rows_of(front.count);
   const Eigen::Index outer = rows_of(front.boundary.size());

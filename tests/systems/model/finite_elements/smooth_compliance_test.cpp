@@ -37,7 +37,7 @@ Eigen::MatrixXd at_top(const ElasticSolid& solid, std::uint32_t elements) {
 }
 
 TEST(SmoothComplianceTest, SquareBarTwistsByItsEffectiveLength) {
-  // Less the half-space, a bar of side b twists as one of length h - 0.35 b (physics note: +-0.4 %
+  // Less the half-space, a bar of side b twists as one of length h - 0.35 b (within 0.4 %
   // of that fit). Eight elements across leave 1.3 % of J, more across less.
   const double height = 4.0;
   const double exact = (height - 0.35) / (shear_modulus(0.3) * kSquareTorsion);

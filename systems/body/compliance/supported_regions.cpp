@@ -1,4 +1,4 @@
-#include "systems/body/compliance/region_stands.hpp"
+#include "systems/body/compliance/supported_regions.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,18 +20,19 @@
 namespace torsion {
 namespace {
 
-/// The smallest eigenvalue that K^(1/2) C K^(1/2) may have: -1 would leave no compliance at all,
-/// and interpolation between ports could bring it below.
+/// The smallest allowed eigenvalue of K^(1/2) C K^(1/2). At -1 no compliance would be left;
+/// interpolation between ports could go below that.
 constexpr double kStiffest = -0.75;
 
-/// A symmetric compliance over the contact's own: eigenvalues and what makes them a compliance
-/// again.
+/// A symmetric compliance over the contact's own: its eigenvalues, and the factors that make it a
+/// compliance again.
 struct RelativeCompliance {
   EigenSystem6 system;
   Matrix6 back;
 
-  RelativeCompliance(const CompliantBody& body, const Stand& stand, const Matrix6& motion) {
-    const StiffnessRoot root = stiffness_root(body, stand);
+  RelativeCompliance(const CompliantBody& body, const SupportedRegion& supported,
+                     const Matrix6& motion) {
+    const StiffnessRoot root = stiffness_root(body, supported);
     const Matrix6 scaled = root.root * motion * root.root;
     system = eigen_system(0.5 * (scaled + scaled.transpose()));
     back = root.inverse * system.vectors;
@@ -69,25 +70,26 @@ Eigen::Matrix3d motion_by_bend(const CompliantBody& body, const SupportFit& supp
   return turn * motion * turn.transpose();
 }
 
-/// What a region's own wrench does to it: the part that yields goes to Newton's matrix. Where the
-/// rest of the body stiffens the half-space (a layer) Newton's method would overshoot as soon as
-/// the contact slips, and plain iteration converges.
-void find_own_motion(const CompliantBody& body, const Stand& stand, SupportFit& support_fit) {
+/// Motion of a region by its own wrench. The part that adds compliance goes to Newton's matrix.
+/// Where the rest of the body stiffens the half-space (a layer), Newton's method would overshoot as
+/// soon as the contact slips, and plain iteration converges.
+void find_own_motion(const CompliantBody& body, const SupportedRegion& supported,
+                     SupportFit& support_fit) {
   Matrix6 motion = motion_between(body.ports, support_fit, support_fit);
   Eigen::Map<Eigen::Matrix3d> bend(support_fit.bend.data());
-  bend =
-      stand.solved ? Eigen::Matrix3d(Eigen::Matrix3d::Zero()) : motion_by_bend(body, support_fit);
+  bend = supported.solved ? Eigen::Matrix3d(Eigen::Matrix3d::Zero())
+                          : motion_by_bend(body, support_fit);
   motion.topLeftCorner<3, 3>() += bend;
-  const RelativeCompliance relative(body, stand, motion);
+  const RelativeCompliance relative(body, supported, motion);
   const double least = relative.system.values[0];
   support_fit.share = std::min(1.0, kStiffest / std::min(least, -1e-300));
   support_fit.on_layer = 0;
   Eigen::Map<Matrix6>(support_fit.own.data()) = relative.at_least(0.0);
 }
 
-/// On a layer the ports do not count: patch has what the half-space lacks in its own tables
-/// (half_space/layer.hpp), mdr is moved as one.
-void find_motion_on_layer(const CompliantBody& body, const Stand& stand,
+/// On a layer the ports are not used: patch's own tables contain the difference from the half-space
+/// (half_space/layer.hpp), mdr is moved as a whole.
+void find_motion_on_layer(const CompliantBody& body, const SupportedRegion& supported,
                           const ContactEllipse& contact, double thickness,
                           SupportFit& support_fit) {
   support_fit.share = 0.0;
@@ -96,65 +98,65 @@ void find_motion_on_layer(const CompliantBody& body, const Stand& stand,
   if (!law_of(body.model, body.row).by_cells && has_layer_kernel(body.model, body.row)) {
     const Matrix6 motion = layer_motion(body.model, body.row, contact, thickness);
     Eigen::Map<Matrix6>(support_fit.own.data()) =
-        RelativeCompliance(body, stand, motion).at_least(kStiffest);
+        RelativeCompliance(body, supported, motion).at_least(kStiffest);
   }
 }
 
 void fit_supports(const CompliantBody& body) {
-  const Stand* first_laid = nullptr;
+  const SupportedRegion* first_laid = nullptr;
   ContactEllipse contact_of_first;
   for (std::size_t i = 0; i < body.count; ++i) {
-    const Stand& stand = body.stands[i];
-    const SupportFit& support_fit = support_fit_of(body, stand);
-    const ContactEllipse contact = contact_ellipse(body.model, body.state, stand.region);
+    const SupportedRegion& supported = body.regions[i];
+    const SupportFit& support_fit = support_fit_of(body, supported);
+    const ContactEllipse contact = contact_ellipse(body.model, body.state, supported.region);
     if (support_fit.reach == 0.0) {
-      forget_couplings(body.state, stand.block);
-      lay_stand(body, stand, contact);
+      forget_couplings(body.state, supported.block);
+      fit_region_support(body, supported, contact);
     } else if (!still_fits(support_fit, contact) &&
                (first_laid == nullptr ||
                 support_fit.serial < support_fit_of(body, *first_laid).serial)) {
-      first_laid = &stand;
+      first_laid = &supported;
       contact_of_first = contact;
     }
   }
   if (first_laid != nullptr) {
-    lay_stand(body, *first_laid, contact_of_first);
+    fit_region_support(body, *first_laid, contact_of_first);
   }
 }
 
 /// The region's own motion and bending by its own load.
-void move_by_own_load(const CompliantBody& body, Stand& stand) {
-  const SupportFit& support_fit = support_fit_of(body, stand);
-  SupportField& field = body.state.regions.at<SupportField>(stand.region);
-  stand.load = contact_load(body.model, body.state, stand.region, support_fit);
+void move_by_own_load(const CompliantBody& body, SupportedRegion& supported) {
+  const SupportFit& support_fit = support_fit_of(body, supported);
+  SupportField& field = body.state.regions.at<SupportField>(supported.region);
+  supported.load = contact_load(body.model, body.state, supported.region, support_fit);
   if (support_fit.on_layer != 0) {
-    stand.motion = Eigen::Map<const Matrix6>(support_fit.own.data()) * stand.load.wrench;
+    supported.motion = Eigen::Map<const Matrix6>(support_fit.own.data()) * supported.load.wrench;
     field = SupportField{};
     return;
   }
   PortVectors forces;
   PortVectors displacements;
-  forces_at_ports(support_fit, stand.load.moments, forces);
+  forces_at_ports(support_fit, supported.load.moments, forces);
   displacements_at_ports(body.ports, support_fit, forces, displacements);
   for (std::size_t p = 0; p < support_fit.count; ++p) {
     displacements[p] *= support_fit.share;
   }
-  stand.motion = rigid_motion(support_fit, displacements);
-  field = bending(support_fit, displacements, stand.motion);
-  stand.motion.head<3>() +=
-      Eigen::Map<const Eigen::Matrix3d>(support_fit.bend.data()) * stand.load.wrench.head<3>();
+  supported.motion = rigid_motion(support_fit, displacements);
+  field = bending(support_fit, displacements, supported.motion);
+  supported.motion.head<3>() +=
+      Eigen::Map<const Eigen::Matrix3d>(support_fit.bend.data()) * supported.load.wrench.head<3>();
 }
 
 }  // namespace
 
-SupportFit& support_fit_of(const CompliantBody& body, const Stand& stand) {
-  return body.state.support_fits.at<SupportFit>(stand.block);
+SupportFit& support_fit_of(const CompliantBody& body, const SupportedRegion& supported) {
+  return body.state.support_fits.at<SupportFit>(supported.block);
 }
 
-StiffnessRoot stiffness_root(const CompliantBody& body, const Stand& stand) {
-  const RegionFrame& frame = body.state.regions.at<RegionFrame>(stand.region);
-  const StuckStiffness stuck =
-      stuck_stiffness(body.model, body.state, stand.region, support_fit_of(body, stand).radius);
+StiffnessRoot stiffness_root(const CompliantBody& body, const SupportedRegion& supported) {
+  const RegionFrame& frame = body.state.regions.at<RegionFrame>(supported.region);
+  const StuckStiffness stuck = stuck_stiffness(body.model, body.state, supported.region,
+                                               support_fit_of(body, supported).radius);
   Vector6 root;
   root << stuck.along_tangents, stuck.along_tangents, stuck.along_normal, stuck.about_tangents.x,
       stuck.about_tangents.y, stuck.about_normal;
@@ -169,42 +171,43 @@ StiffnessRoot stiffness_root(const CompliantBody& body, const Stand& stand) {
           axes.transpose() * root.cwiseInverse().asDiagonal() * axes};
 }
 
-void lay_stand(const CompliantBody& body, const Stand& stand, const ContactEllipse& contact) {
+void fit_region_support(const CompliantBody& body, const SupportedRegion& supported,
+                        const ContactEllipse& contact) {
   const Model& model = body.model;
   State& state = body.state;
-  SupportFit& support_fit = support_fit_of(body, stand);
+  SupportFit& support_fit = support_fit_of(body, supported);
   fit_support(body.ports, contact, support_fit);
-  support_fit.serial = state.clock.step * state.support_fits.size() + stand.block + 1;
+  support_fit.serial = state.clock.step * state.support_fits.size() + supported.block + 1;
   const double thickness = layer_thickness(model, body.row, contact.normal, contact.center);
   if (thickness > 0.0) {
-    find_motion_on_layer(body, stand, contact, thickness, support_fit);
+    find_motion_on_layer(body, supported, contact, thickness, support_fit);
   } else {
-    find_own_motion(body, stand, support_fit);
+    find_own_motion(body, supported, support_fit);
   }
 }
 
-void find_stands(CompliantBody& body) {
+void find_supported_regions(CompliantBody& body) {
   const Model& model = body.model;
   State& state = body.state;
   for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
     const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
     if (identity.body == body.row) {
-      Stand& stand = body.stands[body.count++];
-      stand.region = region;
-      stand.block = block_of(identity);
-      stand.solved = law_of(model, body.row).by_cells;
+      SupportedRegion& supported = body.regions[body.count++];
+      supported.region = region;
+      supported.block = block_of(identity);
+      supported.solved = law_of(model, body.row).by_cells;
     }
   }
   fit_supports(body);
   for (std::size_t i = 0; i < body.count; ++i) {
-    move_by_own_load(body, body.stands[i]);
+    move_by_own_load(body, body.regions[i]);
   }
 }
 
 namespace {
 
-/// The same on a layer, forces and displacements alone: there a contact moves nothing farther away
-/// than some thicknesses.
+/// The same on a layer, for forces and displacements alone: there a contact moves nothing that is
+/// farther away than a few thicknesses.
 Matrix6 on_layer(const CompliantBody& body, const Matrix6& half_space, const SupportFit& to,
                  const SupportFit& from, double thickness) {
   Matrix6 motion = Matrix6::Zero();
@@ -230,12 +233,13 @@ bool is_found(const RegionCoupling& coupling, const SupportFit& to, const Suppor
   return coupling.serial_to == to.serial && coupling.serial_from == from.serial;
 }
 
-/// Where the one is seen from the other. Point loads in each other's place would move each other
-/// without bound, and regions that part or meet may have their middles anywhere: mdr's are discs,
-/// so they lie as far apart as their rims at least. Those of patch are what their cells are, and
-/// the middle of one may lie within the disc of another: as far as the larger one's rim at least,
-/// where two regions do less to each other than each does to itself. With q = (1 - nu^2) / (pi E)
-/// point loads at distance d sink by q / d, discs by (pi / 2) q / a.
+/// The place of one region relative to the other. Point loads at the same place would move each
+/// other without bound, and the middles of regions that part or meet may be anywhere. Regions of
+/// mdr are discs, so they are at least as far apart as their rims. Those of patch have the shape of
+/// their cells, and the middle of one may lie within the disc of the other: they are at least as
+/// far apart as the larger one's rim, where two regions move each other less than each moves
+/// itself. With q = (1 - nu^2) / (pi E), point loads at distance d sink by q / d, discs by (pi / 2)
+/// q / a.
 glm::dvec3 apart(const SupportFit& there, const SupportFit& here, bool by_cells) {
   const glm::dvec3 way = there.center - here.center;
   const double distance = glm::length(way);
@@ -250,14 +254,14 @@ void find_coupling(const CompliantBody& body, const SupportFit& there, const Sup
   Eigen::Map<Matrix6>(coupling.motion.data()) = motion_of(body, there, here);
 }
 
-/// @param found_before  take those that were, or those that never were
+/// @param found_before  true: those that were found before; false: those that never were
 /// @return how many more may be found
 std::size_t find_some_couplings(const CompliantBody& body, bool found_before, std::size_t most) {
   for (std::size_t i = 0; i < body.count; ++i) {
     for (std::size_t j = 0; j < i && most > 0; ++j) {
-      const bool ordered = body.stands[i].block > body.stands[j].block;
-      const Stand& to = body.stands[ordered ? i : j];
-      const Stand& from = body.stands[ordered ? j : i];
+      const bool ordered = body.regions[i].block > body.regions[j].block;
+      const SupportedRegion& to = body.regions[ordered ? i : j];
+      const SupportedRegion& from = body.regions[ordered ? j : i];
       RegionCoupling& coupling = coupling_between(body, to, from);
       const SupportFit& there = support_fit_of(body, to);
       const SupportFit& here = support_fit_of(body, from);
@@ -299,7 +303,8 @@ void find_couplings(const CompliantBody& body) {
   find_some_couplings(body, true, find_some_couplings(body, false, kCouplingsAStep));
 }
 
-RegionCoupling& coupling_between(const CompliantBody& body, const Stand& to, const Stand& from) {
+RegionCoupling& coupling_between(const CompliantBody& body, const SupportedRegion& to,
+                                 const SupportedRegion& from) {
   return body.state.couplings.at<RegionCoupling>(coupling_row(to.block, from.block));
 }
 

@@ -28,12 +28,13 @@ bool any_compliance(const StepContext& context) {
              [](const BodyModels& models) { return models.body == BodyModel::kCompliance; });
 }
 
-bool any_paper_beam(const StepContext& context) {
+bool any_beam_taken(const StepContext& context) {
   return any_tool_and_body(context) &&
-         std::ranges::any_of(
-             context.model.bodies.column<BodyModels>(), [](const BodyModels& models) {
-               return models.contact == ContactModel::kPaper && models.body == BodyModel::kSkeleton;
-             });
+         std::ranges::any_of(context.model.bodies.column<BodyModels>(),
+                             [](const BodyModels& models) {
+                               return contact_law(models.contact).takes_beams &&
+                                      models.body == BodyModel::kSkeleton;
+                             });
 }
 
 /// What regions keep from the last step: their rows and the rows of their blocks.
@@ -64,7 +65,7 @@ std::vector<System<StepContext>> step_systems() {
       {"region_grids", "finds depth and area cell by cell", "a tool and a body", any_tool_and_body,
        region_grids, columns<RegionFrame, CellGeometry, Overlap, SmoothContact>(), kOfRegions},
       {"main_beams", "the beam from what is fixed to every region",
-       "a body with contact model paper and body model skeleton", any_paper_beam, main_beams},
+       "a body with contact model paper and body model skeleton", any_beam_taken, main_beams},
   };
   for (const ContactLaw* const law : contact_laws()) {
     systems.insert(systems.end(), law->place.begin(), law->place.end());

@@ -71,15 +71,15 @@ struct BodyModels {
 
 /// Which rows of other tables belong to a tool or body. Written by: load.
 struct OwnedRows {
-  Range parts;       // in `parts`
-  Range samples;     // in `samples`; tools only
-  Range balls;       // in `balls`; tools only
-  Range anchors;     // in `anchors`; bodies only
-  Range influences;  // in `influences`; bodies with contact model patch only: its tables and, of a
-                     // layer with body model compliance, its kernel (half_space/layer.hpp)
-  Range ports;       // in `ports`; body model compliance only, the first of them are its anchors
-  Range compliance;  // in `compliance`, 3 rows a port of 3 numbers a port, displacements by the
-                     // force there, m/N; then 3 rows a port of 3 an anchor, turns by it, rad/N
+  Range parts;         // in `parts`
+  Range samples;       // in `samples`; tools only
+  Range balls;         // in `balls`; tools only
+  Range anchors;       // in `anchors`; bodies only
+  Range influences;    // in `influences`: tables of contact model patch, none for others
+  Range layer_kernel;  // likewise: of a layer with body model compliance (half_space/layer.hpp)
+  Range ports;         // in `ports`; body model compliance only, the first of them are its anchors
+  Range compliance;    // in `compliance`, 3 rows a port of 3 numbers a port, displacements by the
+                       // force there, m/N; then 3 rows a port of 3 an anchor, turns by it, rad/N
 };
 
 /// What bounds the forces of a body's regions (region_wrenches.hpp). Written by: region_wrenches.

@@ -17,6 +17,14 @@ namespace torsion {
 
 struct RegionPoints;  // systems/contact/scratch.hpp
 
+/// The columns, besides regions' own rows, in which a contact model keeps something from step to
+/// step, and from which the twist of the surface under its regions is drawn.
+enum class KeptColumns : std::uint8_t {
+  kNone,          // the twist is drawn from RegionFriction's stick radius and turn
+  kSpringLayers,  // State::mdr_layers: springs of a half-space's contact
+  kSurfaceCells,  // State::patch_cells: a half-space's cells, which need influence tables
+};
+
 /// One contact model: from a region's overlap and its motion to RegionNormal and RegionFriction.
 struct ContactLaw {
   ContactModel model = ContactModel::kAuto;
@@ -36,6 +44,9 @@ struct ContactLaw {
   bool is_bounded = true;
   /// It needs RegionMotion on bodies without friction, too.
   bool needs_motion = true;
+  KeptColumns keeps = KeptColumns::kNone;
+  /// With body model skeleton its force includes the beam of ContactScratch::beams.
+  bool takes_beams = false;
   /// It has the compliance of the whole body in its own: a body model would count that twice.
   bool is_of_whole_body = false;
   /// Cells along a side of the grid where the user leaves that open and no tolerance asks for more.

@@ -85,14 +85,14 @@ InfluenceTables layer_influence_tables(std::span<const double> values, std::uint
 
 /// Displacement at one place of a layer by a force at another one, less the half-space's: body
 /// axes, m/N. Its transpose is the other way round.
-/// @param body       with a layer's kernel (OwnedRows::influences)
+/// @param body       with a layer's kernel (layer_kernel)
 /// @param normal     body, unit, out of the layer
 /// @param offset     m, body: from the force
 /// @param thickness  m
 glm::dmat3 layer_coupling(const Model& model, std::uint32_t body, const glm::dvec3& normal,
                           const glm::dvec3& offset, double thickness);
 
-/// Whether the body has a layer's kernel.
-bool has_layer_kernel(const Model& model, std::uint32_t body);
+/// The kernel of a body that contacts take for a layer: (kLayerKernelSize), or none.
+std::span<const double> layer_kernel(const Model& model, std::uint32_t body);
 
 }  // namespace torsion

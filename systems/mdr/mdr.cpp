@@ -344,6 +344,7 @@ const ContactLaw kMdrLaw{
     .model = ContactModel::kMdr,
     .moves_own_support = true,
     .answers_from = 10.0,  // only when tools that pinch a body sway it
+    .keeps = KeptColumns::kSpringLayers,
     .grid_side = 12,
     .solve = kMdrSolve,
     .follow = follow_overlap,

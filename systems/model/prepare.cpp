@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "systems/contact/law.hpp"
 #include "systems/contact/support/support_fit.hpp"
 #include "systems/geometry/bounds.hpp"
 #include "systems/geometry/distance_field.hpp"
@@ -235,34 +236,47 @@ bool has_kernel(const Model& model, std::uint32_t row, const BodyModels& models)
   return models.body == BodyModel::kCompliance && is_layer(model, row);
 }
 
-/// Whether regions of contact model `patch` may need tables of their own.
-bool has_own_tables(const Model& model, std::uint32_t row, const BodyModels& models) {
-  return models.body == BodyModel::kCompliance && (is_layer(model, row) || may_bend(model, row));
+bool keeps(const BodyModels& models, KeptColumns columns) {
+  return contact_law(models.contact).keeps == columns;
 }
 
-/// Number of rows in `influences` that a body needs: patch's tables, then a layer's kernel.
-std::uint32_t influence_values(const Model& model, std::uint32_t row, const BodyModels& models,
-                               std::uint32_t side) {
-  const std::size_t tables = models.contact == ContactModel::kPatch ? influence_count(side) : 0;
+/// Whether regions on the body may need influence tables of their own.
+bool has_own_tables(const Model& model, std::uint32_t row, const BodyModels& models) {
+  return keeps(models, KeptColumns::kSurfaceCells) && models.body == BodyModel::kCompliance &&
+         (is_layer(model, row) || may_bend(model, row));
+}
+
+/// Numbers of rows in `influences` that a body needs.
+struct InfluenceRows {
+  std::uint32_t tables = 0;
+  std::uint32_t kernel = 0;
+};
+InfluenceRows influence_rows(const Model& model, std::uint32_t row, const BodyModels& models,
+                             std::uint32_t side) {
+  const std::size_t tables =
+      keeps(models, KeptColumns::kSurfaceCells) ? influence_count(side) : std::size_t{0};
   const std::size_t kernel = has_kernel(model, row, models) ? kLayerKernelSize : 0;
-  return static_cast<std::uint32_t>(tables + kernel);
+  return {static_cast<std::uint32_t>(tables), static_cast<std::uint32_t>(kernel)};
 }
 
 void append_influences(Model& model, std::uint32_t row, const BodyModels& models) {
+  static_assert(sizeof(Influence) == sizeof(double));
   const std::uint32_t side = model.settings.grid_side;
   const double poisson_ratio = model.bodies.at<Elasticity>(row).poisson_ratio;
-  const std::size_t tables = models.contact == ContactModel::kPatch ? influence_count(side) : 0;
-  std::vector<double> values(influence_values(model, row, models, side));
-  if (tables > 0) {
-    fill_influences(poisson_ratio, side, std::span(values).first(tables));
-  }
-  if (values.size() > tables) {
-    fill_layer_kernel(poisson_ratio, std::span(values).subspan(tables));
-  }
-  const Range rows = *model.influences.append(static_cast<std::uint32_t>(values.size()));
-  model.bodies.at<OwnedRows>(row).influences = rows;
-  std::ranges::transform(values, model.influences.rows<Influence>(rows).begin(),
-                         [](double value) { return Influence{value}; });
+  const auto append = [&model](std::uint32_t count, const auto& fill) {
+    const Range range = *model.influences.append(count);
+    if (count > 0) {
+      fill(std::span(&model.influences.rows<Influence>(range).front().value, count));
+    }
+    return range;
+  };
+  const InfluenceRows needed = influence_rows(model, row, models, side);
+  OwnedRows& owned = model.bodies.at<OwnedRows>(row);
+  owned.influences = append(needed.tables, [&](std::span<double> values) {
+    fill_influences(poisson_ratio, side, values);
+  });
+  owned.layer_kernel = append(
+      needed.kernel, [&](std::span<double> values) { fill_layer_kernel(poisson_ratio, values); });
 }
 
 /// Appends what the chosen models of a body need.
@@ -303,10 +317,11 @@ Result<Done> append_choices(PreparedWorld& prepared, const SceneDescription& sce
       settings.grid_side == 0 ? choose_grid_side(prepared.choices) : settings.grid_side;
   for (std::uint32_t row = 0; row < model.bodies.size(); ++row) {
     const BodyModels& models = prepared.choices[row].models;
-    capacities.influences += influence_values(model, row, models, settings.grid_side);
-    capacities.patch_bodies += models.contact == ContactModel::kPatch ? 1U : 0U;
-    capacities.mdr_bodies += models.contact == ContactModel::kMdr ? 1U : 0U;
-    if (models.contact == ContactModel::kPatch && has_own_tables(model, row, models)) {
+    const InfluenceRows influences = influence_rows(model, row, models, settings.grid_side);
+    capacities.influences += influences.tables + influences.kernel;
+    capacities.patch_bodies += keeps(models, KeptColumns::kSurfaceCells) ? 1U : 0U;
+    capacities.mdr_bodies += keeps(models, KeptColumns::kSpringLayers) ? 1U : 0U;
+    if (has_own_tables(model, row, models)) {
       capacities.layer_influences =
           static_cast<std::uint32_t>(layer_influence_count(settings.grid_side));
     }

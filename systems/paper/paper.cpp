@@ -269,6 +269,7 @@ const ContactLaw kPaperLaw{
     .answers_from = std::numeric_limits<double>::infinity(),
     .is_bounded = false,
     .needs_motion = false,
+    .takes_beams = true,
     .place = kPlace,
     .solve = kSolve,
     .follow = follow_overlap,

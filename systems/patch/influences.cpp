@@ -118,15 +118,13 @@ RegionInfluences region_influences(const Model& model, State& state, std::uint32
   const auto rows =
       model.influences.rows<Influence>(model.bodies.at<OwnedRows>(identity.body).influences);
   const std::span<const double> values(&rows.front().value, rows.size());
-  const std::size_t count = influence_count(side);
   RegionInfluences result;
-  result.tables = influence_tables(values.first(count), side, table_aspect(frame.half_size));
+  result.tables = influence_tables(values, side, table_aspect(frame.half_size));
   result.coupled = poisson_ratio < 0.5;
-  const double thickness = values.size() > count
-                               ? layer_thickness(model, identity.body, frame.normal, frame.origin)
-                               : 0.0;
-  const RegionTables at{
-      model, state, region, result, values.subspan(count), state.regions.at<LayerGrid>(region)};
+  const std::span<const double> kernel = layer_kernel(model, identity.body);
+  const double thickness =
+      !kernel.empty() ? layer_thickness(model, identity.body, frame.normal, frame.origin) : 0.0;
+  const RegionTables at{model, state, region, result, kernel, state.regions.at<LayerGrid>(region)};
   const std::uint32_t block = block_of(identity);
   const SupportFit* const support_fit =
       state.support_fits.empty() ? nullptr : &state.support_fits.at<SupportFit>(block);

@@ -368,6 +368,7 @@ const ContactLaw kPatchLaw{
     .model = ContactModel::kPatch,
     .by_cells = true,
     .answers_from = 0.5,
+    .keeps = KeptColumns::kSurfaceCells,
     .solve = kPatchSolve,
     .follow = follow_patch,
     .find_cells = find_patch_cells,

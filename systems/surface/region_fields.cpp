@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "systems/contact/law.hpp"
 #include "systems/contact/scratch.hpp"
 #include "systems/contact/stick_slip.hpp"
 #include "systems/math/frames.hpp"
@@ -274,7 +275,7 @@ void discs_of_layers(const MdrFoundation& foundation, std::span<const MdrLayer> 
 }
 
 void fill_field(const Model& model, const State& state, const SnapshotTables& tables,
-                std::uint32_t region, ContactModel contact, RegionField& field) {
+                std::uint32_t region, KeptColumns kept, RegionField& field) {
   const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const std::uint32_t side = model.settings.grid_side;
@@ -287,10 +288,10 @@ void fill_field(const Model& model, const State& state, const SnapshotTables& ta
   field.spread = kSpreadOverBlock * 2.0 * std::min(frame.half_size.x, frame.half_size.y) /
                  static_cast<double>(kFieldBlocks);
   field.center = press_blocks(source, state.regions.at<RegionNormal>(region).force, field);
-  if (contact == ContactModel::kPatch) {
+  if (kept == KeptColumns::kSurfaceCells) {
     field.radius = std::max(field.radius, radius_of_moment(source, field.center));
   }
-  if (contact == ContactModel::kMdr) {
+  if (kept == KeptColumns::kSpringLayers) {
     const std::uint32_t block = block_of(identity);
     const MdrState& own = state.regions.at<MdrState>(region);
     const MdrPlaces places = places_of(tables.mdr, {own.flat_share, own.elongation});
@@ -310,9 +311,9 @@ void region_fields(const Model& model, const State& state, const SnapshotTables&
                    Snapshot& snapshot) {
   for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
     const std::uint32_t body = state.regions.at<RegionIdentity>(region).body;
-    const ContactModel contact = model.bodies.at<BodyModels>(body).contact;
-    if (contact == ContactModel::kMdr || contact == ContactModel::kPatch) {
-      fill_field(model, state, tables, region, contact,
+    const KeptColumns kept = law_of(model, body).keeps;
+    if (kept != KeptColumns::kNone) {
+      fill_field(model, state, tables, region, kept,
                  snapshot.region_fields.at<RegionField>(region));
     }
   }

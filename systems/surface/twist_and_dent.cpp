@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/body/skeleton/skeleton.hpp"
+#include "systems/contact/law.hpp"
 #include "systems/contact/support/body_law.hpp"
 #include "systems/half_space/fields.hpp"
 #include "systems/math/frames.hpp"
@@ -74,10 +75,6 @@ Profiles half_space_profiles(double r) {
   }
   const double angle = inverse_sine_of_reciprocal(r);
   return {((2.0 - r * r) * angle + std::sqrt(r * r - 1.0)) / pi, 2.0 / pi * angle};
-}
-
-bool is_half_space(ContactModel model) {
-  return model == ContactModel::kMdr || model == ContactModel::kPatch;
 }
 
 /// The sums of a half-space model in a region; radius 0 where it has none.
@@ -231,7 +228,7 @@ RegionTwist region_twist(const Model& model, const Snapshot& snapshot, std::uint
     twist.axis.direction = glm::vec4(glm::vec3(twist.discs.normal), 0.0F);
     return twist;
   }
-  if (is_half_space(model.bodies.at<BodyModels>(identity.body).contact)) {
+  if (law_of(model, identity.body).keeps != KeptColumns::kNone) {
     // The region is so new that there is no field yet: it has hardly turned anything.
     twist.axis.point = glm::vec4(glm::vec3(place), 0.0F);
     twist.axis.direction = glm::vec4(glm::vec3(frame.normal), 0.0F);

@@ -49,9 +49,9 @@ void mend_owners(World& world) {
     world.model.balls.at<SurfaceBall>(row).sample = row % 2 == 0 ? kNoRow : row % 20 / 2;
   }
   for (std::uint32_t row = 0; row < 2; ++row) {
-    world.model.tools.at<OwnedRows>(row) = {{row, 1}, {row * 10, 10}, {row * 20, 20}, {}, {}, {},
-                                            {}};
-    world.model.bodies.at<OwnedRows>(row) = {{row + 1, 1}, {}, {}, {row * 3, 3}, {}, {}, {}};
+    world.model.tools.at<OwnedRows>(row) = {
+        {row, 1}, {row * 10, 10}, {row * 20, 20}, {}, {}, {}, {}, {}};
+    world.model.bodies.at<OwnedRows>(row) = {{row + 1, 1}, {}, {}, {row * 3, 3}, {}, {}, {}, {}};
     if (row == 0) {
       world.model.bodies.at<OwnedRows>(row).ports = {0, 3};
       world.model.bodies.at<OwnedRows>(row).compliance = {0, 162};

@@ -95,7 +95,7 @@ void find_motion_on_layer(const CompliantBody& body, const SupportedRegion& supp
   support_fit.share = 0.0;
   support_fit.on_layer = 1;
   support_fit.own = {};
-  if (!law_of(body.model, body.row).by_cells && has_layer_kernel(body.model, body.row)) {
+  if (!law_of(body.model, body.row).by_cells && !layer_kernel(body.model, body.row).empty()) {
     const Matrix6 motion = layer_motion(body.model, body.row, contact, thickness);
     Eigen::Map<Matrix6>(support_fit.own.data()) =
         RelativeCompliance(body, supported, motion).at_least(kStiffest);
@@ -211,7 +211,7 @@ namespace {
 Matrix6 on_layer(const CompliantBody& body, const Matrix6& half_space, const SupportFit& to,
                  const SupportFit& from, double thickness) {
   Matrix6 motion = Matrix6::Zero();
-  if (has_layer_kernel(body.model, body.row)) {
+  if (!layer_kernel(body.model, body.row).empty()) {
     const glm::dmat3 layer =
         layer_coupling(body.model, body.row, from.normal, to.center - from.center, thickness);
     for (int row = 0; row < 3; ++row) {

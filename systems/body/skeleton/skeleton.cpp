@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/body/skeleton/beam_sections.hpp"
+#include "systems/contact/law.hpp"
 
 namespace torsion {
 namespace {
@@ -179,7 +180,7 @@ void main_beams(StepContext& context) {
     const std::uint32_t block = block_of(identity);
     context.scratch.beams[block] = BeamSpring{};
     const BodyModels& models = model.bodies.at<BodyModels>(identity.body);
-    if (models.contact == ContactModel::kPaper && models.body == BodyModel::kSkeleton) {
+    if (contact_law(models.contact).takes_beams && models.body == BodyModel::kSkeleton) {
       const MainBeam beam =
           main_beam(model, identity.body, state.regions.at<Overlap>(region).rest_center);
       context.scratch.beams[block] = beam_spring(beam, model.bodies.at<Elasticity>(identity.body));

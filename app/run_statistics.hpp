@@ -70,6 +70,9 @@ struct RunStatistics {
   std::uint64_t lost_rows = 0;          // of the trace, when the disk could not follow
   std::uint64_t lost_inputs = 0;        // of the recording, likewise
   double wall_time = 0.0;               // s, all steps together
+  std::uint32_t snapshots = 0;          // timed beside the steps, which contain none
+  double snapshot_us = 0.0;             // us, of all of them together
+  double snapshot_step_us = 0.0;        // us, of the steps that they were taken of
   std::uint32_t most_regions = 0;
   double peak_force = 0.0;   // N, largest over tools
   double peak_torque = 0.0;  // N m

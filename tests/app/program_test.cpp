@@ -130,6 +130,12 @@ TEST(SimulateTest, PrintsHowFastItIs) {
   std::printf("ball_on_cube: %.1f times real time, median step %.1f us\n",
               summary["times_real_time"].get<double>(), summary["step_us"]["median"].get<double>());
   EXPECT_GT(summary["times_real_time"].get<double>(), 0.0);
+  // And what a step saves by leaving drawing to who draws; nothing where nothing ever touches.
+  EXPECT_GT(summary["snapshot_us"].get<double>(), 0.0);
+  EXPECT_FALSE(
+      json::parse(
+          run_torsion({"simulate", scene("ball_on_cube"), "--seconds", "0.001", "--json"}).out)
+          .contains("snapshot_us"));
 }
 
 TEST(SimulateTest, RateSetsTheTimeBetweenRows) {

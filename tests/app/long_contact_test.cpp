@@ -82,6 +82,10 @@ std::vector<double> box(double width, std::uint32_t side, std::uint32_t iteratio
 }
 
 TEST(LongContactTest, ATurningScrewdriverKeepsItsTorque) {
+  // The next test has contacts of its kind, against a reference of fewer cells.
+  if (test::is_left_out(false)) {
+    GTEST_SKIP() << test::kLeftOut;
+  }
   // A contact's rim is where its face's is, to a tenth of a cell on either side (the stiffness
   // against turning is a third power of the length: rim_stiffness_test.cpp): with 16 cells along
   // the blade 4 %. What comes in under a leading edge takes about a cell's length to come to the

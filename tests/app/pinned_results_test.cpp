@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/app/run_digest.hpp"
+#include "tests/support/studies.hpp"
 
 namespace torsion::test {
 namespace {
@@ -23,9 +24,20 @@ std::vector<std::string> pinned_lines() {
   return lines;
 }
 
+/// Every fourth, which has every scene and every pair of models among them.
+bool is_chosen(const PinnedRun& run) {
+  const std::vector<PinnedRun> runs = pinned_runs();
+  const auto row =
+      std::ranges::find(runs, name_of(run), [](const auto& at) { return name_of(at); });
+  return (row - runs.begin()) % 4 == 0;
+}
+
 class PinnedResultTest : public testing::TestWithParam<PinnedRun> {};
 
 TEST_P(PinnedResultTest, IsTheSameToTheBit) {
+  if (test::is_left_out(is_chosen(GetParam()))) {
+    GTEST_SKIP() << test::kLeftOut;
+  }
   const std::string line = pinned_line(GetParam(), digest_of(GetParam()));
   const std::vector<std::string> lines = pinned_lines();
   EXPECT_TRUE(std::ranges::find(lines, line) != lines.end())

@@ -16,9 +16,9 @@ inline bool is_left_out(bool chosen) {
   return !chosen && !all_cases();
 }
 
-/// How many of `all` random trials to make: a fifth, or all of them.
-inline int trials_of(int all) {
-  return all_cases() ? all : all / 5;
+/// How many of `all` random trials to make: one in `of`, or all of them.
+inline int trials_of(int all, int of = 5) {
+  return all_cases() ? all : all / of;
 }
 
 inline constexpr const char* kLeftOut = "one of many of its kind: ./dev test --all looks at it";

@@ -5,6 +5,7 @@
 
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
+#include "tests/support/studies.hpp"
 
 namespace torsion {
 namespace {
@@ -141,6 +142,9 @@ TEST_P(HalfSpaceContinuityTest, RegionsMeetAndPartOnABodyThatGivesWay) {
 }
 
 TEST_P(HalfSpaceContinuityTest, ThirdFootStandsByWhereTwoMeetAndPart) {
+  if (test::is_left_out(GetParam() == ContactModel::kMdr)) {
+    GTEST_SKIP() << test::kLeftOut;
+  }
   // What the two change in the body moves the third, too.
   expect_continuous_meeting(scene({{-0.008, 0.0, 0.0}, {0.008, 2e-5, 0.0}, {0.0, 0.0, 0.03}}), 4);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -105,8 +106,9 @@ class MeshBodyTest : public testing::TestWithParam<MeshCase> {};
 constexpr double kBound = 0.007;
 
 TEST_P(MeshBodyTest, GivesWayLikeTheExactShape) {
-  // Of each shape and each way of holding it, and with either contact model, one at least.
-  if (test::is_left_out(GetParam().poisson == 0.5)) {
+  // Of each shape and with either contact model, one at least.
+  if (test::is_left_out(std::string_view(GetParam().name) == "BoxOnAFacePatch" ||
+                        std::string_view(GetParam().name) == "EllipsoidMdr")) {
     GTEST_SKIP() << test::kLeftOut;
   }
   const std::vector<Wrench> exact = press_slide_twist(GetParam(), false);

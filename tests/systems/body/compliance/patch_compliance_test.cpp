@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <string_view>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -87,7 +88,8 @@ class PatchComplianceTest : public testing::TestWithParam<CalmCase> {};
 // threshold (1e-9 of the mean pressure). While it moves, the contact is
 // never lost, and never presses more than thrice as at first.
 TEST_P(PatchComplianceTest, ComesToRestAfterAnyMotion) {
-  if (test::is_left_out(GetParam().side == 12)) {
+  const std::string_view on = GetParam().ground.name;
+  if (test::is_left_out(GetParam().side == 12 && on != "LargeContact" && on != "Layer")) {
     GTEST_SKIP() << test::kLeftOut;
   }
   const Ground& ground = GetParam().ground;

@@ -10,6 +10,7 @@
 #include "systems/contact/law.hpp"
 #include "systems/scratch.hpp"
 #include "tests/support/contact_scenes.hpp"
+#include "tests/support/studies.hpp"
 
 namespace torsion {
 namespace {
@@ -133,6 +134,10 @@ TEST(ColumnWritersTest, NoSystemChangesWhatItDoesNotDeclareAndAllThatItDeclaresI
   for (const ContactLaw* const law : contact_laws()) {
     for (const BodyModel model : {BodyModel::kNone, BodyModel::kSkeleton, BodyModel::kCompliance}) {
       for (const auto& [kind, half_extent] : bodies) {
+        // The body's shape matters to body model compliance most.
+        if (test::is_left_out(model == BodyModel::kCompliance || &kind == &bodies[0].first)) {
+          continue;
+        }
         SCOPED_TRACE(testing::Message() << static_cast<int>(law->model) << " "
                                         << static_cast<int>(model) << " " << half_extent.y);
         test::Hand hand(two_balls_over(kind, half_extent, {law->model, model}));

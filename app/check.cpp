@@ -11,7 +11,7 @@
 #include "scenes/load_gltf.hpp"
 #include "systems/scratch.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 struct CheckOptions {
@@ -220,4 +220,4 @@ void add_check(CLI::App& app, Command& command) {
   });
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

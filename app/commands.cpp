@@ -11,7 +11,7 @@
 
 #include "ecs/model_names.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint32_t kFewestCells = 16;
@@ -70,4 +70,4 @@ int fail(const std::string& text) {
   return kFailed;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 
 #include "systems/step.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What a subcommand does once its options are read; returns the program's exit code.
 using Command = std::function<int()>;
@@ -42,4 +42,4 @@ struct SceneOptions {
 /// Says `text` on stderr and returns kFailed.
 int fail(const std::string& text);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 
 #include "systems/surface/surface_field.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Vertices at one place with one normal at rest are one surface, however the file splits them.
@@ -87,4 +87,4 @@ std::vector<WrittenMesh> deformed_scene(const Session& session) {
   return meshes;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "device/device_text.hpp"
 #include "device/usb/usb_list.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 struct DevicesOptions {
@@ -170,4 +170,4 @@ void add_devices(CLI::App& app, Command& command) {
   });
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

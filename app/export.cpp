@@ -10,7 +10,7 @@
 #include "app/output_file.hpp"
 #include "app/progress.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 struct ExportOptions {
@@ -117,4 +117,4 @@ void add_export(CLI::App& app, Command& command) {
   });
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

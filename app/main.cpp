@@ -12,20 +12,20 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", TORSION_VERSION);
   app.footer("Exit codes: 0 done, 1 bad input or a run that failed, 2 wrong usage.");
-  torsion::Command command;
-  torsion::add_simulate(app, command);
+  torsion::engine::Command command;
+  torsion::engine::add_simulate(app, command);
 #ifdef TORSION_WITH_RENDER
-  torsion::add_render(app, command);
-  torsion::add_view(app, command);
+  torsion::engine::add_render(app, command);
+  torsion::engine::add_view(app, command);
 #endif
-  torsion::add_export(app, command);
-  torsion::add_check(app, command);
-  torsion::add_devices(app, command);
-  torsion::add_report(app, command);
+  torsion::engine::add_export(app, command);
+  torsion::engine::add_check(app, command);
+  torsion::engine::add_devices(app, command);
+  torsion::engine::add_report(app, command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? torsion::kDone : torsion::kUsage;
+    return app.exit(error) == 0 ? torsion::engine::kDone : torsion::engine::kUsage;
   }
   return command();
 }
@@ -38,6 +38,6 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     // Out of memory and the like: bad input is reported long before.
     fmt::print(stderr, "torsion: {}\n", error.what());
-    return torsion::kFailed;
+    return torsion::engine::kFailed;
   }
 }

@@ -15,7 +15,7 @@
 
 #include "ecs/assert.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 Error cannot_write(const std::filesystem::path& path, const std::string& why) {
@@ -241,4 +241,4 @@ Result<Done> OutputFile::commit_all(std::span<OutputFile> files) {
   return Done{};
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 
 #include "ecs/result.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A file that is there whole or not at all: written under another name beside its place and
 /// renamed by commit(). What was there before stays until then. What is no plain file (a device, a
@@ -58,4 +58,4 @@ class OutputFile {
 /// The folder in which `path` will lie, made if it is not there.
 Result<Done> make_parent_folder(const std::filesystem::path& path);
 
-}  // namespace torsion
+}  // namespace torsion::engine

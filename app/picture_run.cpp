@@ -12,7 +12,7 @@
 #include "render/auto_camera.hpp"
 #include "systems/surface/surface_field.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// In degrees a scale may also end at 15, 30, 45, 60, 90, 120 and 180.
@@ -187,4 +187,4 @@ Result<Image> PictureRun::draw(const Session& session) {
   return renderer_.read_pixels(number.value());
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -12,7 +12,7 @@
 #include "render/overlay.hpp"
 #include "render/renderer.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Ends of the scales of a run's pictures, the same for all of them.
 struct PictureScales {
@@ -61,4 +61,4 @@ class PictureRun {
   Renderer renderer_;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

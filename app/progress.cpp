@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-namespace torsion {
+namespace torsion::engine {
 
 Progress::Progress(std::string what, bool quiet)
     : what_(std::move(what)),
@@ -36,4 +36,4 @@ void Progress::show(double share) {
   next_ = Clock::now() + std::chrono::milliseconds(100);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

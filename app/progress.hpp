@@ -3,7 +3,7 @@
 #include <chrono>
 #include <string>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A bar on stderr for what takes longer than a second; silent where stderr is not a terminal.
 class Progress {
@@ -27,4 +27,4 @@ class Progress {
   Clock::time_point next_;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

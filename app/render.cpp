@@ -13,7 +13,7 @@
 #include "render/image_io.hpp"
 #include "render/video.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 // Every how many steps the twist is looked at for the end of its scale: it changes slowly.
@@ -243,4 +243,4 @@ void add_render(CLI::App& app, Command& command) {
   });
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

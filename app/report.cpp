@@ -17,7 +17,7 @@
 #include "app/report/scene_picture.hpp"
 #endif
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 struct ReportOptions {
@@ -157,4 +157,4 @@ void add_report(CLI::App& app, Command& command) {
   });
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <initializer_list>
 
-namespace torsion {
+namespace torsion::engine {
 
 double round_up(double value) {
   if (!(value > 0.0)) {
@@ -18,4 +18,4 @@ double round_up(double value) {
   return 10.0 * power;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kBinsPerDoubling = 2.0;
@@ -87,4 +87,4 @@ void RunStatistics::add_step(const World& world, double step_us) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

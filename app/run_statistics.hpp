@@ -7,7 +7,7 @@
 
 #include "ecs/world.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A histogram with two bins to every doubling, over 24 doublings: fixed memory, any number of
 /// entries. What is below or above them is in the first bin or the last.
@@ -81,4 +81,4 @@ struct RunStatistics {
   void add_step(const World& world, double step_us);
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -15,7 +15,7 @@
 #include "systems/math/frames.hpp"
 #include "systems/model/choose_models.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Of one tool along its way: how near it comes to any body, and where on it that is.
@@ -263,4 +263,4 @@ std::vector<std::string> scene_warnings(const SceneDescription& scene, const Sim
   return warnings;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

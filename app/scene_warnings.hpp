@@ -6,7 +6,7 @@
 #include "ecs/scene_description.hpp"
 #include "systems/step.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What of a legal scene will disappoint whoever runs it, a sentence each: a tool that never
 /// touches, faces coarser than the contact, an exact shape drawn as another one, a texture that is
@@ -17,4 +17,4 @@ std::vector<std::string> scene_warnings(const SceneDescription& scene, const Sim
                                         const std::vector<std::vector<Pose>>& poses,
                                         const PrepareOptions& options);
 
-}  // namespace torsion
+}  // namespace torsion::engine

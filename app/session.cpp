@@ -8,7 +8,7 @@
 #include "scenes/load_gltf.hpp"
 #include "systems/contact/region_wrenches.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 Result<Session> open_scene(const std::filesystem::path& path) {
   LoadedScene loaded = load_gltf(path);
@@ -96,4 +96,4 @@ std::string faults_text(std::uint32_t faults) {
   return text;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

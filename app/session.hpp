@@ -6,7 +6,7 @@
 #include "ecs/scene_description.hpp"
 #include "systems/step.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A scene, its simulation, and where its tools are in the step to come.
 struct Session {
@@ -49,4 +49,4 @@ std::uint64_t steps_in(const Session& session, double seconds);
 /// @param faults  bits of Fault
 std::string faults_text(std::uint32_t faults);
 
-}  // namespace torsion
+}  // namespace torsion::engine

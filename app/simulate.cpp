@@ -9,7 +9,7 @@
 #include "app/simulate_loop.hpp"
 #include "app/summary.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 struct SimulateOptions {
@@ -193,4 +193,4 @@ void add_simulate(CLI::App& app, Command& command) {
   });
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

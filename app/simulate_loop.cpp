@@ -8,7 +8,7 @@
 
 #include "app/live/live_loop.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using SteadyClock = std::chrono::steady_clock;
@@ -154,4 +154,4 @@ RunStatistics run_realtime(Session& session, std::uint64_t steps, const RunFiles
   return loop.statistics;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

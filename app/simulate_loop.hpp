@@ -9,7 +9,7 @@
 #include "app/session.hpp"
 #include "app/trace.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What a run without a window reads and writes; each may be null.
 struct RunFiles {
@@ -37,4 +37,4 @@ Result<RunStatistics> run_fast(Session& session, std::uint64_t steps, const RunF
 RunStatistics run_realtime(Session& session, std::uint64_t steps, const RunFiles& files,
                            const RunDevice& device, Progress& progress, RealtimeMode& mode);
 
-}  // namespace torsion
+}  // namespace torsion::engine

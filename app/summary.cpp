@@ -8,7 +8,7 @@
 #include "ecs/model_names.hpp"
 #include "systems/contact/region_wrenches.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 double simulated_time(const Session& session, const RunStatistics& statistics) {
@@ -174,4 +174,4 @@ std::string summary_json(const Session& session, const RunStatistics& statistics
   return json.dump(2) + "\n";
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "app/run_statistics.hpp"
 #include "app/session.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What a run wrote, and how it ran.
 struct RunFacts {
@@ -37,4 +37,4 @@ std::string summary_text(const Session& session, const RunStatistics& statistics
 std::string summary_json(const Session& session, const RunStatistics& statistics,
                          const RunFacts& facts);
 
-}  // namespace torsion
+}  // namespace torsion::engine

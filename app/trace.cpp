@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::array kToolColumns = {
@@ -91,4 +91,4 @@ Result<Done> TraceWriter::finish() {
   return file_.commit();
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

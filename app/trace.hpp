@@ -7,7 +7,7 @@
 #include "app/output_file.hpp"
 #include "ecs/world.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What the trace says of one tool in one step (docs/guide.md has the columns).
 struct TraceRow {
@@ -41,4 +41,4 @@ class TraceWriter {
   OutputFile file_;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "app/summary.hpp"
 #include "app/view/viewer.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 struct ViewOptions {
@@ -96,4 +96,4 @@ void add_view(CLI::App& app, Command& command) {
   });
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

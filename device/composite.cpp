@@ -9,7 +9,7 @@
 
 #include "ecs/assert.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kSame = 1e-9;  // m: points nearer than this have no line between them
@@ -119,4 +119,4 @@ void carried_forces(const CarriedTool& tool, std::span<const glm::dvec3> places,
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 
 #include "ecs/device_sample.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 inline constexpr std::size_t kMostPoints = 3;
 
@@ -35,4 +35,4 @@ Pose carried_pose(const CarriedTool& tool, std::span<const glm::dvec3> places);
 void carried_forces(const CarriedTool& tool, std::span<const glm::dvec3> places,
                     const Wrench& wrench, std::span<glm::dvec3> forces);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 
 #include "ecs/assert.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kOldWrench = 2e-3;     // s: a part does not display a wrench older than this
@@ -375,4 +375,4 @@ double next_wake(const DeviceLoop& loop) {
   return first;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 #include "device/composite.hpp"
 #include "device/drivers/drivers.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 inline constexpr std::size_t kMostDevices = 6;
 
@@ -92,4 +92,4 @@ double next_wake(const DeviceLoop& loop);
 /// @param rate  Hz: as measured; 0: not yet
 double period_of(double said, double rate);
 
-}  // namespace torsion
+}  // namespace torsion::engine

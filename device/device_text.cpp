@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace torsion {
+namespace torsion::engine {
 
 std::string trouble_text(const DeviceSample& sample) {
   switch (sample.trouble) {
@@ -67,4 +67,4 @@ std::string_view udev_advice() {
          "--reload && sudo udevadm trigger --subsystem-match=usb --action=add";
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #include "device/drivers/drivers.hpp"
 #include "ecs/device_sample.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What is wrong and what to do about it, one sentence; empty where nothing is.
 std::string trouble_text(const DeviceSample& sample);
@@ -20,4 +20,4 @@ std::string sensed_text(std::uint8_t sensed);
 std::string udev_rule(const UsbIdentity& identity);
 std::string_view udev_advice();
 
-}  // namespace torsion
+}  // namespace torsion::engine

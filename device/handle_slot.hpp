@@ -6,7 +6,7 @@
 #include "ecs/device_sample.hpp"
 #include "ecs/triple_buffer.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Where a hand holds a tool: what a mouse or a device tells the physics thread.
 struct HandleSample {
@@ -36,4 +36,4 @@ struct HandleSlot {
   TripleBuffer<HandleAnswer> answer;  // written by the physics thread
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Between which keys a time lies, and how far from the one to the other.
@@ -93,4 +93,4 @@ Pose scripted_pose(const MotionScript& script, double time) {
   return pose;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

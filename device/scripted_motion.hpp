@@ -3,7 +3,7 @@
 #include "ecs/components.hpp"
 #include "ecs/motion_script.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The frame at the end of a script's links at `time` [s], without their scale: what an animation
 /// holds the tool at. Before the first key of a channel its first value holds, after the last its
@@ -16,4 +16,4 @@ glm::dvec3 translation_at(const KeyedChannel& channel, double time);
 /// The value of a channel of rotations at `time` [s]. @pre the channel is not empty
 glm::dquat rotation_at(const KeyedChannel& channel, double time);
 
-}  // namespace torsion
+}  // namespace torsion::engine

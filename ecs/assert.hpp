@@ -3,17 +3,17 @@
 #include <cstdio>
 #include <cstdlib>
 
-namespace torsion::detail {
+namespace torsion::engine::detail {
 
 [[noreturn]] inline void assertion_failed(const char* condition, const char* file, int line) {
   std::fprintf(stderr, "%s:%d: assertion failed: %s\n", file, line, condition);
   std::abort();
 }
 
-}  // namespace torsion::detail
+}  // namespace torsion::engine::detail
 
 // For programmer errors only; bad input gets a Result, an overloaded step a fault bit. On in every
 // build type: a wrong row index in a haptic loop is worse than a stopped program.
 #define TORSION_ASSERT(condition)     \
   ((condition) ? static_cast<void>(0) \
-               : ::torsion::detail::assertion_failed(#condition, __FILE__, __LINE__))
+               : ::torsion::engine::detail::assertion_failed(#condition, __FILE__, __LINE__))

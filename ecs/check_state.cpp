@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 // Collects the first thing that is wrong; further calls change nothing.
@@ -93,4 +93,4 @@ Result<Done> check_state(const Model& model, const State& state) {
   return Done{};
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 
 #include "ecs/assert.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Plain data: copied by memcpy, saved and hashed byte by byte, uploaded to a GPU as it is.
 template <class T>
@@ -51,4 +51,4 @@ class Column {
   std::unique_ptr<void, Release> storage_;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

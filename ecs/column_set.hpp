@@ -11,7 +11,7 @@
 
 #include "ecs/state.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace detail {
 
 template <class AnyTable>
@@ -88,4 +88,4 @@ inline constexpr std::array<std::string_view, kStateColumns> kColumnNames =
       return std::array<std::string_view, kStateColumns>{detail::name_of<All>()...};
     }(std::type_identity<detail::StateColumns>{});
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 
 #include "ecs/components.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What a device measures, or pushes on: sums of these.
 enum DeviceAxes : std::uint8_t {
@@ -71,4 +71,4 @@ struct DeviceSample {
   double rate = 0.0;  // Hz, of the last samples
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

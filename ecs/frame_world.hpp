@@ -3,7 +3,7 @@
 #include "ecs/components.hpp"
 #include "ecs/table.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Row i of an anchor interpolation: how the anchors' displacements become those of any point
 /// (docs/models.md).
@@ -39,4 +39,4 @@ struct FrameWorld {
   Table<InterpolationRow> interpolation;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 
 #include <xxhash.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 void add_number(XXH3_state_t& state, std::uint32_t number) {
@@ -80,4 +80,4 @@ ColumnSet differing(const ColumnHashes& a, const ColumnHashes& b) {
   return set;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

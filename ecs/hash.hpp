@@ -6,7 +6,7 @@
 #include "ecs/column_set.hpp"
 #include "ecs/world.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// XXH3 (64 bits) over every row of every column of every table: two with the same hash hold the
 /// same bits. Capacities do not count. Allocates nothing; reads all of it (about 10 GB/s).
@@ -20,4 +20,4 @@ using ColumnHashes = std::array<std::uint64_t, kStateColumns>;
 [[nodiscard]] ColumnHashes hash_columns(const State& state);
 [[nodiscard]] ColumnSet differing(const ColumnHashes& a, const ColumnHashes& b);
 
-}  // namespace torsion
+}  // namespace torsion::engine

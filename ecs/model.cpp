@@ -1,6 +1,6 @@
 #include "ecs/model.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 void Model::reserve(const Capacities& capacities, const Settings& chosen) {
   bodies.reserve(capacities.bodies);
@@ -24,4 +24,4 @@ void Model::reserve_models(const Capacities& capacities, const Settings& chosen)
   compliance.reserve(capacities.compliance_values);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #include "ecs/components.hpp"
 #include "ecs/table.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// How large the tables of a model and its state are. Set at load; a full table sets a fault that
 /// names the limit to raise.
@@ -81,4 +81,4 @@ struct Model {
   }
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 
 #include "ecs/components.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 // The models' names, as scenes, the command line and reports write them; in the order of the enums.
 
@@ -39,4 +39,4 @@ constexpr std::optional<BodyModel> body_model_named(std::string_view name) {
              : std::optional(static_cast<BodyModel>(at - kBodyModelNames.begin()));
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 
 // A keyed motion as glTF gives it, kept as plain data so that scenes/ writes it and device/ plays
 // it.
@@ -40,4 +40,4 @@ struct MotionScript {
   double end_time = 0.0;  // s, the last key of all channels
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

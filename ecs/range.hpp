@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Rows [first, first + count) of one table.
 struct Range {
@@ -12,4 +12,4 @@ struct Range {
   bool operator==(const Range&) const = default;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 #include <utility>
 #include <variant>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What went wrong, in one sentence that a user can act on: file, place, value, what was expected.
 struct Error {
@@ -37,4 +37,4 @@ class [[nodiscard]] Result {
 /// The Result of something that yields nothing but may fail.
 struct Done {};
 
-}  // namespace torsion
+}  // namespace torsion::engine

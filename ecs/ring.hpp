@@ -10,7 +10,7 @@
 
 #include "ecs/column.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A fixed queue from one writer thread to one reader thread: every value arrives, in order, or
 /// `push` says that it did not fit. Neither side ever waits.
@@ -70,4 +70,4 @@ class Ring {
   alignas(kColumnAlignment) std::atomic<std::uint64_t> read_ = 0;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

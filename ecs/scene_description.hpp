@@ -11,7 +11,7 @@
 #include "ecs/motion_script.hpp"
 #include "ecs/surface.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// One closed part of a tool or body.
 struct PartDescription {
@@ -71,4 +71,4 @@ struct SceneDescription {
   double duration = 0.0;  // s: the end of the longest animation
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

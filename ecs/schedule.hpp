@@ -7,7 +7,7 @@
 
 #include "ecs/column_set.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// One system of a schedule. `run` is a free function over the tables that Context reaches.
 template <class Context>
@@ -88,4 +88,4 @@ class Schedule {
   std::vector<Row> rows_;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -1,6 +1,6 @@
 #include "ecs/snapshot.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 void Snapshot::reserve(const Model& model, const State& state) {
   tools.reserve(state.tools.capacity());
@@ -17,4 +17,4 @@ void capture(const Model& model, const State& state, Snapshot& snapshot) {
   snapshot.anchors.assign_zeros(model.anchors.size());
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

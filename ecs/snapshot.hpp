@@ -2,7 +2,7 @@
 
 #include "ecs/state.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What one step lets others see: values only, a few KiB, copied whole from the physics thread to
 /// the frame.
@@ -22,4 +22,4 @@ struct Snapshot {
 /// called with that model and state, or others of the same scene
 void capture(const Model& model, const State& state, Snapshot& snapshot);
 
-}  // namespace torsion
+}  // namespace torsion::engine

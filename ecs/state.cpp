@@ -1,6 +1,6 @@
 #include "ecs/state.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 template <class AnyTable>
@@ -31,4 +31,4 @@ void State::reserve(const Capacities& capacities, const Settings& settings) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 
 #include "ecs/model.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What can go wrong in a step. The step still ends; the tools' wrenches fade to zero while a fault
 /// lasts.
@@ -69,4 +69,4 @@ struct State {
   }
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@
 #include "ecs/check_state.hpp"
 #include "ecs/hash.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 struct Header {
@@ -242,4 +242,4 @@ Result<State> load_state(const Model& model, const std::filesystem::path& path) 
   return from_bytes(bytes, model, path.string());
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "ecs/result.hpp"
 #include "ecs/state.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 // A saved state: magic, version, a hash of the layout of every saved type, the hash of its model,
 // the tables with their capacities, and a checksum. A state that is loaded has the hash() of the
@@ -31,4 +31,4 @@ Result<Done> save_state(const Model& model, const State& state, const std::files
 /// Reads what save_state wrote; fails as from_bytes does, and if `path` cannot be read.
 Result<State> load_state(const Model& model, const std::filesystem::path& path);
 
-}  // namespace torsion
+}  // namespace torsion::engine

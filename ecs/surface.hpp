@@ -5,7 +5,7 @@
 
 #include <glm/vec3.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A triangle mesh outside the tables: what load-time work reads. For physics it is welded, closed
 /// and oriented (counter-clockwise seen from outside).
@@ -14,4 +14,4 @@ struct SurfaceMesh {
   std::vector<glm::uvec3> triangles;  // rows of positions
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "ecs/column.hpp"
 #include "ecs/range.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Parallel columns: row i of every column belongs to the same thing. Memory is taken once, by
 /// `reserve`.
@@ -167,4 +167,4 @@ class Table {
   std::uint32_t capacity_ = 0;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

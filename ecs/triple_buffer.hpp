@@ -6,7 +6,7 @@
 
 #include "ecs/column.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The newest value from one writer thread to one reader thread. Neither ever waits, retries or
 /// sees a half-written value; what the reader did not fetch in time is overwritten. For what must
@@ -74,4 +74,4 @@ class TripleBuffer {
   alignas(kColumnAlignment) std::uint32_t front_ = 2;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

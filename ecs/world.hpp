@@ -3,7 +3,7 @@
 #include "ecs/model.hpp"
 #include "ecs/state.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A scene at work: all that one step knows.
 struct World {
@@ -11,4 +11,4 @@ struct World {
   State state;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

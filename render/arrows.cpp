@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr int kSides = 16;           // of a shaft
@@ -159,4 +159,4 @@ void append_wrenches(const Snapshot& snapshot, const ArrowScale& scale, ArrowMes
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

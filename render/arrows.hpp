@@ -8,7 +8,7 @@
 
 #include "ecs/snapshot.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Triangles in the world, three rows each, counter-clockwise seen from outside.
 struct ArrowMesh {
@@ -50,4 +50,4 @@ void append_arc(const Circle& circle, double angle, double size, const glm::vec3
 /// contact as it can. Appends to `mesh`.
 void append_wrenches(const Snapshot& snapshot, const ArrowScale& scale, ArrowMesh& mesh);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 
 #include "render/box.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kFieldOfView = 0.5;  // rad
@@ -56,4 +56,4 @@ Camera auto_camera(const FrameWorld& frame, double aspect) {
   return camera;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

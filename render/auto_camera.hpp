@@ -4,7 +4,7 @@
 #include "ecs/scene_description.hpp"
 #include "render/camera.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A camera of the scene file.
 Camera camera_of(const CameraDescription& description);
@@ -14,4 +14,4 @@ Camera camera_of(const CameraDescription& description);
 /// @param aspect  width / height of the picture
 Camera auto_camera(const FrameWorld& frame, double aspect);
 
-}  // namespace torsion
+}  // namespace torsion::engine

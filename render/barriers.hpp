@@ -6,7 +6,7 @@
 
 #include "render/vk.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 namespace detail {
 
@@ -235,4 +235,4 @@ inline void copy_target_to_sampled(const vk::raii::CommandBuffer& commands, vk::
   image_barrier(commands, image, kCopyTarget, kSampled);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

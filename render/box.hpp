@@ -5,7 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The box around points; empty before the first.
 struct Box {
@@ -23,4 +23,4 @@ struct Box {
   [[nodiscard]] glm::dvec3 size() const { return empty() ? glm::dvec3(0.0) : highest - lowest; }
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

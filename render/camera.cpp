@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace torsion {
+namespace torsion::engine {
 
 glm::dmat4 view_matrix(const Camera& camera) {
   const glm::dquat to_camera = glm::conjugate(camera.pose.rotation);
@@ -24,4 +24,4 @@ glm::dmat4 projection_matrix(const Camera& camera, double aspect) {
   return projection;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

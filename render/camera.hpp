@@ -4,7 +4,7 @@
 
 #include "ecs/components.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Where a picture is taken from. The camera's frame is glTF's: it looks along -z, +y is up.
 struct Camera {
@@ -22,4 +22,4 @@ glm::dmat4 view_matrix(const Camera& camera);
 /// @param aspect  width / height of the picture
 glm::dmat4 projection_matrix(const Camera& camera, double aspect);
 
-}  // namespace torsion
+}  // namespace torsion::engine

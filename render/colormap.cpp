@@ -7,7 +7,7 @@
 #include <numbers>
 #include <span>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// A colour as Oklab lightness, chroma and hue (Ottosson 2020, "A perceptual color space for image
@@ -74,4 +74,4 @@ glm::dvec3 heat_color(HeatMap map, double at) {
   return {encoded(linear.x), encoded(linear.y), encoded(linear.z)};
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 
 #include "render/draw_options.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The colour of a heat map at `at`, 0 to 1 along its scale (clamped): sRGB-encoded, 0 to 1. The
 /// body's colour and the colour bar both come from here. Twist has a pale middle, for zero, and
@@ -12,4 +12,4 @@ namespace torsion {
 /// zero, over yellow and red to violet. kNone is pale throughout.
 glm::dvec3 heat_color(HeatMap map, double at);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 #include "render/barriers.hpp"
 #include "render/recording.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using Commands = vk::raii::CommandBuffer;
@@ -97,4 +97,4 @@ void record_normals(const Commands& commands, const FrameInputs& inputs) {
   compute_to_vertices(commands);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <optional>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 std::string lower_case(std::string_view text) {
@@ -66,4 +66,4 @@ Result<std::size_t> choose_device(std::span<const DeviceFacts> devices, std::str
       ". mesa-vulkan-drivers 22.3 or newer has a driver that can and needs no graphics card."};
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

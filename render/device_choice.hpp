@@ -8,7 +8,7 @@
 
 #include "ecs/result.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// In order of preference.
 enum class GpuKind { kDiscrete, kIntegrated, kVirtual, kOther, kProcessor };
@@ -25,4 +25,4 @@ struct DeviceFacts {
 /// lists every device and what it lacks.
 Result<std::size_t> choose_device(std::span<const DeviceFacts> devices, std::string_view wanted);
 
-}  // namespace torsion
+}  // namespace torsion::engine

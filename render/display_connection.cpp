@@ -8,7 +8,7 @@
 #include <GLFW/glfw3.h>
 #include <GLFW/glfw3native.h>
 
-namespace torsion {
+namespace torsion::engine {
 
 void send_pictures_in_pieces() {
   // Bytes; the kernel takes twice as much, for its own. Between 16 KiB, which cost a tenth of the
@@ -26,4 +26,4 @@ void send_pictures_in_pieces() {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

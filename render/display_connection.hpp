@@ -1,6 +1,6 @@
 #pragma once
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Lets the X server take pictures in small pieces, where they go through its socket.
 ///
@@ -14,4 +14,4 @@ namespace torsion {
 /// @pre GLFW is initialised. Where the display is not X, or not on this machine, nothing changes.
 void send_pictures_in_pieces();
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What the body's colour shows.
 enum class HeatMap : std::uint32_t {
@@ -25,4 +25,4 @@ struct DrawOptions {
   double full_torque = 0.0;  // N m that the longest arc stands for; 0: the largest drawn so far
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

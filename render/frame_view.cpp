@@ -9,7 +9,7 @@
 
 #include "render/box.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 // The light's colours, linear. A white surface that faces the key light reaches 1 with the sky's
@@ -170,4 +170,4 @@ void contact_spots(const Snapshot& snapshot, std::uint32_t bodies,
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@
 #include "render/draw_options.hpp"
 #include "shaders/shared.h"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Where the things of a scene are at the start.
 struct SceneExtent {
@@ -47,4 +47,4 @@ void set_pose(const Pose& pose, shared::DrawConstants& constants);
 void contact_spots(const Snapshot& snapshot, std::uint32_t bodies,
                    std::vector<shared::ContactSpot>& spots, std::vector<Range>& ranges);
 
-}  // namespace torsion
+}  // namespace torsion::engine

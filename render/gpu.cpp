@@ -10,7 +10,7 @@
 
 #include "render/device_choice.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
@@ -234,4 +234,4 @@ Result<Gpu> open_gpu(const GpuOptions& options) {
   return gpu;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 #include "render/validation_log.hpp"
 #include "render/vk.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 struct GpuOptions {
   ValidationLog* validation = nullptr;  // switches the validation layers on; must outlive the Gpu
@@ -40,4 +40,4 @@ struct Gpu {
 /// missing. Throws vk::SystemError where a call fails that should not.
 Result<Gpu> open_gpu(const GpuOptions& options);
 
-}  // namespace torsion
+}  // namespace torsion::engine

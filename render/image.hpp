@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A picture: sRGB-encoded bytes R, G, B, A; rows from the top, pixels from the left, no padding.
 struct Image {
@@ -14,4 +14,4 @@ struct Image {
   bool operator==(const Image&) const = default;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 #include <png.h>
 #include <unistd.h>
 
-namespace torsion {
+namespace torsion::engine {
 
 Result<Done> write_png(const Image& image, const std::filesystem::path& path) {
   png_image header{};
@@ -44,4 +44,4 @@ Result<Image> read_png(const std::filesystem::path& path) {
   return image;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #include "ecs/assert.hpp"
 #include "render/barriers.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using Flag = vk::MemoryPropertyFlagBits;
@@ -187,4 +187,4 @@ bool FrameBuffer::record_copies(const vk::raii::CommandBuffer& commands) {
   return true;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

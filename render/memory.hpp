@@ -6,7 +6,7 @@
 
 #include "render/gpu.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A buffer with memory of its own. Members are in the order of creation.
 struct Buffer {
@@ -97,4 +97,4 @@ class FrameBuffer {
   std::vector<vk::BufferCopy> written_;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

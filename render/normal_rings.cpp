@@ -10,7 +10,7 @@
 #include "ecs/assert.hpp"
 #include "shaders/shared.h"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Split vertices whose normals differ by less than this belong together: files round normals to 3
@@ -192,4 +192,4 @@ void vertex_normals(const FrameWorld& frame, const NormalRings& rings, std::uint
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

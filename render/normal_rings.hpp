@@ -8,7 +8,7 @@
 
 #include "ecs/frame_world.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Which triangles' normals make a vertex's normal, as fans of neighbours around it. Vertices that
 /// were split in the file (at a texture seam, say) but lie at one place with one normal share a
@@ -35,4 +35,4 @@ NormalRings make_normal_rings(const FrameWorld& frame);
 void vertex_normals(const FrameWorld& frame, const NormalRings& rings, std::uint32_t body,
                     std::span<const glm::vec4> positions, std::span<glm::vec4> normals);
 
-}  // namespace torsion
+}  // namespace torsion::engine

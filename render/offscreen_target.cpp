@@ -4,7 +4,7 @@
 
 #include "render/barriers.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 OffscreenTarget::OffscreenTarget(const Gpu& gpu, vk::Extent2D extent, std::uint32_t slots)
     : gpu_(&gpu), extent_(extent) {
@@ -71,4 +71,4 @@ std::span<const std::byte> OffscreenTarget::pixels(std::uint32_t slot) {
   return {buffer.mapped, buffer.size};
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

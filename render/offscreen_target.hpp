@@ -8,7 +8,7 @@
 #include "render/memory.hpp"
 #include "render/target.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Pictures into memory: each slot has an image, a buffer to read it back, and a fence.
 class OffscreenTarget final : public Target {
@@ -44,4 +44,4 @@ class OffscreenTarget final : public Target {
   std::uint32_t next_ = 0;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

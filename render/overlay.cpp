@@ -8,7 +8,7 @@
 
 #include "render/colormap.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint32_t rgba(std::uint32_t r, std::uint32_t g, std::uint32_t b, std::uint32_t a) {
@@ -165,4 +165,4 @@ OverlayDrawList draw_overlay(const OverlayFont& font, const OverlayContent& cont
   return list;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

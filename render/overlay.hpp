@@ -6,7 +6,7 @@
 #include "render/draw_options.hpp"
 #include "render/overlay_font.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What is written over a picture.
 struct OverlayContent {
@@ -25,4 +25,4 @@ double overlay_text_height(std::uint32_t picture_height);
 OverlayDrawList draw_overlay(const OverlayFont& font, const OverlayContent& content,
                              std::uint32_t width, std::uint32_t height);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// One corner. The colour's alpha times the atlas's alpha at (u, v) is how much of it covers the
 /// picture.
@@ -54,4 +54,4 @@ struct OverlayDrawList {
   std::vector<OverlayPanel> panels;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -36,7 +36,7 @@ __asm__(
     ".byte 0\n"
     ".text\n");
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr int kAtlasSide = 1024;  // texels
@@ -142,4 +142,4 @@ void OverlayFont::append_box(OverlayDrawList& list, double left, double top, dou
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

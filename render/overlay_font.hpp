@@ -4,7 +4,7 @@
 
 #include "render/overlay_draw_list.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Glyphs of one size, drawn once into an atlas. ASCII, and the degree sign.
 class OverlayFont {
@@ -45,4 +45,4 @@ class OverlayFont {
   float solid_v_ = 0.0F;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -3,7 +3,7 @@
 
 #include "render/recording.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using Commands = vk::raii::CommandBuffer;
@@ -79,4 +79,4 @@ void record_overlay(const Commands& commands, vk::ImageView view, vk::Extent2D e
   commands.endRendering();
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -16,7 +16,7 @@
 #include "render/surfaces.hpp"
 #include "render/target.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What a frame is recorded from.
 struct FrameInputs {
@@ -56,4 +56,4 @@ void record_overlay(const vk::raii::CommandBuffer& commands, vk::ImageView view,
                     vk::Extent2D extent, const vk::raii::Pipeline& pipeline,
                     const FrameInputs& inputs, OverlayPart part);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -22,7 +22,7 @@
 #include "shaders/tool.frag.hpp"
 #include "shaders/tool.vert.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using Code = std::span<const std::uint32_t>;
@@ -319,4 +319,4 @@ Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCoun
   return pipelines;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 
 #include "render/gpu.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Binding numbers of the draws, the same for all of them; the shaders name them too.
 namespace draw_binding {
@@ -49,4 +49,4 @@ vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, const Pipelines& pipeli
 Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCountFlagBits samples,
                          bool quick, bool texels);
 
-}  // namespace torsion
+}  // namespace torsion::engine

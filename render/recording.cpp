@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-namespace torsion {
+namespace torsion::engine {
 
 void push_draw_bindings(const vk::raii::CommandBuffer& commands, const FrameInputs& inputs,
                         bool with_shadow_map) {
@@ -61,4 +61,4 @@ void set_view(const vk::raii::CommandBuffer& commands, const vk::Rect2D& part) {
   commands.setScissor(0, part);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include "render/passes.hpp"
 #include "shaders/shared.h"
 
-namespace torsion {
+namespace torsion::engine {
 
 inline constexpr auto kDrawStages =
     vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment;
@@ -41,4 +41,4 @@ void draw_overlay(const vk::raii::CommandBuffer& commands, const FrameInputs& in
                   vk::Extent2D extent, const vk::raii::Pipeline& pipeline,
                   std::span<const OverlayClip> clips);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -19,7 +19,7 @@
 #include "render/surfaces.hpp"
 #include "render/window_target.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint32_t kSlots = Renderer::kFramesInFlight;
@@ -390,4 +390,4 @@ const std::string& Renderer::device_name() const {
   return impl_->gpu.name;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -19,7 +19,7 @@
 #include "render/validation_log.hpp"
 #include "render/window.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 struct RendererOptions {
   std::uint32_t width = 1280;       // pixels, 1 to 16384
@@ -135,4 +135,4 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

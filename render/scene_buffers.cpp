@@ -8,7 +8,7 @@
 #include "render/normal_rings.hpp"
 #include "shaders/shared.h"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using Usage = vk::BufferUsageFlagBits;
@@ -147,4 +147,4 @@ Range twist_rows_in_use(const FrameWorld& frame, std::uint32_t body) {
   return {row.twist.first, row.regions_drawn * frame.bodies.at<DrawRange>(body).vertices.count};
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "render/memory.hpp"
 #include "render/overlay_draw_list.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What changes every frame, once for each frame in flight.
 struct SlotBuffers {
@@ -75,4 +75,4 @@ BoundRows bound_rows(const Gpu& gpu, Range rows, std::uint32_t row_size);
 /// The blocks of angles that a body uses, as rows of FrameWorld::twist.
 Range twist_rows_in_use(const FrameWorld& frame, std::uint32_t body);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 #include "render/barriers.hpp"
 #include "render/recording.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using Commands = vk::raii::CommandBuffer;
@@ -182,4 +182,4 @@ void record_draw(const Frame& target, const FrameInputs& inputs) {
   commands.endRendering();
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

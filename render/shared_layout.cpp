@@ -6,7 +6,7 @@
 #include "ecs/components.hpp"
 #include "shaders/shared.h"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using shared::DrawConstants;
@@ -35,4 +35,4 @@ static_assert(sizeof(VertexDisplacement) == kVec4 && sizeof(TwistAxis) == 2 * kV
 static_assert(sizeof(TwistAngle) == sizeof(float) && sizeof(Triangle) == 3 * sizeof(shared::uint));
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include "render/colormap.hpp"
 #include "render/pipelines.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint32_t kColorMapWidth = 256;
@@ -71,4 +71,4 @@ Surfaces make_surfaces(const Gpu& gpu, std::uint32_t shadow_size, const OverlayA
   return surfaces;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 #include "render/memory.hpp"
 #include "render/overlay_draw_list.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Images and samplers that all frames share.
 struct Surfaces {
@@ -28,4 +28,4 @@ Surfaces make_surfaces(const Gpu& gpu, std::uint32_t shadow_size, const OverlayA
 void fit_surfaces(const Gpu& gpu, vk::Extent2D extent, vk::Format color_format,
                   vk::SampleCountFlagBits samples, Surfaces& surfaces);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 
 #include "render/vk.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// One picture under way.
 struct Frame {
@@ -39,4 +39,4 @@ class Target {
   [[nodiscard]] virtual vk::Extent2D extent() const = 0;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

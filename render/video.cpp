@@ -15,7 +15,7 @@
 
 extern char** environ;
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// strerror() shares its text between threads; this does not.
@@ -210,4 +210,4 @@ Result<Done> VideoWriter::finish() {
   return Done{};
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include "ecs/result.hpp"
 #include "render/image.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Writes pictures as an .mp4 (H.264) through ffmpeg, which runs as a process of its own and takes
 /// them by a pipe. The file appears when finish() has succeeded.
@@ -36,4 +36,4 @@ class VideoWriter {
   std::unique_ptr<Encoder> encoder_;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

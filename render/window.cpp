@@ -7,7 +7,7 @@
 
 #include "render/display_connection.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 struct Window::Impl {
   GLFWwindow* window = nullptr;
@@ -171,4 +171,4 @@ bool has_display() {
   return false;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 
 #include "ecs/result.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Keys with a name; letters and digits are their ASCII capitals.
 inline constexpr int kKeySpace = ' ';
@@ -63,4 +63,4 @@ class Window {
 /// Whether a window could be opened: an X or Wayland display is named.
 bool has_display();
 
-}  // namespace torsion
+}  // namespace torsion::engine

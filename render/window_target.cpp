@@ -10,7 +10,7 @@
 
 #include "render/barriers.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using Usage = vk::ImageUsageFlagBits;
@@ -374,4 +374,4 @@ void WindowTarget::wait(std::uint32_t slot) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "render/target.hpp"
 #include "render/window.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The extensions of an instance that can show pictures in windows. @pre a window is open
 std::vector<std::string> surface_extensions();
@@ -116,4 +116,4 @@ class WindowTarget final : public Target {
   Buffer kept_;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

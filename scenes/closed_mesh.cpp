@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Vertices nearer to each other than this share of the mesh's size are one.
@@ -237,4 +237,4 @@ SurfaceMesh closed_surface(const SurfaceMesh& mesh, const std::string& where,
   return welded;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

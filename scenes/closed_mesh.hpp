@@ -3,7 +3,7 @@
 #include "ecs/surface.hpp"
 #include "scenes/problem.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Joins vertices at the same place, for files split them where normals differ, and drops triangles
 /// that this leaves without area and vertices that nothing uses.
@@ -19,4 +19,4 @@ double enclosed_volume(const SurfaceMesh& mesh);
 SurfaceMesh closed_surface(const SurfaceMesh& mesh, const std::string& where,
                            const ProblemList& problems);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 
 #include "ecs/contact_models.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 enum class Role : std::uint32_t {
   kNone = 0,
@@ -88,4 +88,4 @@ inline constexpr std::array kSceneKeys = {
     SceneKey{"torsion_device", bits(Role::kTool), KeyKind::kText, "animation mouse usb"},
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kSameWithin = 0.01;  // relative difference of extents that count as equal
@@ -130,4 +130,4 @@ SurfaceMesh tessellate(const ShapePart& shape) {
   return mesh;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

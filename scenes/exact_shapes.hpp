@@ -8,7 +8,7 @@
 #include "scenes/node_tree.hpp"
 #include "scenes/problem.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The kind that a value of torsion_shape names. @pre it is one of the allowed values
 ShapeKind shape_kind(const std::string& name);
@@ -23,4 +23,4 @@ std::optional<ShapePart> fit_shape(ShapeKind kind, const glm::dvec3& lowest,
 /// A closed mesh of the surface of an exact shape, in its owner's frame; extremes lie on it.
 SurfaceMesh tessellate(const ShapePart& shape);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <sstream>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::string_view kPrefix = "torsion_";
@@ -250,4 +250,4 @@ Role role_of(const tinygltf::Value& extras) {
   return found == kRoleNames.end() ? Role::kNone : found->role;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "scenes/conventions.hpp"
 #include "scenes/problem.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// How a message calls element `row` of an array: node "cube", or nodes[3] where it has no name.
 std::string called(std::string_view kind, std::string_view array, std::size_t row,
@@ -50,4 +50,4 @@ Role role_of(const tinygltf::Value& extras);
 std::optional<std::string> did_you_mean(std::string_view word,
                                         const std::vector<std::string_view>& known);
 
-}  // namespace torsion
+}  // namespace torsion::engine

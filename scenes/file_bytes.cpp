@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Closes a file descriptor at the end of its scope.
@@ -111,4 +111,4 @@ Result<std::filesystem::path> path_inside(const std::filesystem::path& folder,
   return target;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 
 #include "ecs/result.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Largest file that is read: a scene beyond it is a mistake.
 inline constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30;  // bytes
@@ -20,4 +20,4 @@ Result<std::vector<unsigned char>> read_file_bytes(const std::filesystem::path& 
 Result<std::filesystem::path> path_inside(const std::filesystem::path& folder,
                                           const std::string& uri);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// A vertex this near to the bottom, as a share of the body's height, belongs to the bottom face.
@@ -182,4 +182,4 @@ void set_fixed_region(const std::string& how, std::span<const FixedNode> nodes,
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

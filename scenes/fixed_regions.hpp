@@ -8,7 +8,7 @@
 #include "scenes/node_tree.hpp"
 #include "scenes/problem.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A node with a fixed_ role below an elastic node.
 struct FixedNode {
@@ -26,4 +26,4 @@ void set_fixed_region(const std::string& how, std::span<const FixedNode> nodes,
                       const glm::dvec3& up, const std::string& where, BodyDescription& body,
                       const ProblemList& problems);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 template <class T>
@@ -125,4 +125,4 @@ std::vector<std::uint32_t> read_sparse_indices(const tinygltf::Model& model, int
   return indices;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 
 #include <tiny_gltf.h>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The elements of a checked accessor as numbers, component after component: strides, sparse
 /// replacements and quantised (normalised) integers resolved, missing buffer views zero.
@@ -19,4 +19,4 @@ std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int access
 /// Which elements a sparse accessor replaces. @pre as above, and the accessor is sparse
 std::vector<std::uint32_t> read_sparse_indices(const tinygltf::Model& model, int accessor);
 
-}  // namespace torsion
+}  // namespace torsion::engine

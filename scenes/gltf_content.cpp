@@ -6,7 +6,7 @@
 #include "scenes/gltf_accessors.hpp"
 #include "scenes/gltf_extents.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr const char* kQuantization = "KHR_mesh_quantization";
@@ -211,4 +211,4 @@ void check_gltf_content(const tinygltf::Model& model, const ProblemList& problem
   check_animation_data(model, problems);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

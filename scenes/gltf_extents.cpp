@@ -6,7 +6,7 @@
 
 #include "scenes/json_visit.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using nlohmann::json;
@@ -192,4 +192,4 @@ void check_gltf_extents(const json& document, const ProblemList& problems) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

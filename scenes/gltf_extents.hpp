@@ -6,7 +6,7 @@
 
 #include "scenes/problem.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Most elements of one accessor, and most vertices or triangles of a scene.
 inline constexpr std::uint64_t kMostElements = 20'000'000;
@@ -16,4 +16,4 @@ inline constexpr std::uint64_t kMostElements = 20'000'000;
 /// @pre check_gltf_structure() found nothing
 void check_gltf_extents(const nlohmann::json& document, const ProblemList& problems);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -12,7 +12,7 @@
 #include "scenes/gltf_extents.hpp"
 #include "scenes/gltf_structure.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using nlohmann::json;
@@ -305,4 +305,4 @@ std::optional<tinygltf::Model> read_gltf_file(const std::filesystem::path& path,
   return clean() ? std::move(model) : std::nullopt;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 
 #include "scenes/problem.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Reads and checks a .gltf or .glb: JSON and GLB framing before tinygltf sees it, then every
 /// index, count, type and extent of what tinygltf made of it. Of what this returns, every index
@@ -17,4 +17,4 @@ namespace torsion {
 std::optional<tinygltf::Model> read_gltf_file(const std::filesystem::path& path,
                                               std::vector<Problem>& found);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-namespace torsion {
+namespace torsion::engine {
 
 int append_rows(tinygltf::Model& model, int buffer, std::span<const std::byte> rows,
                 const RowKind& kind) {
@@ -25,4 +25,4 @@ int append_rows(tinygltf::Model& model, int buffer, std::span<const std::byte> r
   return static_cast<int>(model.accessors.size()) - 1;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 
 #include <tiny_gltf.h>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What an accessor's rows are.
 struct RowKind {
@@ -21,4 +21,4 @@ struct RowKind {
 int append_rows(tinygltf::Model& model, int buffer, std::span<const std::byte> rows,
                 const RowKind& kind);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 
 #include "scenes/json_visit.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using nlohmann::json;
@@ -371,4 +371,4 @@ void check_gltf_structure(const json& document, const ProblemList& problems) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

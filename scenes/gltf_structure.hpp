@@ -4,7 +4,7 @@
 
 #include "scenes/problem.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Checks the JSON of a glTF before any library follows it: version, required extensions, that
 /// arrays and members have the right kinds, that every index is a whole number in range (tinygltf
@@ -12,4 +12,4 @@ namespace torsion {
 /// the nodes are trees.
 void check_gltf_structure(const nlohmann::json& document, const ProblemList& problems);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -1,6 +1,6 @@
 #include "scenes/json_visit.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using Seen = std::function<void(const nlohmann::json&, const std::string&)>;
@@ -45,4 +45,4 @@ std::string shown(const nlohmann::json& value) {
   return text;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

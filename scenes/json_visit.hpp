@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Calls `seen` with every value that a pattern such as "nodes/[]/children/[]" leads to, and with
 /// its place as nodes[3].children[0]. "[]" stands for each element of an array, "*" for each member
@@ -17,4 +17,4 @@ void visit_json(const nlohmann::json& document, std::string_view pattern,
 /// A value as it stands in the file, cut to a readable length.
 std::string shown(const nlohmann::json& value);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -12,7 +12,7 @@
 #include "scenes/physics_extension.hpp"
 #include "scenes/scene_reader.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr const char* kStaticFriction = "torsion_static_friction";
@@ -222,4 +222,4 @@ LoadedScene load_gltf(const std::filesystem::path& path) {
   return loaded;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

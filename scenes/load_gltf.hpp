@@ -7,7 +7,7 @@
 #include "ecs/scene_description.hpp"
 #include "scenes/problem.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What a scene file holds, or everything that is wrong with it.
 struct LoadedScene {
@@ -19,4 +19,4 @@ struct LoadedScene {
 /// the folder of the file.
 LoadedScene load_gltf(const std::filesystem::path& path);
 
-}  // namespace torsion
+}  // namespace torsion::engine

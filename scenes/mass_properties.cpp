@@ -4,7 +4,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// integral of x x^T over a body, given as a matrix, to its inertia.
@@ -50,4 +50,4 @@ void move_mass_center(MassProperties& properties, const glm::dvec3& center) {
   properties.center = center;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

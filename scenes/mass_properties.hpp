@@ -4,7 +4,7 @@
 
 #include "ecs/scene_description.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Mass centre and inertia of a solid of even density that fills `parts` (parts that overlap count
 /// twice there), by signed tetrahedra to the origin (Tonon, "Explicit exact formulas for the 3-D
@@ -16,4 +16,4 @@ MassProperties mass_properties(std::span<const PartDescription> parts, double ma
 /// @param center  m, tool
 void move_mass_center(MassProperties& properties, const glm::dvec3& center);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 
 #include "scenes/gltf_accessors.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Blender upper-cases attribute names and may add a second underscore.
@@ -180,4 +180,4 @@ void append_draw_mesh(const MeshTriangles& mesh, DrawMesh& draw) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

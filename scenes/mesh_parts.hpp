@@ -8,7 +8,7 @@
 #include "ecs/scene_description.hpp"
 #include "scenes/problem.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The triangles of one mesh in its owner's frame, vertices as the file has them.
 struct MeshTriangles {
@@ -30,4 +30,4 @@ MeshTriangles read_mesh(const tinygltf::Model& model, const tinygltf::Mesh& mesh
 /// Appends to what is drawn; normals that the file lacks are averaged from the faces.
 void append_draw_mesh(const MeshTriangles& mesh, DrawMesh& draw);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "scenes/extras.hpp"
 #include "scenes/gltf_accessors.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kSameNumber = 1e-6;  // relative: what floats in a file leave of equal numbers
@@ -170,4 +170,4 @@ void check_channels(const tinygltf::Model& model, const ProblemList& problems) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

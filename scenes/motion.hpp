@@ -8,7 +8,7 @@
 #include "scenes/node_tree.hpp"
 #include "scenes/problem.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// How the scene node `tool` moves by the animations of the file. Scaling the tool is a problem,
 /// and so is turning it below a scale that differs along x, y, z: a rigid tool keeps its shape.
@@ -21,4 +21,4 @@ bool is_animated(const tinygltf::Model& model, std::size_t row);
 /// Notes properties of a node that two channels move at once.
 void check_channels(const tinygltf::Model& model, const ProblemList& problems);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 
 #include "scenes/extras.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 glm::dquat quaternion_of(const std::vector<double>& xyzw) {
@@ -116,4 +116,4 @@ std::vector<SceneNode> list_scene_nodes(const tinygltf::Model& model) {
   return nodes;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

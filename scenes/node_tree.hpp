@@ -10,7 +10,7 @@
 #include "scenes/conventions.hpp"
 #include "scenes/problem.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A node of the scene that is shown, with what it inherits.
 struct SceneNode {
@@ -38,4 +38,4 @@ glm::dmat4 local_matrix(const tinygltf::Node& node);
 /// The nodes of the scene that is shown, parents before children, in the order of the file's trees.
 std::vector<SceneNode> list_scene_nodes(const tinygltf::Model& model);
 
-}  // namespace torsion
+}  // namespace torsion::engine

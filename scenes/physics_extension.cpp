@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr const char* kName = "KHR_physics_rigid_bodies";
@@ -68,4 +68,4 @@ PhysicsExtension read_physics_extension(const tinygltf::Model& model, const tiny
   return physics;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 #include <glm/vec3.hpp>
 #include <tiny_gltf.h>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What KHR_physics_rigid_bodies says of one node and Torsion reads; torsion_ keys win over it.
 struct PhysicsExtension {
@@ -17,4 +17,4 @@ struct PhysicsExtension {
 
 PhysicsExtension read_physics_extension(const tinygltf::Model& model, const tinygltf::Node& node);
 
-}  // namespace torsion
+}  // namespace torsion::engine

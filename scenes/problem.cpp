@@ -1,6 +1,6 @@
 #include "scenes/problem.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 std::string to_text(const Problem& problem) {
   std::string text = problem.file + ": ";
@@ -28,4 +28,4 @@ std::string to_text(const std::vector<Problem>& problems) {
   return text;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// One thing that is wrong with a scene file, with all that an author needs to mend it.
 struct Problem {
@@ -34,4 +34,4 @@ std::string to_text(const Problem& problem);
 /// All of them, one under the other.
 std::string to_text(const std::vector<Problem>& problems);
 
-}  // namespace torsion
+}  // namespace torsion::engine

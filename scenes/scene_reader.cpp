@@ -7,7 +7,7 @@
 #include "scenes/exact_shapes.hpp"
 #include "scenes/mesh_parts.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Keys of a node from its materials, its mesh and itself; the later win.
@@ -138,4 +138,4 @@ OwnerShape read_owner_shape(const SceneReader& reader, std::size_t owner) {
   return shape;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

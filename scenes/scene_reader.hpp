@@ -7,7 +7,7 @@
 #include "scenes/extras.hpp"
 #include "scenes/node_tree.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What reading one file needs all along.
 struct SceneReader {
@@ -44,4 +44,4 @@ struct OwnerShape {
 /// The meshes at and below an elastic or tool node, in its frame without its scale: each is a part.
 OwnerShape read_owner_shape(const SceneReader& reader, std::size_t owner);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 
 #include "scenes/gltf_rows.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Appends rows to the one buffer of `model` and makes an accessor of them.
@@ -103,4 +103,4 @@ Result<std::string> gltf_bytes(const std::vector<WrittenMesh>& meshes, bool bina
   return stream.str();
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

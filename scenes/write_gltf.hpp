@@ -9,7 +9,7 @@
 #include "ecs/components.hpp"
 #include "ecs/result.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// One mesh of a written glTF, under a node of its own.
 struct WrittenMesh {
@@ -26,4 +26,4 @@ struct WrittenMesh {
 /// The bytes of a .glb, or of a .gltf with its buffer inside.
 Result<std::string> gltf_bytes(const std::vector<WrittenMesh>& meshes, bool binary);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "scenes/gltf_file.hpp"
 #include "scenes/gltf_rows.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 template <class Row>
@@ -107,4 +107,4 @@ Result<std::string> with_motions(const std::filesystem::path& path,
   return stream.str();
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

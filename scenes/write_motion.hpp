@@ -7,7 +7,7 @@
 #include "ecs/components.hpp"
 #include "ecs/result.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Keys of one node of a scene, in the frame of its parent. Linear between them.
 struct NodeMotion {
@@ -22,4 +22,4 @@ struct NodeMotion {
 Result<std::string> with_motions(const std::filesystem::path& path,
                                  const std::vector<NodeMotion>& motions, bool binary);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #ifdef __cplusplus
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
-namespace torsion::shared {
+namespace torsion::engine::shared {
 using glm::mat4;
 using glm::uvec4;
 using glm::vec4;
@@ -85,7 +85,7 @@ struct OverlayConstants {
 };
 
 #ifdef __cplusplus
-}  // namespace torsion::shared
+}  // namespace torsion::engine::shared
 #endif
 
 #endif  // TORSION_SHADERS_SHARED_H_

@@ -5,7 +5,7 @@
 
 #include "ecs/hash.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 [[noreturn]] void stop_for(const System<StepContext>& system, ColumnSet undeclared) {
@@ -37,4 +37,4 @@ void run_with_checks(Schedule<StepContext>& schedule, StepContext& context) {
   });
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

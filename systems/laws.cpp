@@ -9,7 +9,7 @@
 #include "systems/contact/law.hpp"
 #include "systems/contact/support/body_law.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 #define TORSION_LAW(name, text) &k##name##Law,
@@ -57,4 +57,4 @@ bool any_friction(const StepContext& context) {
          });
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

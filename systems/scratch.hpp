@@ -11,7 +11,7 @@
 #include "systems/paper/carry_tractions.hpp"
 #include "systems/patch/scratch.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What the systems of one step need besides model and state, room by room. Reserved at load; but
 /// for the times that the schedule has taken nothing in it outlives a step, so that a saved state
@@ -33,4 +33,4 @@ struct Scratch {
   StepContext context(const Model& model, State& state, std::span<const Pose> tool_poses);
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

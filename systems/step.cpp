@@ -18,7 +18,7 @@
 #include "systems/scratch.hpp"
 #include "systems/surface/take_snapshot.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 bool any_compliance(const StepContext& context) {
@@ -147,4 +147,4 @@ void take_snapshot(const Simulation& simulation, Snapshot& snapshot) {
                 snapshot);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@
 #include "systems/contact/step_context.hpp"
 #include "systems/model/options.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 struct Scratch;         // systems/scratch.hpp: memory of the systems of one step
 struct SnapshotTables;  // systems/surface/take_snapshot.hpp
@@ -53,4 +53,4 @@ void step(Simulation& simulation, std::span<const Pose> tool_poses);
 /// @pre snapshot.reserve was called with the simulation's model and state
 void take_snapshot(const Simulation& simulation, Snapshot& snapshot);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "app/live/periodic_clock.hpp"
 #include "app/live/realtime_mode.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::string_view kUsb = "usb";
@@ -157,4 +157,4 @@ const DeviceView& DeviceLink::view() {
   return views_.front();
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

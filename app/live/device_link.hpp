@@ -12,7 +12,7 @@
 #include "ecs/triple_buffer.hpp"
 #include "systems/hold/handle_side.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Which devices are to hold a tool, as the command line says it.
 struct DeviceChoice {
@@ -77,4 +77,4 @@ Result<std::uint32_t> kinds_of(const std::string& what);
 /// Where firmware is looked for that no option names.
 std::filesystem::path usual_falcon_firmware();
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include "device/device_text.hpp"
 #include "systems/hold/virtual_coupling.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 std::string sensed_by(const DeviceSample& sample) {
@@ -143,4 +143,4 @@ nlohmann::ordered_json device_json(const DeviceView& view) {
            {{"median", view.result_us.quantile(0.5)}, {"p99", view.result_us.quantile(0.99)}}}};
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 
 #include "app/live/device_link.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// One line for a person on what the device is and does, and what it lacks.
 std::string describe(const DeviceView& view);
@@ -33,4 +33,4 @@ DeviceBanner device_banner(const DeviceView& view, bool steps_go_on);
 std::string device_summary(const DeviceView& view);
 nlohmann::ordered_json device_json(const DeviceView& view);
 
-}  // namespace torsion
+}  // namespace torsion::engine

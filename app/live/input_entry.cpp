@@ -5,7 +5,7 @@
 
 #include "ecs/model_names.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 void put_pose(const Pose& pose, double* values) {
@@ -68,4 +68,4 @@ bool valid(const InputEntry& entry, std::uint32_t tools, std::uint32_t bodies) {
   return false;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

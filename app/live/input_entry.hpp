@@ -5,7 +5,7 @@
 
 #include "ecs/components.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 enum class InputKind : std::uint32_t {
   kPose = 1,  // of tool `index`: values are the pose that it took, then the handle's
@@ -44,4 +44,4 @@ BodyPick pick_of(const InputEntry& entry);
 /// Whether an entry from a file can be what it says: its kind, and an index below these counts.
 bool valid(const InputEntry& entry, std::uint32_t tools, std::uint32_t bodies);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -2,7 +2,7 @@
 
 #include <ctime>
 
-namespace torsion {
+namespace torsion::engine {
 
 Interrupt::Interrupt() {
   ::sigemptyset(&signals_);
@@ -20,4 +20,4 @@ bool Interrupt::within(long milliseconds) const {
   return ::sigtimedwait(&signals_, nullptr, &time) > 0;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

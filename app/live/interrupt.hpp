@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// While it lives, SIGINT and SIGTERM do not end the program but are there to be asked for, so that
 /// a device is let go of and given back before the end. Make it before any thread.
@@ -23,4 +23,4 @@ class Interrupt {
   sigset_t before_{};
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

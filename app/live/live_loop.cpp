@@ -10,7 +10,7 @@
 #include "systems/hold/virtual_coupling.hpp"
 #include "systems/math/frames.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kRingSeconds = 30.0;
@@ -317,4 +317,4 @@ void run_live(LiveLoop& loop) {
   loop.over.store(true, std::memory_order_release);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -19,7 +19,7 @@
 #include "systems/hold/handle_side.hpp"
 #include "systems/hold/tool_hold.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 enum class PoseFrom : std::uint32_t {
   kScript,  // the scene's animation, imposed
@@ -148,4 +148,4 @@ void live_tick(LiveLoop& loop, double late_us);
 /// The physics thread: ticks on the clock until `stop` or the last step.
 void run_live(LiveLoop& loop);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "ecs/hash.hpp"
 #include "systems/surface/surface_field.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 // A ball of radius r pressed a quarter of r deep into a half-space takes 4/3 E* r^2 0.25^(3/2) =
@@ -244,4 +244,4 @@ void LiveSession::take_prepared() {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

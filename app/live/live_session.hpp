@@ -12,7 +12,7 @@
 #include "app/live/recording_file.hpp"
 #include "app/live/scene_device.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A scene under way: its physics thread, the handles of its tools, what was recorded of it, and
 /// the preparation of other models beside it. All functions are for one thread, the window's.
@@ -129,4 +129,4 @@ class LiveSession {
 /// @param radius  m: of the tool
 VirtualCoupling mouse_coupling(const SceneDescription& scene, double radius);
 
-}  // namespace torsion
+}  // namespace torsion::engine

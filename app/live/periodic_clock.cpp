@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <ctime>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr Nanoseconds kSecond = 1'000'000'000;
@@ -51,4 +51,4 @@ void wait_until(Nanoseconds due, bool spin) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

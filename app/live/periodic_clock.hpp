@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Times on CLOCK_MONOTONIC, ns.
 using Nanoseconds = std::int64_t;
@@ -34,4 +34,4 @@ void follow_samples(StepSchedule& schedule, Nanoseconds arrived);
 /// away at the cost of 6 % of a core at 1 kHz.
 void wait_until(Nanoseconds due, bool spin);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -14,7 +14,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 // Above ordinary threads, below the kernel's own (interrupts of a PREEMPT_RT kernel have 50).
@@ -109,4 +109,4 @@ void make_way_for_realtime() {
   ::pthread_setschedparam(::pthread_self(), SCHED_IDLE, &parameters);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What the system granted a thread that must wake on time.
 struct RealtimeMode {
@@ -23,4 +23,4 @@ std::string describe(const RealtimeMode& mode);
 /// wants to: for drawing beside a physics thread that got no SCHED_FIFO. Needs no privilege.
 void make_way_for_realtime();
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace torsion {
+namespace torsion::engine {
 
 std::vector<BodyPick> picks_of(const SceneDescription& scene, const PrepareOptions& options) {
   std::vector<BodyPick> picks;
@@ -42,4 +42,4 @@ void carry_over(const World& from, World& to) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

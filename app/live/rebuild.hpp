@@ -5,7 +5,7 @@
 #include "app/live/input_entry.hpp"
 #include "app/session.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What each body of the scene is, with what was chosen over it in `options`.
 std::vector<BodyPick> picks_of(const SceneDescription& scene, const PrepareOptions& options);
@@ -17,4 +17,4 @@ void apply_picks(const std::vector<BodyPick>& picks, SceneDescription& scene);
 /// other materials or models, goes on where `from` was. Contacts form anew. Allocates nothing.
 void carry_over(const World& from, World& to);
 
-}  // namespace torsion
+}  // namespace torsion::engine

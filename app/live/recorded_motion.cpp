@@ -5,7 +5,7 @@
 
 #include "device/scripted_motion.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Where the tool's parent is: place, turn and scale of all links above the tool's own.
@@ -69,4 +69,4 @@ std::vector<NodeMotion> recorded_motions(const Recording& recording,
   return motions;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include "ecs/assert.hpp"
 #include "ecs/hash.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 bool same_pick(const BodyPick& a, const BodyPick& b) {
@@ -124,4 +124,4 @@ Result<Done> replay_inputs(Replay& replay, Session& session, bool quiet) {
   return Done{};
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "app/live/rebuild.hpp"
 #include "ecs/result.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A run that can be had again: how its world was prepared, and everything that went in.
 struct Recording {
@@ -51,4 +51,4 @@ struct Replay {
 /// @pre the recording still has a step
 Result<Done> replay_inputs(Replay& replay, Session& session, bool quiet);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -14,7 +14,7 @@
 #include "app/output_file.hpp"
 #include "ecs/model_names.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using nlohmann::json;
@@ -258,4 +258,4 @@ Result<Recording> load_recording(const std::filesystem::path& path) {
   return recording;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

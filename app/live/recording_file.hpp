@@ -7,7 +7,7 @@
 #include "app/live/recording.hpp"
 #include "ecs/result.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 // A recording in a file: magic, version, a JSON object with all but the entries, the entries as
 // they lie in memory, as many as there is room for before the checksum (XXH3) of all that. In this
@@ -50,4 +50,4 @@ Result<Done> save_recording(const Recording& recording, const std::filesystem::p
 /// Fails on anything that save_recording cannot have written, and says what it is.
 Result<Recording> load_recording(const std::filesystem::path& path);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 
 #include "device/scripted_motion.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 Result<SceneDevice> open_device(const DeviceChoice& choice, const SceneDescription& scene) {
   SceneDevice device;
@@ -26,4 +26,4 @@ Result<SceneDevice> open_device(const DeviceChoice& choice, const SceneDescripti
   return device;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 #include "app/live/device_link.hpp"
 #include "ecs/scene_description.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A device and the tool that it holds; no link where nothing asks for one.
 struct SceneDevice {
@@ -17,4 +17,4 @@ struct SceneDevice {
 /// that tool, else the first, and its workspace is centred where the tool is at first.
 Result<SceneDevice> open_device(const DeviceChoice& choice, const SceneDescription& scene);
 
-}  // namespace torsion
+}  // namespace torsion::engine

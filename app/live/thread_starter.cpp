@@ -1,6 +1,6 @@
 #include "app/live/thread_starter.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 ThreadStarter::ThreadStarter() : thread_(&ThreadStarter::work, this) {}
 
@@ -33,4 +33,4 @@ void ThreadStarter::work() {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

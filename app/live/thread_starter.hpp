@@ -5,7 +5,7 @@
 #include <mutex>
 #include <thread>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A thread that starts other threads. They inherit its scheduling: made before the calling thread
 /// makes way for realtime, it goes on to start threads that need not.
@@ -31,4 +31,4 @@ class ThreadStarter {
   std::thread thread_;  // last: it uses what is before it
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 
 #include "ecs/model_names.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 std::string field_of(const std::optional<double>& error) {
@@ -29,4 +29,4 @@ std::string csv_text(std::span<const MeasuredCase> cases) {
   return text;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

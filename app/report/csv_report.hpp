@@ -4,9 +4,9 @@
 
 #include "app/report/report_data.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// All runs, one line each, after a header; a field is empty where a case has no such reference.
 std::string csv_text(std::span<const MeasuredCase> cases);
 
-}  // namespace torsion
+}  // namespace torsion::engine

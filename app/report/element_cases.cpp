@@ -9,7 +9,7 @@
 #include "app/report/element_curve.hpp"
 #include "app/report/element_scenes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kFieldReach = 8.0;  // contact radii
@@ -108,4 +108,4 @@ std::vector<ReferenceCase> element_cases(bool quick) {
   return cases;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 
 #include "app/report/embedded_results.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::string_view kFieldEnding = "_field";
@@ -129,4 +129,4 @@ double field_twist(const ElementCurve& curve, double radius) {
   return std::lerp(before->twist, after->twist, share);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What finite elements gave for one case on one mesh, or on the finest of several.
 struct ElementCurve {
@@ -36,4 +36,4 @@ ElementCurve finest_curve(std::string_view name);
 /// The field's twist at `radius`, linear between the rows.
 double field_twist(const ElementCurve& curve, double radius);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "app/report/paper_ball.hpp"
 #include "app/report/shapes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 const double kContact = std::sqrt(kPaperBallRadius * kPaperBallDepth);
@@ -261,4 +261,4 @@ std::vector<ElementScene> element_scenes() {
   return scenes;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 
 #include "ecs/scene_description.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The scene of one case of tests/reference/finite_elements/cases.py, y up: its z is our y, its y
 /// our -z.
@@ -20,4 +20,4 @@ struct ElementScene {
 
 std::vector<ElementScene> element_scenes();
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A file that was put into the program when it was built.
 struct EmbeddedFile {
@@ -17,4 +17,4 @@ std::span<const EmbeddedFile> element_results();
 /// tests/reference/boundary_elements/*.csv, by name.
 std::span<const EmbeddedFile> boundary_element_results();
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// The largest difference over the largest reference; a value that is no number is infinitely
@@ -48,4 +48,4 @@ CaseErrors errors_of(const ReferenceCase& reference_case, const CaseRun& run) {
   return errors;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 
 #include "app/report/run_case.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// How far a run is from its reference; empty where there is none.
 struct CaseErrors {
@@ -17,4 +17,4 @@ struct CaseErrors {
 
 CaseErrors errors_of(const ReferenceCase& reference_case, const CaseRun& run);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -15,7 +15,7 @@
 #include "tests/reference/exact/masing.hpp"
 #include "tests/reference/exact/materials.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr int kPointsOfLeg = 16;
@@ -189,4 +189,4 @@ std::vector<ReferenceCase> exact_cases(bool quick) {
   return cases;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

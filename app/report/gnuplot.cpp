@@ -18,7 +18,7 @@
 
 extern char** environ;
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr int kWidth = 560;   // of a plot, in units of its text
@@ -267,4 +267,4 @@ Result<Done> try_gnuplot() {
   return drawn ? Result<Done>(Done{}) : Result<Done>(drawn.error());
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@
 #include "ecs/model_names.hpp"
 #include "systems/contact/region_wrenches.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 std::string escaped(std::string_view text) {
@@ -282,4 +282,4 @@ Result<std::string> html_text(std::span<const MeasuredCase> cases,
   return html + "</body>\n</html>\n";
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

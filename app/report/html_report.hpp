@@ -8,7 +8,7 @@
 #include "app/report/report_data.hpp"
 #include "ecs/result.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The report as one page that needs nothing else: plots as SVG in it, pictures as data.
 /// @param pictures  (cases) PNG files' bytes; empty where there is no picture
@@ -16,4 +16,4 @@ namespace torsion {
 Result<std::string> html_text(std::span<const MeasuredCase> cases,
                               std::span<const std::string> pictures, const Machine& machine);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The report's style sheet, for the screen and for paper.
 inline constexpr const char* kReportStyle = R"css(
@@ -44,4 +44,4 @@ figcaption { font-size: 0.85rem; color: #333; margin-top: 0.2rem; }
 }
 )css";
 
-}  // namespace torsion
+}  // namespace torsion::engine

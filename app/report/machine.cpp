@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <sys/utsname.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 std::string processor_name() {
@@ -64,4 +64,4 @@ Machine this_machine() {
   return machine;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Where and with what the program ran, in words.
 struct Machine {
@@ -17,4 +17,4 @@ struct Machine {
 
 Machine this_machine();
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "ecs/world.hpp"
 #include "systems/contact/law.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::array<std::uint32_t, 5> kGridSides = {8, 12, 16, 20, 24};
@@ -50,4 +50,4 @@ std::string label_of(const ModelPair& models) {
              : fmt::format("{}{}", name_of(models.contact), body);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

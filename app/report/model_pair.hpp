@@ -4,7 +4,7 @@
 
 #include "app/report/reference_case.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What one run of a case runs with.
 struct ModelPair {
@@ -21,4 +21,4 @@ std::vector<ModelPair> model_pairs(const ReferenceCase& reference_case, bool qui
 /// "patch 12² + skeleton": models with the grid's side where it is chosen.
 std::string label_of(const ModelPair& models);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -1,9 +1,9 @@
 #pragma once
 
-namespace torsion {
+namespace torsion::engine {
 
 // The paper's ball, and the depth at which its contact is a tenth of its radius.
 inline constexpr double kPaperBallRadius = 0.05;     // m
 inline constexpr double kPaperBallDepth = 4.127e-4;  // m
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 
 #include <glm/vec2.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// One set of points of a plot.
 struct PlotSeries {
@@ -29,4 +29,4 @@ struct Plot {
   std::vector<PlotSeries> series;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 
 #include "ecs/scene_description.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 inline constexpr double kNoReference = std::numeric_limits<double>::quiet_NaN();
 
@@ -61,4 +61,4 @@ struct ReferenceCase {
   ReferenceField field;   // without radii: none
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -2,7 +2,7 @@
 
 #include "app/report/errors.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// One line of report.csv.
 struct MeasuredRun {
@@ -16,4 +16,4 @@ struct MeasuredCase {
   std::vector<MeasuredRun> runs;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 
 #include "ecs/model_names.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 // Colours that stay apart for the colour-blind (Okabe and Ito 2008), in the order of the enum.
@@ -245,4 +245,4 @@ Plot field_plot(const MeasuredCase& measured) {
   return plot;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

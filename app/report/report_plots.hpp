@@ -5,7 +5,7 @@
 #include "app/report/plot.hpp"
 #include "app/report/report_data.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The larger of the errors in force and torque.
 double worst_error(const CaseErrors& errors);
@@ -26,4 +26,4 @@ Plot loop_plot(const MeasuredCase& measured);
 /// Twist of the surface over the tool's, against the radius. @pre the case has a field
 Plot field_plot(const MeasuredCase& measured);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "app/report/paper_ball.hpp"
 #include "app/report/sphere_on_half_space.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kRadii = 8.0;      // contact radii with each spin: steady after six
@@ -98,4 +98,4 @@ ReferenceCase rolling_case(bool quick) {
   return result;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

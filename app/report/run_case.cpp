@@ -9,7 +9,7 @@
 
 #include "systems/surface/surface_field.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using SteadyClock = std::chrono::steady_clock;
@@ -158,4 +158,4 @@ Result<Simulation> simulate_to(const ReferenceCase& reference_case, const ModelP
   return prepared;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

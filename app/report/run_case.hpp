@@ -5,7 +5,7 @@
 #include "ecs/result.hpp"
 #include "systems/step.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What a case gave with one choice of models.
 struct CaseRun {
@@ -29,4 +29,4 @@ Result<CaseRun> run_case(const ReferenceCase& reference_case, const ModelPair& m
 Result<Simulation> simulate_to(const ReferenceCase& reference_case, const ModelPair& models,
                                std::size_t point);
 
-}  // namespace torsion
+}  // namespace torsion::engine

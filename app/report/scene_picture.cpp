@@ -12,7 +12,7 @@
 #include "app/report/run_case.hpp"
 #include "render/image_io.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr ModelPair kDrawnModels{ContactModel::kPatch, BodyModel::kNone, 16};
@@ -64,4 +64,4 @@ Result<std::string> scene_picture(const ReferenceCase& reference_case) {
   return image ? png_bytes(image.value()) : Result<std::string>(image.error());
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

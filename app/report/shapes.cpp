@@ -8,7 +8,7 @@
 
 #include "systems/math/frames.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// The surface of the cube from -1 to 1, welded.
@@ -120,4 +120,4 @@ DrawMesh drawn(const std::vector<SurfaceMesh>& surfaces, bool smooth, const glm:
   return mesh;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

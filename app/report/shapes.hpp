@@ -4,7 +4,7 @@
 
 #include "ecs/scene_description.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A closed surface of one of the exact shapes, cut like a cube of `cuts` x `cuts` quads a face,
 /// outward.
@@ -20,4 +20,4 @@ PartDescription exact_part(ShapeKind kind, const glm::dvec3& half_extent, const 
 /// @param smooth  false: each face has its own normal
 DrawMesh drawn(const std::vector<SurfaceMesh>& surfaces, bool smooth, const glm::vec4& color);
 
-}  // namespace torsion
+}  // namespace torsion::engine

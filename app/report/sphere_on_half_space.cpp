@@ -8,7 +8,7 @@
 #include "app/report/paper_ball.hpp"
 #include "app/report/shapes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kHalfSize = 2.0;  // m: 440 contact radii, so that the block is a half-space
@@ -93,4 +93,4 @@ std::string sphere_text(const SphereOnHalfSpace& sphere) {
       sphere.hertz.force, 1e3 * sphere.hertz.radius);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #include "app/report/reference_case.hpp"
 #include "tests/reference/exact/hertz.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The paper's ball, pressed kPaperBallDepth deep into a block that stands for a half-space.
 struct SphereOnHalfSpace {
@@ -32,4 +32,4 @@ std::vector<PathPoint> press(const SphereOnHalfSpace& sphere, bool force_is_norm
 /// The description's first sentences.
 std::string sphere_text(const SphereOnHalfSpace& sphere);
 
-}  // namespace torsion
+}  // namespace torsion::engine

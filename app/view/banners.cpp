@@ -6,7 +6,7 @@
 #include "app/view/panel_style.hpp"
 #include "systems/contact/region_wrenches.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr ImU32 kAmber = IM_COL32(200, 110, 0, 255);
@@ -66,4 +66,4 @@ void draw_banners(const ViewState& state, const LiveSession& session, double now
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

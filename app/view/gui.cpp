@@ -6,7 +6,7 @@
 
 #include <imgui.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 // What ImGui writes is what the renderer reads.
@@ -148,4 +148,4 @@ bool Gui::has_mouse() {
   return ImGui::GetIO().WantCaptureMouse;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 struct ImDrawCmd;
 struct ImDrawList;
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Dear ImGui, fed with a window's input and drawn as an overlay. One at a time; between begin()
 /// and end() the caller builds its panels with ImGui's functions.
@@ -39,4 +39,4 @@ class Gui {
   OverlayDrawList list_;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 
 Wrench in_contact_axes(const Wrench& world, const glm::dvec3& normal, const glm::dvec3& tangent_x) {
   if (normal == glm::dvec3(0.0)) {
@@ -51,4 +51,4 @@ void History::clear() {
   size_ = 0;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 
 #include "app/live/live_loop.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A row of a session, thinned for plots.
 struct PlotPoint {
@@ -48,4 +48,4 @@ class History {
 /// A wrench in the axes of a contact: tangents and normal. World axes where there is none.
 Wrench in_contact_axes(const Wrench& world, const glm::dvec3& normal, const glm::dvec3& tangent_x);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 
 #include "app/view/panels.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr ImU32 kRegion = IM_COL32(20, 20, 20, 220);
@@ -113,4 +113,4 @@ void draw_marks(const ViewState& state, LiveSession& session, const glm::dvec2& 
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

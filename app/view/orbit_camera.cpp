@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kSteepest = 1.55;        // rad
@@ -77,4 +77,4 @@ glm::dvec3 seen_at(const Camera& camera, const glm::dvec3& point, const glm::dve
   return {picture.x / 2.0 + at.x * scale, picture.y / 2.0 - at.y * scale, depth};
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

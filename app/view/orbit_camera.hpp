@@ -4,7 +4,7 @@
 
 #include "render/camera.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A camera that circles a point: how it stands, as a person moves it. The world's y stays up.
 struct OrbitCamera {
@@ -41,4 +41,4 @@ PixelRay ray_through(const Camera& camera, const glm::dvec2& pixel, const glm::d
 /// Where a point is seen, pixels; z: its depth before the camera, m, negative behind it.
 glm::dvec3 seen_at(const Camera& camera, const glm::dvec3& point, const glm::dvec2& picture);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 
 #include <imgui.h>
 
-namespace torsion {
+namespace torsion::engine {
 
 inline constexpr ImU32 kRed = IM_COL32(200, 45, 45, 255);
 inline constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
@@ -17,4 +17,4 @@ inline void text(const std::string& line) {
   ImGui::TextUnformatted(line.c_str());
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

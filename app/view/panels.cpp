@@ -16,7 +16,7 @@
 #include "app/view/plots.hpp"
 #include "ecs/model_names.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr ImU32 kGreen = IM_COL32(30, 140, 60, 255);
@@ -368,4 +368,4 @@ void draw_panels(ViewState& state, LiveSession& session, double now) {
   mouse_line(state, session.on_device(state.tool));
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

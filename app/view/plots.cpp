@@ -8,7 +8,7 @@
 
 #include "app/round_up.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr ImU32 kFrame = IM_COL32(120, 126, 135, 255);
@@ -119,4 +119,4 @@ void draw_plot(const PlotAxes& axes, std::span<const Curve> curves, float height
   ImGui::Dummy(ImVec2(size.x, size.y + line + 4.0F));
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

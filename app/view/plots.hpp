@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A curve of a plot: points in order.
 struct Curve {
@@ -28,4 +28,4 @@ struct PlotAxes {
 /// @param height  pixels
 void draw_plot(const PlotAxes& axes, std::span<const Curve> curves, float height);
 
-}  // namespace torsion
+}  // namespace torsion::engine

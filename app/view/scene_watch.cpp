@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 namespace fs = std::filesystem;
@@ -60,4 +60,4 @@ bool SceneWatch::changed() {
   return true;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

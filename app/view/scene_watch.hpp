@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Looks whether the files of a scene have changed on disk: the .gltf or .glb, and the buffers
 /// that it names.
@@ -30,4 +30,4 @@ class SceneWatch {
   std::vector<Stamp> last_;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

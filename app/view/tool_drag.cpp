@@ -4,7 +4,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 
 std::optional<double> meets_box(const PixelRay& ray, const Pose& pose, const Bounds& bounds) {
   const glm::dquat to_box = glm::conjugate(pose.rotation);
@@ -48,4 +48,4 @@ void drag(ToolDrag& taken, DragKind kind, const glm::dvec2& mouse, const Camera&
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

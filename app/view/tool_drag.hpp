@@ -7,7 +7,7 @@
 
 #include "app/view/orbit_camera.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// How a mouse that has taken a tool moves it.
 enum class DragKind : std::uint8_t {
@@ -39,4 +39,4 @@ void turn(Pose& handle, const glm::dvec3& pivot, const glm::dvec3& axis, double 
 inline constexpr double kRadiansAPixel = 0.005;
 inline constexpr double kRadiansANotch = 0.05;
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "app/view/orbit_camera.hpp"
 #include "render/draw_options.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What a person has set in the window, and what the window shows of the session. The panels read
 /// and write it; the viewer acts on the `wants_`.
@@ -50,4 +50,4 @@ struct ViewState {
 /// The number of BodyPick's models and materials that differ.
 bool differ(const std::vector<BodyPick>& a, const std::vector<BodyPick>& b);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -14,7 +14,7 @@
 #include "render/image_io.hpp"
 #include "systems/surface/surface_field.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint32_t kWidth = 1280;
@@ -386,4 +386,4 @@ Result<ViewerOutcome> Viewer::finish() {
   return outcome_;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -19,7 +19,7 @@
 #include "render/video.hpp"
 #include "render/window.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 struct ViewerOptions {
   std::string scene;
@@ -135,4 +135,4 @@ class Viewer {
   std::optional<Result<Session>> reloaded_;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 
 #include "app/view/viewer.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kPicturesASecond = 25.0;
@@ -72,4 +72,4 @@ void Viewer::end_film(const std::string& why) {
                               why.empty() ? "" : "; ended, because " + why));
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

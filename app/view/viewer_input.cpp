@@ -6,7 +6,7 @@
 
 #include "app/view/viewer.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kRadiansAPixelOfOrbit = 0.006;
@@ -163,4 +163,4 @@ void Viewer::take_mouse(const WindowInput& input) {
   state_.grabbed = grab_.on_tool;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

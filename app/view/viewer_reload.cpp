@@ -4,7 +4,7 @@
 
 #include "app/view/viewer.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kLookPeriod = 0.3;  // s: between looks at the scene's files
@@ -44,4 +44,4 @@ Result<Done> Viewer::take_reloaded() {
   return begun;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

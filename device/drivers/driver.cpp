@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint32_t kReadsUnderWay = 2;
@@ -138,4 +138,4 @@ ReadOutcome take_read(ReadQueue& queue, DriverCall& call, const UsbEvent& event)
   return ReadOutcome::kNothing;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@
 #include "device/usb/usb_io.hpp"
 #include "ecs/device_sample.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -109,4 +109,4 @@ void keep_reading(ReadQueue& queue, DriverCall& call);
 /// Keeps the queue going past stalls and failures. After kData: call keep_reading.
 ReadOutcome take_read(ReadQueue& queue, DriverCall& call, const UsbEvent& event);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 struct Ids {
@@ -83,4 +83,4 @@ Driver driver_for(DeviceKind kind) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

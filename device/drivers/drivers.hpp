@@ -9,7 +9,7 @@
 #include "device/drivers/space_mouse_driver.hpp"
 #include "device/drivers/wooden_driver.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 enum class DeviceKind : std::uint8_t { kSpaceMouse, kFalcon, kWoodenHaptics, kOdrive };
 
@@ -32,4 +32,4 @@ using Driver = std::variant<SpaceMouseDriver, FalconDriver, WoodenDriver, Odrive
 
 Driver driver_for(DeviceKind kind);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 const glm::dvec3 kCentre(0.0, 0.0, 0.115);  // m, device axes: of the workspace
@@ -285,4 +285,4 @@ void rest(FalconDriver& driver, DriverCall& call) {
   driver.phase = FalconPhase::kNone;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include "device/drivers/motor_driver.hpp"
 #include "device/protocols/falcon_kinematics.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 enum class FalconPhase : std::uint8_t {
   kClaiming,
@@ -43,4 +43,4 @@ void rest(FalconDriver& driver, DriverCall& call);
 void let_go(FalconDriver& driver, DriverCall& call);
 void again_later(FalconDriver& driver, DriverCall& call, DeviceTrouble trouble);
 
-}  // namespace torsion
+}  // namespace torsion::engine

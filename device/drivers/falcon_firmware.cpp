@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 // Requests of the FTDI chip, and its divisors for the rates that a Falcon speaks at.
@@ -65,4 +65,4 @@ bool ends_with(const FalconEcho& echo, Bytes expected) {
              Bytes(echo.bytes).subspan(echo.count - expected.size(), expected.size()), expected);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "device/protocols/bytes.hpp"
 #include "device/usb/usb_io.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 inline constexpr std::size_t kFirmwarePiece = 62;  // bytes that go out together
 inline constexpr std::size_t kSmallestFirmware = 1024;
@@ -43,4 +43,4 @@ void take_echo(FalconEcho& echo, Bytes usb_packet);
 /// True when what came ends with `expected`; there may be noise before it.
 bool ends_with(const FalconEcho& echo, Bytes expected);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 
 #include "device/drivers/driver.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 inline constexpr double kSilence = 5e-3;  // s: then it is told to let go and asked again
 inline constexpr double kLost = 0.25;     // s: then it is set up anew
@@ -91,4 +91,4 @@ void wake_motors(D& driver, DriverCall& call) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kArms = 0.25;           // s: until it obeys, after it was told to
@@ -210,4 +210,4 @@ void rest(OdriveDriver& driver, DriverCall& call) {
   driver.phase = OdrivePhase::kNone;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #include "device/drivers/motor_driver.hpp"
 #include "device/protocols/odrive.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 enum class OdrivePhase : std::uint8_t {
   kClaiming,
@@ -36,4 +36,4 @@ void rest(OdriveDriver& driver, DriverCall& call);
 void let_go(OdriveDriver& driver, DriverCall& call);
 void again_later(OdriveDriver& driver, DriverCall& call, DeviceTrouble trouble);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kTick = 1e-3;             // s: the pose goes on at the rate of the physics
@@ -187,4 +187,4 @@ void rest(SpaceMouseDriver& driver, DriverCall& call) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

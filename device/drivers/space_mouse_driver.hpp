@@ -8,7 +8,7 @@
 #include "device/drivers/driver.hpp"
 #include "device/protocols/space_mouse.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 enum class SpaceMousePhase : std::uint8_t { kClaiming, kAsking, kReading, kNone };
 
@@ -32,4 +32,4 @@ void rest(SpaceMouseDriver& driver, DriverCall& call);
 /// Speed at a deflection, -1 to 1 of the largest: nothing in the dead band, fine near it, odd.
 double steering_response(double deflection);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 
 #include <glm/gtc/quaternion.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kLetGoOfButton = 0.1;  // s: then it is pressed no longer
@@ -129,4 +129,4 @@ void rest(WoodenDriver& driver, DriverCall& call) {
   driver.phase = WoodenPhase::kNone;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

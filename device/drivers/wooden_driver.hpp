@@ -6,7 +6,7 @@
 #include "device/drivers/motor_driver.hpp"
 #include "device/protocols/wooden_haptics.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 enum class WoodenPhase : std::uint8_t { kClaiming, kAsking, kLive, kNone };
 
@@ -31,4 +31,4 @@ void again_later(WoodenDriver& driver, DriverCall& call, DeviceTrouble trouble);
 glm::dvec3 wooden_to_world(const glm::dvec3& base);
 glm::dvec3 world_to_wooden(const glm::dvec3& world);
 
-}  // namespace torsion
+}  // namespace torsion::engine

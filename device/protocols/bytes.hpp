@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-namespace torsion {
+namespace torsion::engine {
 
 using Bytes = std::span<const std::uint8_t>;
 
@@ -23,4 +23,4 @@ inline void put_int16(std::span<std::uint8_t> bytes, std::size_t at, std::int16_
   bytes[at + 1] = static_cast<std::uint8_t>(bits >> 8);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint8_t kFirst = '<';
@@ -81,4 +81,4 @@ std::optional<FalconInput> take_ftdi_packet(FalconStream& stream, Bytes usb_pack
   return last;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 
 #include "device/protocols/bytes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 inline constexpr std::size_t kFalconPacket = 16;
 inline constexpr std::size_t kFtdiStatus = 2;  // bytes at the head of each packet of its USB bridge
@@ -44,4 +44,4 @@ struct FalconStream {
 /// @return the last whole packet that it ended, if any
 std::optional<FalconInput> take_ftdi_packet(FalconStream& stream, Bytes usb_packet);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include <glm/matrix.hpp>
 #include <glm/vector_relational.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -158,4 +158,4 @@ std::array<std::int16_t, 3> falcon_motors(const glm::dvec3& position, const glm:
   return motors;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

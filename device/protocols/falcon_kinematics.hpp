@@ -11,7 +11,7 @@
 
 #include "device/protocols/falcon.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Angles of the three motor joints, rad, from an encoder's counts.
 glm::dvec3 falcon_joint_angles(const FalconInput& input);
@@ -33,4 +33,4 @@ std::optional<glm::dvec3> falcon_forward(const glm::dvec3& angles, const glm::dv
 /// large, so that the direction stays. The scale from N m to motor values is nominal.
 std::array<std::int16_t, 3> falcon_motors(const glm::dvec3& position, const glm::dvec3& force);
 
-}  // namespace torsion
+}  // namespace torsion::engine

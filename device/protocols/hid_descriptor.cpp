@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint32_t kMostBits = 8 * 65536;
@@ -258,4 +258,4 @@ std::optional<std::int32_t> hid_value(const HidField& field, bool numbered, Byte
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(bits));
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

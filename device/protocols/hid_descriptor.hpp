@@ -6,7 +6,7 @@
 
 #include "device/protocols/bytes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A usage of the HID usage tables with its page in the upper half.
 using HidUsage = std::uint32_t;
@@ -41,4 +41,4 @@ std::optional<HidInputs> parse_hid_descriptor(Bytes descriptor);
 /// @return nothing where the report is another or too short
 std::optional<std::int32_t> hid_value(const HidField& field, bool numbered, Bytes report);
 
-}  // namespace torsion
+}  // namespace torsion::engine

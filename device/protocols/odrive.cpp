@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 std::optional<double> take_number(std::string_view& text) {
@@ -168,4 +168,4 @@ std::string odrive_error_text(std::uint32_t errors) {
   return fmt::format("{}; {}", names.empty() ? "it left closed loop control" : names, cure);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

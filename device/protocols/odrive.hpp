@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A line of text in place, without allocation.
 struct OdriveLine {
@@ -76,4 +76,4 @@ std::optional<OdriveFeedback> take_odrive_bytes(OdriveStream& stream, std::strin
 /// The names of an axis's errors, as its maker's tools write them, and what to do about the first.
 std::string odrive_error_text(std::uint32_t errors);
 
-}  // namespace torsion
+}  // namespace torsion::engine

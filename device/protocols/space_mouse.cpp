@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint16_t kLogitech = 0x046D;
@@ -147,4 +147,4 @@ bool is_space_mouse(std::uint16_t vendor, std::uint16_t product) {
          (vendor == k3Dconnexion && among(kBy3Dconnexion));
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

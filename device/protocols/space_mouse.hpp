@@ -11,7 +11,7 @@
 
 #include "device/protocols/hid_descriptor.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 inline constexpr std::uint16_t k3Dconnexion = 0x256F;  // vendor id
 
@@ -59,4 +59,4 @@ bool has_oldest_axes(std::uint16_t vendor, std::uint16_t product);
 /// True for known ids of the family.
 bool is_space_mouse(std::uint16_t vendor, std::uint16_t product);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -115,4 +115,4 @@ std::array<std::int16_t, 3> wooden_currents(const WoodenGeometry& geometry,
   return currents;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@
 
 #include "device/protocols/bytes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 inline constexpr std::size_t kWoodenPacket = 14;
 
@@ -63,4 +63,4 @@ glm::dmat3 wooden_jacobian(const WoodenGeometry& geometry, const glm::dvec3& bod
 std::array<std::int16_t, 3> wooden_currents(const WoodenGeometry& geometry,
                                             const glm::dvec3& body_angles, const glm::dvec3& force);
 
-}  // namespace torsion
+}  // namespace torsion::engine

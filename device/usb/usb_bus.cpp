@@ -11,7 +11,7 @@
 
 #include "device/usb/usb_keeper.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kLongestWait = 0.1;   // s: nothing of ours is missed, this is for what is not ours
@@ -157,9 +157,9 @@ struct UsbBus::State {
     if (status != UsbStatus::kCompleted) {
       port.state = UsbPortState::kRefused;
       port.retry_at = steady_now() + kReopen;
-      torsion::refuse(loop, row, port.identity, kind,
-                      status == UsbStatus::kNoAccess ? DeviceTrouble::kNoAccess
-                                                     : DeviceTrouble::kHeldElsewhere);
+      torsion::engine::refuse(loop, row, port.identity, kind,
+                              status == UsbStatus::kNoAccess ? DeviceTrouble::kNoAccess
+                                                             : DeviceTrouble::kHeldElsewhere);
       return;
     }
     port.state = UsbPortState::kOpen;
@@ -351,4 +351,4 @@ std::uint64_t UsbBus::submits_after_loss() const {
   return state_->submits_after_loss.load(std::memory_order_relaxed);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "device/device_loop.hpp"
 #include "ecs/result.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 struct UsbBusOptions {
   LoopOptions loop;
@@ -40,4 +40,4 @@ class UsbBus {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 
 #include <libusb-1.0/libusb.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 UsbInterface read_interface(const libusb_interface_descriptor& from) {
@@ -50,4 +50,4 @@ std::optional<UsbIdentity> read_identity(libusb_device* device) {
   return identity;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,10 +6,10 @@
 
 struct libusb_device;
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What a device says of itself, from what the system has read of it already: nothing is opened.
 /// @return nothing where it has gone
 std::optional<UsbIdentity> read_identity(libusb_device* device);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -12,7 +12,7 @@
 #include "device/protocols/bytes.hpp"
 #include "ecs/assert.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 inline constexpr std::uint8_t kUsbIn = 0x80;  // in an endpoint's address and a control's type
 inline constexpr std::uint8_t kHidClass = 3;  // of interfaces
@@ -139,4 +139,4 @@ inline void clear_usb_halt(UsbRequests& requests, std::uint8_t endpoint) {
   requests.add(UsbJob::kClearHalt).endpoint = endpoint;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

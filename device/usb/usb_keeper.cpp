@@ -6,7 +6,7 @@
 
 #include "device/usb/usb_identity.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr int kOpenTries = 20;
@@ -108,4 +108,4 @@ void UsbKeeper::work() {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

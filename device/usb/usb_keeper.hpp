@@ -12,7 +12,7 @@
 
 #include "device/usb/usb_port.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 enum class KeeperTask : std::uint8_t { kOpen, kClose, kClaim, kRelease, kClearHalt };
 
@@ -51,4 +51,4 @@ class UsbKeeper {
   std::thread thread_;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

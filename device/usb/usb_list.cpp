@@ -11,7 +11,7 @@
 #include "device/usb/usb_identity.hpp"
 #include "device/usb/usb_port.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 namespace fs = std::filesystem;
@@ -137,4 +137,4 @@ Result<std::vector<ListedDevice>> list_usb_devices() {
   return found;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

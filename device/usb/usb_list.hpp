@@ -6,7 +6,7 @@
 #include "device/drivers/drivers.hpp"
 #include "ecs/result.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A device that is plugged in, as `torsion devices` shows it.
 struct ListedDevice {
@@ -20,4 +20,4 @@ struct ListedDevice {
 /// The devices on the bus that Torsion knows. Opens each for a moment, takes none from anybody.
 Result<std::vector<ListedDevice>> list_usb_devices();
 
-}  // namespace torsion
+}  // namespace torsion::engine

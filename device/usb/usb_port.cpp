@@ -4,7 +4,7 @@
 
 #include <libusb-1.0/libusb.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr unsigned kTimeout = 500;  // ms: of what goes out; reads wait as long as it takes
@@ -170,4 +170,4 @@ UsbStatus status_of_error(int error) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@ struct libusb_device;
 struct libusb_device_handle;
 struct libusb_transfer;
 
-namespace torsion {
+namespace torsion::engine {
 
 struct UsbPort;
 
@@ -81,4 +81,4 @@ UsbEvent event_of(const UsbTransfer& transfer);
 /// libusb's error of an open or a claim.
 UsbStatus status_of_error(int error);
 
-}  // namespace torsion
+}  // namespace torsion::engine

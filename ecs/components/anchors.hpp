@@ -10,7 +10,7 @@
 
 #include "ecs/components/regions.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 inline constexpr std::uint32_t kAnchorsPerBody = 48;
 
@@ -91,4 +91,4 @@ struct BeamSection {
   double polar = 0.0;             // polar second moment, m^4
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 
 inline constexpr std::uint32_t kNoRow = UINT32_MAX;
 /// Also the number of twist columns that a vertex can have.
@@ -27,4 +27,4 @@ struct Wrench {
   glm::dvec3 torque{0.0};  // N m
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "ecs/contact_models.hpp"
 #include "ecs/range.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Linear elastic, isotropic. Written by: load.
 struct Elasticity {
@@ -98,4 +98,4 @@ struct Bounds {
   glm::dvec3 highest{0.0};  // m
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 
 #include <glm/vec2.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// One cell of a region's grid. Written by: region_grids.
 struct CellGeometry {
@@ -77,4 +77,4 @@ struct MdrLayer {
   double turn = 0.0;      // rad
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 
 #include "ecs/components/anchors.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 inline constexpr std::uint32_t kFieldDiscs = 20;
 inline constexpr std::uint32_t kFieldBlocks = 5;
@@ -50,4 +50,4 @@ struct AnchorMotion {
   glm::dvec3 displacement{0.0};  // m, body
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

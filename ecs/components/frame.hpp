@@ -8,7 +8,7 @@
 
 #include "ecs/range.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Written by: load.
 struct VertexRest {
@@ -49,4 +49,4 @@ struct DrawRange {
   glm::vec4 color{0.8F};  // linear RGB, alpha
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

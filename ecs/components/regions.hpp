@@ -13,7 +13,7 @@
 #include "ecs/components/basics.hpp"
 #include "ecs/range.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Written by: group_regions.
 struct RegionIdentity {
@@ -209,4 +209,4 @@ struct RegionWrench {
   std::uint32_t padding = 0;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

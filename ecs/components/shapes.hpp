@@ -11,7 +11,7 @@
 #include "ecs/components/basics.hpp"
 #include "ecs/range.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 enum class ShapeKind : std::uint32_t { kSphere, kEllipsoid, kBox, kCylinder, kCapsule, kMesh };
 
@@ -68,4 +68,4 @@ struct SurfaceSample {
   std::uint32_t neighbours[kSampleNeighbours] = {};  // kNoRow where there are fewer
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

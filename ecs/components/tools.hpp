@@ -10,7 +10,7 @@
 
 #include "ecs/components/basics.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The tool node's frame in the world, now and one step ago. Written by: couple_tools.
 struct ToolPose {
@@ -48,4 +48,4 @@ struct ToolWrench {
   std::uint32_t padding = 0;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -14,7 +14,7 @@
 #include "systems/math/disjoint_sets.hpp"
 #include "systems/math/frames.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Links pairs that are closer than `threshold`, until all points are one group.
@@ -370,4 +370,4 @@ void group_contact_points(StepContext& context) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 
 #include "systems/contact/step_context.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Finds the points of every tool's surface that lie inside a body's rest shape (section II.B of
 /// the paper): samples found through the tool's tree of balls, and, between samples, the deepest
@@ -41,4 +41,4 @@ std::uint32_t group_points(std::span<const glm::dvec3> points, std::span<const N
                            double threshold, std::span<std::uint32_t> order,
                            std::span<std::uint32_t> parent, std::span<std::uint32_t> groups);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -12,7 +12,7 @@
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Distance of the cells' places on the tool to the body's rest surface.
@@ -397,4 +397,4 @@ Overlap summarize_cells(const Grid& grid) {
   return overlap;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

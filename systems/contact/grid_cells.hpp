@@ -15,7 +15,7 @@
 #include "systems/contact/step_context.hpp"
 #include "systems/math/smooth_step.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A cell of a region's grid: i along x, j along y.
 struct CellPlace {
@@ -161,4 +161,4 @@ CellBits find_cells(const Grid& grid, const RegionPoints& contact);
 /// Area, depths, centroid and mean normal from the cells.
 Overlap summarize_cells(const Grid& grid);
 
-}  // namespace torsion
+}  // namespace torsion::engine

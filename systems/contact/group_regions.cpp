@@ -11,7 +11,7 @@
 #include "systems/contact/support/body_law.hpp"
 #include "systems/math/frames.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr auto kTakesOver = static_cast<std::uint32_t>(RegionEvent::kTakesOver);
@@ -342,4 +342,4 @@ void group_regions(StepContext& context) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 #include "systems/contact/scratch.hpp"
 #include "systems/contact/step_context.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Gives the groups of contact points an identity over time: a group continues the region that it
 /// overlaps most. Of several groups over one region the largest keeps it and the others form new
@@ -21,4 +21,4 @@ void group_regions(StepContext& context);
 void join_clusters(const Model& model, const State& state, ContactScratch& scratch,
                    ContactPair& pair);
 
-}  // namespace torsion
+}  // namespace torsion::engine

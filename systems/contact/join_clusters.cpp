@@ -14,7 +14,7 @@
 #include "systems/math/disjoint_sets.hpp"
 #include "systems/math/frames.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kLeastCoverage = 0.1;
@@ -242,4 +242,4 @@ void join_clusters(const Model& model, const State& state, ContactScratch& scrat
   renumber(parent, scratch.order, points, pair);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

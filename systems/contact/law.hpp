@@ -13,7 +13,7 @@
 #include "ecs/state.hpp"
 #include "systems/contact/step_context.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 struct RegionPoints;  // systems/contact/scratch.hpp
 
@@ -117,4 +117,4 @@ bool any_with(const StepContext& context) {
   return any_contact_model(context, Model);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

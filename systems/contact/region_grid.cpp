@@ -13,7 +13,7 @@
 #include "systems/math/frames.hpp"
 #include "systems/math/smooth_step.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 double SecondMoments::width_over_length() const {
   const double mean = 0.5 * (xx + yy);
   const double radius = std::hypot(0.5 * (xx - yy), xy);
@@ -427,4 +427,4 @@ void region_grids(StepContext& context) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

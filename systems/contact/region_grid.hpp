@@ -6,7 +6,7 @@
 #include "systems/contact/scratch.hpp"
 #include "systems/contact/step_context.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A contact longer than this many times its width counts as long: its grid lies along it.
 inline constexpr double kLongContact = 1.6;
@@ -157,4 +157,4 @@ void follow_contact(StepContext& context, std::uint32_t region, const RegionPoin
 /// are not joined to the region's own contact points belong to a neighbour and count nothing.
 void region_grids(StepContext& context);
 
-}  // namespace torsion
+}  // namespace torsion::engine

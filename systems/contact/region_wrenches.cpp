@@ -16,7 +16,7 @@
 #include "systems/math/finite.hpp"
 #include "systems/math/frames.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 std::string_view fault_text(Fault fault) {
   switch (fault) {
     case Fault::kPoseNotFinite:
@@ -382,4 +382,4 @@ void sum_wrenches(StepContext& context) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #include "ecs/state.hpp"
 #include "systems/contact/step_context.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 inline void raise(Clock& clock, Fault fault) {
   clock.faults |= static_cast<std::uint32_t>(fault);
@@ -64,4 +64,4 @@ void region_wrenches(StepContext& context);
 /// wrench that is not finite never gets out.
 void sum_wrenches(StepContext& context);
 
-}  // namespace torsion
+}  // namespace torsion::engine

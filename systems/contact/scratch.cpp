@@ -2,7 +2,7 @@
 
 #include "systems/math/wide_lanes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 void lay_columns(std::size_t cells, std::span<std::span<double>* const> columns,
                  Column<double>& memory) {
@@ -51,4 +51,4 @@ void ContactScratch::reserve(const Model& model, const State& state) {
   support_answers.assign(state.regions.capacity(), SupportAnswer{});
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -14,7 +14,7 @@
 #include "systems/contact/detect_contacts.hpp"
 #include "systems/geometry/distance.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A point of a tool's surface inside a body.
 struct ContactPoint {
@@ -145,4 +145,4 @@ struct ContactScratch {
   void reserve(const Model& model, const State& state);
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

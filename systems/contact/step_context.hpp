@@ -4,7 +4,7 @@
 
 #include "ecs/state.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 struct ContactScratch;  // systems/contact/scratch.hpp
 
@@ -26,4 +26,4 @@ struct StepContext {
   ComplianceScratch& compliance;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

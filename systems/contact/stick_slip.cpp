@@ -10,7 +10,7 @@
 #include "systems/contact/region_grid.hpp"
 #include "systems/half_space/elliptic_contact.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 double cube_of(double x) {
@@ -56,4 +56,4 @@ StuckStiffness stuck_stiffness(const Model& model, const State& state, std::uint
   return stiffness;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 
 #include "ecs/state.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A cell that slips comes down from mu_s to mu_d over this share of its elastic deflection: short
 /// enough to be the paper's switch (4) -> (5) within the accuracy of 200 cells, long enough that
@@ -55,4 +55,4 @@ struct StuckStiffness {
 StuckStiffness stuck_stiffness(const Model& model, const State& state, std::uint32_t region,
                                double radius);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include "systems/math/frames.hpp"
 #include "systems/math/smooth_step.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 // Faster than any held tool: a hammer blow is about 10 m/s, a flick of the wrist about 40 rad/s.
@@ -173,4 +173,4 @@ void region_motion(StepContext& context) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 
 #include "systems/contact/step_context.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Takes the input poses as the tools' new poses (a scripted pose is imposed as it is) and derives
 /// their motion over the step: velocity of the mass centre, angular velocity, and the rotation
@@ -55,4 +55,4 @@ inline glm::dvec3 shift_after(const MotionOverBody& motion, const glm::dvec3& po
 /// is continuous.
 void region_motion(StepContext& context);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr int kMostSurfaceSteps = 10;  // of Newton's method down to the tool's surface
@@ -433,4 +433,4 @@ double bearing_of(double share, double aspect) {
   return share / (share + std::cbrt(aspect) * (1.0 - share));
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -2,7 +2,7 @@
 
 #include "systems/contact/grid_cells.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Puts the cells' places of the last step on the tool's underside. Leaves them and the slopes
 /// there, of the last step of Newton's method but one, in ContactScratch::cell_columns.
@@ -42,4 +42,4 @@ inline constexpr double kRimSoftness = 1.3;
 /// a grid of cells with one pressure each is narrower than it is, on either side (likewise).
 inline constexpr double kRimBeyond = 0.13;
 
-}  // namespace torsion
+}  // namespace torsion::engine

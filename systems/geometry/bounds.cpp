@@ -2,7 +2,7 @@
 
 #include <glm/common.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr Bounds kOfNothing{glm::dvec3(1e300), glm::dvec3(-1e300)};
@@ -39,4 +39,4 @@ bool boxes_meet(const Bounds& a, const Bounds& b, double slack) {
   return true;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

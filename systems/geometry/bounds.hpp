@@ -15,7 +15,7 @@
 #include "ecs/components/bodies.hpp"
 #include "ecs/scene_description.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The least box around places, m; of none it is inside out.
 Bounds bounds_of(std::span<const glm::dvec3> places);
@@ -60,4 +60,4 @@ inline std::uint32_t compliance_elements(const Bounds& bounds) {
   return elements;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "systems/geometry/bounds.hpp"
 #include "systems/geometry/unite_meshes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kParallel = 1e-9;  // sine of the angle between planes that are the same
@@ -221,4 +221,4 @@ void cut_by(std::vector<Polygon>& pieces, const Facet& facet, const Facet& other
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "systems/geometry/distance_shapes.hpp"
 #include "systems/math/lanes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 bool is_turned(const glm::dquat& rotation) {
@@ -185,4 +185,4 @@ void distance_values(const Model& model, Range parts, const Pose& frame, const P
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

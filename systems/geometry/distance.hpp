@@ -4,7 +4,7 @@
 
 #include "ecs/model.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Signed distance (negative inside) and its gradient.
 struct Distance {
@@ -51,4 +51,4 @@ struct PointColumns {
 void distance_values(const Model& model, Range parts, const Pose& frame, const PointColumns& points,
                      std::span<double> values);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -14,7 +14,7 @@
 #include "systems/geometry/distance_mesh.hpp"
 #include "systems/math/lanes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// A place along one axis: the cell, and the fraction within it, 0 to 1.
@@ -378,4 +378,4 @@ std::optional<BuiltField> field_from_bytes(std::span<const std::byte> bytes) {
   return field;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "ecs/surface.hpp"
 #include "systems/geometry/distance.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Signed distance to a mesh in its part's frame, read from a two-level grid of nodes that hold the
 /// distance d_i and its gradient g_i. In a cell the value is the sum over its 8 nodes of w_i (d_i +
@@ -71,4 +71,4 @@ Result<BuiltField> build_distance_field(const FieldOfMesh& mesh, const FieldOpti
 std::vector<std::byte> to_bytes(const BuiltField& field);
 std::optional<BuiltField> field_from_bytes(std::span<const std::byte> bytes);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -14,7 +14,7 @@
 #include "ecs/assert.hpp"
 #include "systems/math/lanes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Two cache lines, of which the first is enough to reject most triangles.
 struct alignas(64) TriangleCorners {
@@ -358,4 +358,4 @@ MeshDistance::Closest MeshDistance::closest(const glm::dvec3& point, std::uint32
   return closest;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 #include "ecs/surface.hpp"
 #include "systems/geometry/distance.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Exact signed distance to a closed triangle mesh, for load-time work. Closest points come from
 /// Embree's point query (a tree of boxes in float that only prunes, conservatively; the distances
@@ -45,4 +45,4 @@ class MeshDistance {
   std::unique_ptr<Tree> tree_;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #include "systems/math/lanes.hpp"
 #include "systems/math/smooth_step.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// How far a distance's gradient is a normal: 1 where its length is. Beside the edges of a mesh the
 /// distances of a field are between those to both faces, and so is their gradient, which is shorter
@@ -178,4 +178,4 @@ auto with_exact_shape(const ShapePart& part, F&& f) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -12,7 +12,7 @@
 
 #include "systems/math/lanes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint32_t kCandidatesPerSample = 6;
@@ -276,4 +276,4 @@ SampledSurface sample_surface(std::span<const PartDescription> parts, std::uint3
   return surface;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

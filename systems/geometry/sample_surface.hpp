@@ -10,7 +10,7 @@
 #include "ecs/scene_description.hpp"
 #include "systems/geometry/distance_mesh.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The rows of one tool: samples of its surface and the tree of balls over them, in the tool's
 /// frame.
@@ -83,4 +83,4 @@ std::uint32_t nearest_leaf(std::span<const SurfaceBall> balls,
                            std::span<const glm::dvec3> leaf_centers, const glm::dvec3& point,
                            std::uint32_t hint);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "systems/geometry/distance_shapes.hpp"
 #include "systems/geometry/sample_surface.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Moves a point of the box of half extents `half` to the surface of the shape inside the box: flat
@@ -330,4 +330,4 @@ std::uint32_t nearest_leaf(std::span<const SurfaceBall> balls,
   return nearest;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

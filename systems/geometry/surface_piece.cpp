@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 void end_at(SurfacePiece& piece, const glm::dvec3& direction, double distance) {
@@ -116,4 +116,4 @@ double drop_at(const SurfacePiece& piece, const glm::dvec3& point, const glm::dv
   return c / (b + std::sqrt(b * b - a * c));
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

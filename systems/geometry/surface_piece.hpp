@@ -12,7 +12,7 @@
 
 #include "ecs/components.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Where a piece ends: it covers the points x with direction . (x - point) <= distance.
 struct PieceBorder {
@@ -47,4 +47,4 @@ glm::dmat3 curvature_at(const SurfacePiece& piece, const glm::dvec3& point);
 double drop_at(const SurfacePiece& piece, const glm::dvec3& point, const glm::dvec3& normal,
                const glm::dvec3& aside);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -18,7 +18,7 @@
 #include "systems/geometry/bounds.hpp"
 #include "systems/math/disjoint_sets.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kCornersApart = 8.0;  // of what is the same: a corner is found from two sides
@@ -426,4 +426,4 @@ Result<std::vector<std::string>> unite_parts(std::vector<PartDescription>& parts
   return nodes;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

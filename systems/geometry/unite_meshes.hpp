@@ -15,7 +15,7 @@
 #include "ecs/scene_description.hpp"
 #include "ecs/surface.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 struct Facet {
   std::array<glm::dvec3, 3> corner;  // m
@@ -77,4 +77,4 @@ Result<Union> unite_shells(const SurfaceMesh& mesh);
 /// @return the nodes whose meshes were united, or the error that names one
 Result<std::vector<std::string>> unite_parts(std::vector<PartDescription>& parts, bool with_others);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include "ecs/assert.hpp"
 #include "systems/half_space/layer.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// The functions that a CurvedKind's terms are multiplied by.
@@ -125,4 +125,4 @@ void fill_curved_influences(const InfluenceTables& half_space, const CurvedRespo
   fill_differences(values);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

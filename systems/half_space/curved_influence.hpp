@@ -11,7 +11,7 @@
 
 #include "systems/half_space/influence.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// How a surface bends away from its tangent plane: (xx x^2 + 2 xy x y + yy y^2) / 2 below it.
 struct SurfaceCurvature {
@@ -63,4 +63,4 @@ double curved_mean(const CurvedKind& kind, double radius, double reach);
 void fill_curved_influences(const InfluenceTables& half_space, const CurvedResponse& response,
                             const glm::dvec2& cell, double reach, std::span<double> values);
 
-}  // namespace torsion
+}  // namespace torsion::engine

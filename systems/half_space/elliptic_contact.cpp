@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace torsion {
+namespace torsion::engine {
 
 using std::numbers::pi;
 
@@ -105,4 +105,4 @@ EllipticContact elliptic_contact(double depth, double curvature_1, double curvat
   return contact;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

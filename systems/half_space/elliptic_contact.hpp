@@ -2,7 +2,7 @@
 
 // Hertz' contact of a paraboloid with an elastic half-space from its depth: ellipse and force.
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Complete elliptic integrals of the parameter m, 0 <= m < 1, by the arithmetic-geometric mean;
 /// relative error under 1e-14.
@@ -44,4 +44,4 @@ double bonded_turn_share(double axes, double poisson_ratio);
 /// @param curvature_1, curvature_2  1/m, > 0
 EllipticContact elliptic_contact(double depth, double curvature_1, double curvature_2);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -222,4 +222,4 @@ Matrix6 half_space_coupling(const Port& to, const Port& from, const Elasticity& 
                 half_space_response(from, to, elasticity).transpose());
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

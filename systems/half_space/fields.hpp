@@ -11,7 +11,7 @@
 #include "ecs/components.hpp"
 #include "systems/math/linear_algebra.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// An elastic half-space under its surface; the surface goes through where a force acts.
 struct HalfSpace {
@@ -100,4 +100,4 @@ Matrix6 half_space_response(const Port& to, const Port& from, const Elasticity& 
 /// @param to, from  not at one place
 Matrix6 half_space_coupling(const Port& to, const Port& from, const Elasticity& elasticity);
 
-}  // namespace torsion
+}  // namespace torsion::engine

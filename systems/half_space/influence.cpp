@@ -9,7 +9,7 @@
 
 #include "ecs/assert.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// y ln(x + rho), with x + rho written so that no digits are lost where x is negative.
@@ -170,4 +170,4 @@ LocalInverse local_inverse(const InfluenceTables& tables, InfluenceKind kind) {
   return {here, along_x, along_y, corner};
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

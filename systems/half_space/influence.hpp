@@ -10,7 +10,7 @@
 
 #include <glm/vec2.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Displacement (first letter) by traction (second letter); z points into the body.
 /// The last two are differences of others: u_x = sum of (xx - xy) q_x + s, u_y = sum of
@@ -105,4 +105,4 @@ inline LocalInverses local_inverses(const InfluenceTables& tables) {
           local_inverse(tables, InfluenceKind::kZZ)};
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -14,7 +14,7 @@
 #include "ecs/assert.hpp"
 #include "systems/half_space/influence.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kWide = 4.0;  // a body at least so many times as wide as thick is a layer
@@ -285,4 +285,4 @@ glm::dmat3 layer_coupling(const Model& model, std::uint32_t body, const glm::dve
   return axes * local * glm::transpose(axes) / (elasticity.shear_modulus() * thickness);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "ecs/model.hpp"
 #include "systems/half_space/influence.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Whether a body is a layer on its fixed face: at least four times as wide as thick.
 bool is_layer(const Model& model, std::uint32_t body);
@@ -95,4 +95,4 @@ glm::dmat3 layer_coupling(const Model& model, std::uint32_t body, const glm::dve
 /// The kernel of a body that contacts take for a layer: (kLayerKernelSize), or none.
 std::span<const double> layer_kernel(const Model& model, std::uint32_t body);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -1,6 +1,6 @@
 #include "systems/half_space/sum_influence_block.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 void sum_influence(const GridBlock& block, const InfluenceSources& sources, const double* table,
                    const double* scales, const double* start, double* displacement) {
@@ -21,4 +21,4 @@ void sum_influence(const GridBlock& block, const InfluenceSources& sources, cons
   influence_block::sum_all<2>(sums);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A grid, and where its influence tables hold the displacement of a cell by itself.
 struct GridBlock {
@@ -52,4 +52,4 @@ constexpr PairedRows paired_rows(std::uint32_t side, std::uint32_t row) {
 void sum_influence(const GridBlock& block, const InfluenceSources& sources, const double* table,
                    const double* scales, const double* start, double* displacement);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -2,10 +2,10 @@
 
 #include "systems/half_space/sum_influence_block.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 void sum_influence_avx2(const InfluenceSums& sums) {
   influence_block::sum_all<4>(sums);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

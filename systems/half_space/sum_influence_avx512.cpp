@@ -2,10 +2,10 @@
 
 #include "systems/half_space/sum_influence_block.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 void sum_influence_avx512(const InfluenceSums& sums) {
   influence_block::sum_all<8>(sums);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

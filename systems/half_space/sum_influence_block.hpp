@@ -10,7 +10,7 @@
 
 #include "systems/half_space/sum_influence.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What sum_influence is asked for, by sides of 2 and more.
 struct InfluenceSums {
@@ -137,4 +137,4 @@ TORSION_INLINE void sum_all(const InfluenceSums& sums) {
 }
 
 }  // namespace influence_block
-}  // namespace torsion
+}  // namespace torsion::engine

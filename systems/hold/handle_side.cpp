@@ -10,7 +10,7 @@
 #include "systems/math/finite.hpp"
 #include "systems/math/frames.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kFarthest = 2.0;   // counts: what is farther is followed at once
@@ -248,4 +248,4 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
   return outcome;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 #include "systems/hold/tool_hold.hpp"
 #include "systems/hold/virtual_coupling.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Where a handle is taken to be whose encoders count: the pose nearest to the last one that is
 /// within two counts of what they say, on each axis, and from there slowly to within one. A handle
@@ -169,4 +169,4 @@ struct HandleOutcome {
 HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
                                  const PhysicsResult& result, double now);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "systems/math/frames.hpp"
 #include "systems/math/linear_algebra.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Moments of inertia about the mass centre, world axes, kg m^2.
@@ -228,4 +228,4 @@ Wrench felt_wrench(ToolHold hold, const VirtualCoupling& coupling, const Pose& h
   return {-pull.force, -pull.torque};
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

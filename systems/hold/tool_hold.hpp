@@ -10,7 +10,7 @@
 #include "systems/hold/virtual_coupling.hpp"
 #include "systems/math/linear_algebra.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What slows a tool with mass down, against the world.
 struct ToolDamping {
@@ -94,4 +94,4 @@ Wrench wrench_about_frame(const State& state, std::uint32_t tool);
 Wrench felt_wrench(ToolHold hold, const VirtualCoupling& coupling, const Pose& handle,
                    const Pose& tool, const Wrench& contact);
 
-}  // namespace torsion
+}  // namespace torsion::engine

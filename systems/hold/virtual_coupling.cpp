@@ -6,7 +6,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 glm::dvec3 soft_limit(const glm::dvec3& vector, double most) {
   if (!(most > 0.0)) {
     return glm::dvec3(0.0);
@@ -80,4 +80,4 @@ CouplingChoice choose_coupling(const DeviceTraits& device) {
   return choice;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #include "ecs/components.hpp"
 #include "ecs/device_sample.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Springs and dampers between a device's handle and the tool it holds, and the largest force and
 /// torque that they come to.
@@ -63,4 +63,4 @@ const char* limit_text(StiffnessLimit limit);
 /// holds its force, worst at half the sampling rate (Adams & Hannaford, 1999).
 double virtual_coupling_bound(double damping, double period);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Shortens the path on its way.
 inline std::uint32_t root_of(std::span<std::uint32_t> parent, std::uint32_t row) {
@@ -28,4 +28,4 @@ inline bool link(std::span<std::uint32_t> parent, std::uint32_t a, std::uint32_t
   return root_a != root_b;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 
 #include "ecs/components.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// True where no number of the wrench is infinite or not a number.
 inline bool finite(const Wrench& wrench) {
@@ -12,4 +12,4 @@ inline bool finite(const Wrench& wrench) {
   return std::isfinite(sum.x + sum.y + sum.z);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

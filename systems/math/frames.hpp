@@ -9,7 +9,7 @@
 
 #include "ecs/components.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The cross product of two vectors of a plane: the signed area of the parallelogram they span.
 inline double cross(const glm::dvec2& a, const glm::dvec2& b) {
@@ -94,4 +94,4 @@ inline double cell_area(const RegionFrame& frame, std::uint32_t side) {
   return 4.0 * frame.half_size.x * frame.half_size.y / static_cast<double>(side * side);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

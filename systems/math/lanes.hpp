@@ -16,7 +16,7 @@
 #define TORSION_WIDEST
 #endif
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The larger of two numbers, as one instruction (std::max takes references and hinders
 /// vectorisation).
@@ -40,4 +40,4 @@ inline double sum_of(const Lanes& lanes) {
   return std::accumulate(lanes.begin(), lanes.end(), 0.0);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

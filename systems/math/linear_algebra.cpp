@@ -12,7 +12,7 @@
 
 #include "systems/math/lanes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 EigenSystem6 eigen_system(const Matrix6& symmetric) {
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(symmetric);
   return {solver.eigenvalues(), solver.eigenvectors()};
@@ -105,4 +105,4 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix) {
   return matrix.completeOrthogonalDecomposition().pseudoInverse();
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <glm/vec3.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Of forces and couples, or of displacements and rotations.
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -58,4 +58,4 @@ Eigen::MatrixXd least_norm_solution(const Eigen::MatrixXd& matrix, const Eigen::
 /// What least_norm_solution multiplies B by: A's inverse by Moore and Penrose.
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace torsion {
+namespace torsion::engine {
 
 /// 0 up to x = 0, 1 from x = 1, in between the cubic that starts and ends level. Without branches
 /// or references, so that a loop over it vectorises.
@@ -10,4 +10,4 @@ inline double smooth_step(double x) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

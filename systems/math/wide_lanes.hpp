@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Columns of cells are as long as a multiple of that (lay_columns in contact/scratch.hpp).
 inline constexpr std::size_t kLanes = 8;
@@ -47,4 +47,4 @@ TORSION_LANES double largest_of(const Wide& lanes) {
   return most;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -184,4 +184,4 @@ MdrForces move_layers(const MdrPlaces& places, const LimitCurve& curve, const Md
   return forces;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

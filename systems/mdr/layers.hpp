@@ -10,7 +10,7 @@
 #include "ecs/components.hpp"
 #include "systems/mdr/places.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// One contact's springs in one step. `on tool` is where forces act.
 struct MdrContact {
@@ -50,4 +50,4 @@ void resize_layers(const MdrSize& before, const MdrSize& now, std::span<MdrLayer
 MdrForces move_layers(const MdrPlaces& places, const LimitCurve& curve, const MdrContact& contact,
                       std::span<MdrLayer> layers);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -19,7 +19,7 @@
 #include "systems/mdr/layers.hpp"
 #include "systems/mdr/round_contact.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -354,4 +354,4 @@ const ContactLaw kMdrLaw{
     .begin = forget_layers,
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 
 #include "systems/math/smooth_step.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -318,4 +318,4 @@ MdrPlaces places_of(const MdrTables& tables, const MdrPressure& pressure) {
   return mixed;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

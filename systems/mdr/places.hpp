@@ -9,7 +9,7 @@
 
 #include "ecs/components.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 inline constexpr int kLimitCurveSegments = 128;
 
@@ -87,4 +87,4 @@ MdrTables make_mdr_tables();
 /// The places for a pressure between those of the tables.
 MdrPlaces places_of(const MdrTables& tables, const MdrPressure& pressure);
 
-}  // namespace torsion
+}  // namespace torsion::engine

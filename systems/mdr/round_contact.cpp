@@ -15,7 +15,7 @@
 #include "systems/math/linear_algebra.hpp"
 #include "systems/math/smooth_step.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr int kMoments = 15;  // of x^p y^q with p + q <= 4
@@ -388,4 +388,4 @@ double layer_force_share(double chi, double poisson_ratio) {
          a * (cube + 0.6 * pi * pi * b) * t * t * t * t;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

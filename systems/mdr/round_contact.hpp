@@ -15,7 +15,7 @@
 #include "systems/contact/step_context.hpp"
 #include "systems/mdr/places.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Finds a region's SmoothContact. Where it is known it also turns RegionFrame to the common normal
 /// and moves Overlap's points and its largest depth to the deepest place. For ContactLaw::refine.
@@ -77,4 +77,4 @@ RoundContact pressed_to(double depth, double modulus, RoundContact contact);
 /// @param chi  sqrt(R depth) / thickness
 double layer_force_share(double chi, double poisson_ratio);
 
-}  // namespace torsion
+}  // namespace torsion::engine

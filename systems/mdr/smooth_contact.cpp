@@ -15,7 +15,7 @@
 #include "systems/math/smooth_step.hpp"
 #include "systems/mdr/round_contact.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr int kMostNewtonSteps = 12;     // of Newton's method
@@ -306,4 +306,4 @@ void refine_overlap(StepContext& context, std::uint32_t region) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

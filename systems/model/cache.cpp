@@ -18,7 +18,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'T', 'O', 'R', 'S', 'C', 'A', 'C', '1'};
@@ -174,4 +174,4 @@ Result<BuiltField> load_or_build_distance_field(const FieldOfMesh& mesh,
   return built;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -12,7 +12,7 @@
 #include "ecs/result.hpp"
 #include "systems/geometry/distance_field.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Names one entry of the cache: the kind of thing and the hash of all that it was made from.
 struct CacheKey {
@@ -43,4 +43,4 @@ bool store_cached(const CacheKey& key, std::span<const std::byte> bytes);
 Result<BuiltField> load_or_build_distance_field(const FieldOfMesh& mesh,
                                                 const FieldOptions& options = {});
 
-}  // namespace torsion
+}  // namespace torsion::engine

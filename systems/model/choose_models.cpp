@@ -18,7 +18,7 @@
 #include "systems/math/frames.hpp"
 #include "systems/model/expected_rolling.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 // Largest errors of the torque over its largest value as `torsion report` measures them
@@ -376,4 +376,4 @@ std::uint32_t choose_grid_side(std::span<const ModelChoice> choices) {
   return side;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include "ecs/model.hpp"
 #include "systems/model/options.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What the tools will do to a body, as far as their expected poses tell.
 struct ExpectedContact {
@@ -51,4 +51,4 @@ ModelChoice choose_models(const BodyModels& scene, const PrepareOptions& options
 /// open: as few as keep the error of `patch` within it, and 16 for `paper`.
 std::uint32_t choose_grid_side(std::span<const ModelChoice> choices);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "systems/geometry/surface_piece.hpp"
 #include "systems/math/frames.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// The point of a piece whose outward normal is `direction`; along axes in which the piece is
@@ -133,4 +133,4 @@ double rolled_way(const TouchedPlace& place, const glm::dquat& tool_to_body) {
   return std::max(0.0, 0.5 * (glm::length(over_body) + glm::length(over_tool) - slipped));
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 
 #include "ecs/model.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Where a scene's contacts with a body are expected: a ball.
 struct ExpectedPlace {
@@ -52,4 +52,4 @@ std::vector<TouchedPlace> touched_places(const Model& model, std::uint32_t body,
 /// @param tool_to_body  the tool's rotation in the body's frame
 double rolled_way(const TouchedPlace& place, const glm::dquat& tool_to_body);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "ecs/model.hpp"
 #include "systems/model/expected_rolling.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Models of one body and why these, in words that follow "contact model patch (".
 struct ModelChoice {
@@ -35,4 +35,4 @@ struct PrepareOptions {
   std::function<void(double)> progress;
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

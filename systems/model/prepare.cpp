@@ -15,7 +15,7 @@
 #include "systems/model/cache.hpp"
 #include "systems/model/choose_models.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint32_t kSamplesPerTool = 2000;
@@ -403,4 +403,4 @@ Result<PreparedWorld> prepare_world(const SceneDescription& scene, const Prepare
   return prepared;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -12,7 +12,7 @@
 #include "systems/model/expected_rolling.hpp"
 #include "systems/model/options.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Anchors of one body and the sections of their beams, kBeamStations rows an anchor, root first.
 struct PreparedAnchors {
@@ -63,4 +63,4 @@ struct PreparedWorld {
 /// the node.
 Result<PreparedWorld> prepare_world(const SceneDescription& scene, const PrepareOptions& options);
 
-}  // namespace torsion
+}  // namespace torsion::engine

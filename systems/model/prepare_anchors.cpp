@@ -13,7 +13,7 @@
 #include "systems/math/frames.hpp"
 #include "systems/model/prepare.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -345,4 +345,4 @@ PreparedAnchors prepare_anchors(const BodyDescription& description, const Model&
   return prepared;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -14,7 +14,7 @@
 #include "systems/model/finite_elements/solid_surface.hpp"
 #include "systems/model/prepare.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// So many that they are a tenth of a cube's side apart where contacts are expected.
@@ -237,4 +237,4 @@ Result<PreparedCompliance> prepare_compliance(const BodyDescription& description
   return prepared;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

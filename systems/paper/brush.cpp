@@ -6,7 +6,7 @@
 #include "systems/contact/stick_slip.hpp"
 #include "systems/math/lanes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kNoLoad = 1e-300;  // Pa: keeps 0 / 0 away
@@ -151,4 +151,4 @@ BrushSums total(const BrushLanes& lanes) {
   return sums;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

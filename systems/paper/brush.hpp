@@ -9,7 +9,7 @@
 #include "ecs/components.hpp"
 #include "systems/math/lanes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What the cells of one region share in one step of the paper's friction. Tractions are per area,
 /// on the tool, in the grid's plane.
@@ -79,4 +79,4 @@ void update_brushes(const BrushState& brush, BrushBlock& block, BrushLanes& lane
 /// What the lanes come to.
 BrushSums total(const BrushLanes& lanes);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Of a cell. A grid that has moved less is not interpolated, because every interpolation smooths
@@ -189,4 +189,4 @@ void carry_tractions(StepContext& context) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 
 #include "systems/contact/step_context.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What a place on the body carries from one grid to the next: traction times coverage along x and
 /// y, Pa; coverage, as a share of the cell; kinetic share, as in CellTraction. In one vector, for
@@ -26,4 +26,4 @@ struct PaperScratch {
 /// between the old cells; new area starts without any, area that is left loses its own.
 void carry_tractions(StepContext& context);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -12,7 +12,7 @@
 #include "systems/paper/brush.hpp"
 #include "systems/paper/carry_tractions.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 // Of the body's smallest side and of the beam's length. Small-strain laws do not hold beyond it,
@@ -277,4 +277,4 @@ const ContactLaw kPaperLaw{
     .follows_material = true,
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -2,7 +2,7 @@
 
 #include "systems/contact/law.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 // The contact model `paper`: equations (1)-(14) of Luo & Xiao (IROS 2007), read as docs/models.md
 // says.
@@ -31,4 +31,4 @@ void paper_normal_forces(StepContext& context);
 /// friction force and couple, stick radius. Writes CellTraction and RegionFriction.
 void paper_friction_forces(StepContext& context);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "systems/patch/disc_projection.hpp"
 #include "systems/patch/sums.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kNearlyNone = 1e-300;  // keeps 0 / 0 away
@@ -198,4 +198,4 @@ TractionIteration find_balanced_step(const PatchProblem& problem, const StepRequ
   return iteration;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 #include "systems/patch/passes.hpp"
 #include "systems/patch/solver.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// How the next search direction is to be found.
 struct StepRequest {
@@ -42,4 +42,4 @@ struct TractionIteration {
 TractionIteration find_balanced_step(const PatchProblem& problem, const StepRequest& request,
                                      const TractionColumns& cells, PatchWork& work);
 
-}  // namespace torsion
+}  // namespace torsion::engine

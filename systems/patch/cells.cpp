@@ -13,7 +13,7 @@
 #include "systems/patch/passes.hpp"
 #include "systems/patch/sums.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kLeastBearing = 0.01;  // with less a cell cannot touch
@@ -415,4 +415,4 @@ double mean_pressure(const PatchColumns& columns) {
   return sum_of(total) / larger(sum_of(loaded), 1.0);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "ecs/state.hpp"
 #include "systems/patch/solver.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What a step needs of the cells beside PatchColumns, (side x side) each.
 struct PatchPlaces {
@@ -120,4 +120,4 @@ PatchSums sum_cells(const PatchColumns& columns, const PatchPlaces& places, doub
 /// The mean of the pressures that there are, Pa; 0 without.
 double mean_pressure(const PatchColumns& columns);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "systems/half_space/influence.hpp"
 #include "systems/patch/support.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr Eigen::Index kTerms = kSupportTerms;
@@ -206,4 +206,4 @@ bool make_definite(const DiscStiffness& disc, const Elasticity& elasticity,
   return true;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "systems/math/wide_lanes.hpp"
 #include "systems/patch/passes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr int kMostNewtonPasses = 16;  // of Newton's method: two or three as a rule, ten seen
@@ -198,4 +198,4 @@ BodyAnswer project_in_balance(const BodyInBalance& body, const double* limit,
   return {search.answer.motion, search.answer.load - search.lacking_load};
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Along the surface: x and y, m, and turning about the grid's origin, rad.
 using SurfaceMotion = glm::dvec3;
@@ -57,4 +57,4 @@ void take_off_motion(const DiscColumns& columns, const SurfaceMotion& motion, co
 /// @param limit  Pa, (n): the discs' radii
 BodyAnswer project_in_balance(const BodyInBalance& body, const double* limit, DiscColumns& columns);
 
-}  // namespace torsion
+}  // namespace torsion::engine

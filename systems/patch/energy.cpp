@@ -11,7 +11,7 @@
 #include "systems/math/lanes.hpp"
 #include "systems/patch/passes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 // At most, of a step's elastic change and of the normal force. What is missing beyond that is
@@ -280,4 +280,4 @@ void join_energies(State& state, std::uint32_t ended_region, std::uint32_t heir_
   heir.couple += ended.couple + glm::cross(ended.point - heir.point, ended.force);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

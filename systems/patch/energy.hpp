@@ -9,7 +9,7 @@
 #include "ecs/state.hpp"
 #include "systems/patch/solver.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The local inverse so many times is at least the inverse of all influences of a grid: to 1 /
 /// 0.656 of 12 cells a side, 1 / 0.638 of 16; coupled, at nu = 0, 1 / 0.411 and 1 / 0.396
@@ -68,4 +68,4 @@ void retell_others(State& state, std::uint32_t region, const RegionSupport& befo
 /// ContactLaw::end. What a region that ends hands to the one that takes over.
 void join_energies(State& state, std::uint32_t ended_region, std::uint32_t heir_region);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@
 #include "systems/half_space/influence.hpp"
 #include "systems/math/frames.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kSmallestFill =
@@ -357,4 +357,4 @@ void find_patch_cells(StepContext& context, std::uint32_t region, const RegionPo
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "systems/contact/step_context.hpp"
 #include "systems/patch/scratch.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Half sides of a grid, and where its origin goes along its axes, m.
 struct GridLayout {
@@ -112,4 +112,4 @@ void find_patch_cells(StepContext& context, std::uint32_t region, const RegionPo
 /// Lays a region's grid around its loaded cells at once.
 void regrid_around_loaded(StepContext& context, std::uint32_t region, const RegionPoints& contact);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 #include "systems/patch/grid.hpp"
 #include "systems/patch/region.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kThicker = 0.01;    // relative: less is not worth new tables
@@ -140,4 +140,4 @@ RegionInfluences region_influences(const Model& model, State& state, std::uint32
   return result;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

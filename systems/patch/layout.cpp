@@ -10,7 +10,7 @@
 #include "systems/math/frames.hpp"
 #include "systems/patch/grid.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kFill = 0.81;       // of a new grid by the cells with pressure
@@ -406,4 +406,4 @@ void center_patch(const Grid& grid, const RegionPoints& contact, double start_de
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

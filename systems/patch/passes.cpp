@@ -4,7 +4,7 @@
 
 #include "systems/math/lanes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// What a row adds to the product with the local inverse, at eight cells.
@@ -268,4 +268,4 @@ bool release_unloaded(std::size_t count, double least_depth, const double* __res
   return sum_of(lost) > 0.0;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

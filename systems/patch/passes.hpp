@@ -10,7 +10,7 @@
 #include "systems/half_space/influence.hpp"
 #include "systems/math/wide_lanes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// How much an iteration changes, Pa.
 struct IterationChange {
@@ -163,4 +163,4 @@ TractionResidual traction_residual(const TractionColumns& cells, const double* d
 /// Their residual is left to the next step.
 void clear_false_slip(const TractionColumns& cells);
 
-}  // namespace torsion
+}  // namespace torsion::engine

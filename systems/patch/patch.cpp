@@ -17,7 +17,7 @@
 #include "systems/patch/passes.hpp"
 #include "systems/patch/region.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 // Most iterations for a region that begins or whose grid has moved: for the pressures or the
@@ -381,4 +381,4 @@ const ContactLaw kPatchLaw{
     .end = join_energies,
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include "systems/math/frames.hpp"
 #include "systems/patch/passes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 // A deflecting body takes more iterations: its motions have compliances of their own, which the
@@ -108,4 +108,4 @@ void add_motion_of_body(const Patch& patch, double sign) {
   add(patch.support.z, columns.depression);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

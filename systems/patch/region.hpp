@@ -9,7 +9,7 @@
 #include "systems/patch/scratch.hpp"
 #include "systems/patch/solver.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// One region of contact model patch at work.
 struct Patch {
@@ -72,4 +72,4 @@ void share_out_patch(StepContext& context, std::uint32_t region);
 /// @pre the rows of the one that ends are still what they were
 void join_patch(StepContext& context, std::uint32_t ended, std::uint32_t heir);
 
-}  // namespace torsion
+}  // namespace torsion::engine

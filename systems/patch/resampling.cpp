@@ -9,7 +9,7 @@
 #include "systems/patch/cells.hpp"
 #include "systems/patch/grid.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// The cells before the grid moved.
@@ -206,4 +206,4 @@ void add_cells(const Grid& grid, const CellMove& move, std::span<const CellTract
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 
 #include "systems/math/wide_lanes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 void PatchScratch::reserve(const Model& model, const State& state) {
   if (state.patch_cells.empty()) {
@@ -30,4 +30,4 @@ void PatchScratch::reserve(const Model& model, const State& state) {
   tractions_before.assign(cells, CellTraction{});
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

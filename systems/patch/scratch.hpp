@@ -9,7 +9,7 @@
 #include "systems/patch/solver.hpp"
 #include "systems/patch/support.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// How far the body as a whole has moved the cells of one region, beside its RegionSupport, m:
 /// along the grid's axes and into the body.
@@ -34,4 +34,4 @@ struct PatchScratch {
   void reserve(const Model& model, const State& state);
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@
 #include "systems/patch/passes.hpp"
 #include "systems/patch/sums.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 // Share of the preconditioned residual that is taken where no step length can be computed: the
@@ -387,4 +387,4 @@ void release_cells(const PatchProblem& problem, const PatchColumns& columns, Pat
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -12,7 +12,7 @@
 #include "systems/patch/disc_projection.hpp"
 #include "systems/patch/support.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// One grid's cells as columns, (side x side) each, x fastest, and followed by zeros up to whole
 /// lanes (wide_lanes.hpp). Tractions are on the body; z points into it.
@@ -112,4 +112,4 @@ void displace_patch(const PatchProblem& problem, const PatchColumns& columns, Pa
 void release_cells(const PatchProblem& problem, const PatchColumns& columns, PatchWork& work,
                    double least_depth);
 
-}  // namespace torsion
+}  // namespace torsion::engine

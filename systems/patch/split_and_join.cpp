@@ -11,7 +11,7 @@
 #include "systems/patch/grid.hpp"
 #include "systems/patch/region.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 void copy_cells(State& state, Range from, Range to) {
@@ -201,4 +201,4 @@ void join_patch(StepContext& context, std::uint32_t ended, std::uint32_t heir) {
   own.resized = 1;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

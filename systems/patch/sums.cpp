@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 void add(std::span<double> to, double scale, const std::vector<double>& values) {
@@ -186,4 +186,4 @@ void move_by_traction(const PatchProblem& problem, PatchWork& work) {
               {work.response_x, work.response_y, {}});
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "systems/patch/passes.hpp"
 #include "systems/patch/solver.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// True when an iteration changes so little that it can be the last.
 inline bool has_converged(const PatchProblem& problem, const IterationChange& change,
@@ -79,4 +79,4 @@ double residual_of_pressures(const PatchColumns& columns);
 double residual_of_tractions(const PatchProblem& problem, const PatchColumns& columns,
                              PatchWork& work);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@
 #include "systems/math/lanes.hpp"
 #include "systems/math/wide_lanes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 // A body's compliances over those of its contact (yielding_ratio), above which the solver takes
@@ -344,4 +344,4 @@ void add_polynomials(const PatchSupport& support, const SupportPolynomials& poly
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -12,7 +12,7 @@
 #include "ecs/components.hpp"
 #include "ecs/state.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// How stiff a half-space is against displacements of a disc that are a SupportField's terms, over
 /// shear modulus and radius: S = Q' A^-1 Q, with A the half-space's influences of the disc's points
@@ -103,4 +103,4 @@ void add_support(const PatchSupport& support, const PatchField& tractions,
 void add_polynomials(const PatchSupport& support, const SupportPolynomials& polynomials,
                      const PatchField& displacements);
 
-}  // namespace torsion
+}  // namespace torsion::engine

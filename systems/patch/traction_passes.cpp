@@ -3,7 +3,7 @@
 #include "systems/math/lanes.hpp"
 #include "systems/patch/passes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kLeastSum = 1e-300;    // keeps 0 / 0 away
@@ -257,4 +257,4 @@ void clear_false_slip(const TractionColumns& cells) {
              cells.moved_x, cells.moved_y, cells.slips);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

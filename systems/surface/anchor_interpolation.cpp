@@ -8,7 +8,7 @@
 #include "systems/math/lanes.hpp"
 #include "systems/math/linear_algebra.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 std::vector<InterpolationRow> invert_interpolation(std::span<const glm::dvec3> centers) {
   constexpr std::size_t kFewest = 5;
@@ -147,4 +147,4 @@ double interpolate(const ScalarWeights& weights, std::span<const glm::dvec3> cen
   return value;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@
 #include "ecs/frame_world.hpp"
 #include "systems/surface/twist_and_dent.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The matrix that turns displacements at `centers` (and four zeros) into the weights w and the
 /// affine part: row-major, (n + 4)^2 values, unit 1 or 1/m. Load time only. Empty with fewer than
@@ -66,4 +66,4 @@ struct ScalarColumn {
 void interpolate_block(const InterpolationWeights& weights, const BlockVectors& points,
                        BlockVectors& field, std::span<const ScalarColumn> columns);
 
-}  // namespace torsion
+}  // namespace torsion::engine

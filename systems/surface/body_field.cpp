@@ -9,7 +9,7 @@
 #include "systems/math/frames.hpp"
 #include "systems/math/smooth_step.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kHeldBand =
@@ -302,4 +302,4 @@ glm::dvec3 middle_at(const BodyField& field, const glm::dvec3& point) {
   }
   return sum;
 }
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -15,7 +15,7 @@
 #include "systems/surface/anchor_interpolation.hpp"
 #include "systems/surface/twist_and_dent.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// How the whole body turns about a region's axis, beyond the half-space under it, and what becomes
 /// of the axis meanwhile (docs/models.md, "Large turns").
@@ -91,4 +91,4 @@ inline bool is_under_contact(const BodyTurn& turn, const glm::dvec3& point) {
 /// Displacement of the axes about which the body turns, at the height of a point [m, body].
 glm::dvec3 middle_at(const BodyField& field, const glm::dvec3& point);
 
-}  // namespace torsion
+}  // namespace torsion::engine

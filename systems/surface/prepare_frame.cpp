@@ -6,7 +6,7 @@
 #include "systems/surface/anchor_interpolation.hpp"
 #include "systems/surface/surface_field.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint32_t kHeldPoints =
@@ -177,4 +177,4 @@ FrameWorld prepare_frame(const SceneDescription& scene, const Model& model, cons
   return frame;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -15,7 +15,7 @@
 #include "systems/mdr/places.hpp"
 #include "systems/surface/take_snapshot.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr auto kDiscs = static_cast<double>(kFieldDiscs);
@@ -319,4 +319,4 @@ void region_fields(const Model& model, const State& state, const SnapshotTables&
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

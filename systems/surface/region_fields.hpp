@@ -10,7 +10,7 @@
 #include "ecs/snapshot.hpp"
 #include "ecs/state.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 struct SnapshotTables;  // systems/surface/take_snapshot.hpp
 
@@ -51,4 +51,4 @@ void discs_of_ring_turns(const RingProfiles& profiles, const RingTurns& rings, d
 void region_fields(const Model& model, const State& state, const SnapshotTables& tables,
                    Snapshot& snapshot);
 
-}  // namespace torsion
+}  // namespace torsion::engine

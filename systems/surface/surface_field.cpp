@@ -15,7 +15,7 @@
 #include "systems/surface/body_field.hpp"
 #include "systems/surface/twist_and_dent.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 TORSION_WIDEST
 void turn_block(const TwistAxis& axis, const BlockColumn& angles, BlockVectors& points) {
   float largest = 0.0F;
@@ -349,4 +349,4 @@ void surface_field(const Model& model, const Snapshot& snapshot, FrameWorld& fra
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 #include "ecs/snapshot.hpp"
 #include "ecs/state.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Load-time work for the frame: vertices, triangles, and the interpolation from anchors. `world`
 /// is the prepared world of the same scene.
@@ -23,4 +23,4 @@ void surface_field(const Model& model, const Snapshot& snapshot, FrameWorld& fra
 /// @param positions  (vertices of the body) out: xyz m, w the sum of the twist angles, rad
 void deform_vertices(const FrameWorld& frame, std::uint32_t body, std::span<glm::vec4> positions);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -18,7 +18,7 @@
 #include "systems/math/smooth_step.hpp"
 #include "systems/surface/region_fields.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::size_t kAnchorNumbers = std::size_t{3} * kAnchorsPerBody;
@@ -219,4 +219,4 @@ void take_snapshot(const Model& model, const State& state, const SnapshotTables&
   anchor_motions(model, state, snapshot);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 #include "systems/mdr/places.hpp"
 #include "systems/surface/region_fields.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Where the anchors of bodies with body model compliance are under the tractions of all regions,
 /// for those who draw them. Writes AnchorMotion and AnchorTurns.
@@ -34,4 +34,4 @@ SnapshotTables make_snapshot_tables(const State& state, const MdrTables& mdr);
 void take_snapshot(const Model& model, const State& state, const SnapshotTables& tables,
                    Snapshot& snapshot);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -15,7 +15,7 @@
 #include "systems/math/frames.hpp"
 #include "systems/math/smooth_step.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -332,4 +332,4 @@ RegionDent region_dent(const Model& model, const Snapshot& snapshot, std::uint32
   return dent;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -15,7 +15,7 @@
 #include "ecs/model.hpp"
 #include "ecs/snapshot.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 struct SineVersine {
   float sine = 0.0F;
@@ -208,4 +208,4 @@ struct RegionDent {
 RegionDent region_dent(const Model& model, const Snapshot& snapshot, std::uint32_t region,
                        const glm::dvec3& moved);
 
-}  // namespace torsion
+}  // namespace torsion::engine

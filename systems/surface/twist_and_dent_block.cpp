@@ -12,7 +12,7 @@
 #include "systems/math/smooth_step.hpp"
 #include "systems/surface/twist_and_dent.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kNearRadii = 4.0;  // radii: beyond there is nothing but the far field
@@ -250,4 +250,4 @@ void RegionDent::add_displacements(const BlockVectors& points, std::size_t used,
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -16,7 +16,7 @@
 #include "systems/math/frames.hpp"
 #include "systems/math/smooth_step.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kStiction = 1e-3;  // m/s: the least velocity with all of the static friction
@@ -135,4 +135,4 @@ const ContactLaw kWinklerLaw{
     .find_cells = find_overlap,
 };
 
-}  // namespace torsion
+}  // namespace torsion::engine

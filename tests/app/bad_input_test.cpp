@@ -8,7 +8,7 @@
 #include "tests/app/program.hpp"
 #include "tests/scenes/gltf_builder.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Folder;
@@ -212,4 +212,4 @@ TEST(ProgramBadInputTest, OutputThatCannotBeWrittenIsSaidAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@
 #include "tests/scenes/gltf_builder.hpp"
 #include "tests/support/paths.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using nlohmann::json;
@@ -166,4 +166,4 @@ TEST(CheckWarningTest, AToleranceThatIsNotReachedIsSaid) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

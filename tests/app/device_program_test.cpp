@@ -17,7 +17,7 @@
 #include "tests/device/mock_usb.hpp"
 #include "tests/support/waiting.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::comes_true;
@@ -151,4 +151,4 @@ TEST_F(DeviceProgramTest, ASessionFeelsTheBodyAndLetsGoWhenItIsInterrupted) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -14,7 +14,7 @@
 #include "tests/support/paths.hpp"
 #include "tests/support/waiting.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::EmulatedFalcon;
@@ -104,4 +104,4 @@ TEST(DeviceSessionTest, TheMotorsFeelTheBodyAndNothingOnceItIsPulledOut) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

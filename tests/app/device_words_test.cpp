@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 DeviceView live_view(std::uint8_t actuated) {
@@ -90,4 +90,4 @@ TEST(DeviceWordsTest, AMotorsErrorIsNamedWithWhatToDoInBannerAndSummary) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -20,7 +20,7 @@
 #include "tests/support/paths.hpp"
 #include "tests/support/studies.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 struct DrawnRun {
@@ -153,4 +153,4 @@ std::string drawn_name(const testing::TestParamInfo<DrawnRun>& run) {
 INSTANTIATE_TEST_SUITE_P(Scenes, DrawnTurnTest, testing::ValuesIn(drawn_runs()), drawn_name);
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -14,7 +14,7 @@
 
 #include "tests/app/program.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Folder;
@@ -189,4 +189,4 @@ TEST(ExportTest, WantsAMomentOrARecording) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,10 +10,10 @@ int main(int count, char** words) {
     std::fprintf(stderr, "usage: has_red_banner FILE\n");
     return 2;
   }
-  const torsion::Result<torsion::Image> image = torsion::read_png(words[1]);
+  const torsion::engine::Result<torsion::engine::Image> image = torsion::engine::read_png(words[1]);
   if (!image) {
     std::fprintf(stderr, "%s\n", image.error().text.c_str());
     return 2;
   }
-  return torsion::test::has_red_banner(image.value()) ? 0 : 1;
+  return torsion::engine::test::has_red_banner(image.value()) ? 0 : 1;
 }

@@ -14,7 +14,7 @@
 #include "systems/hold/tool_hold.hpp"
 #include "tests/support/paths.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 constexpr double kPeriod = 1e-3;   // s
@@ -137,4 +137,4 @@ LoopOutcome hold(const HeldScene& scene, const HandTraits& traits, double until,
   return outcome;
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -10,7 +10,7 @@
 #include "ecs/world.hpp"
 #include "tests/systems/hold/emulated_hand.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 struct LoopOutcome {
   double force = 0.0;           // N: length of the mean over the last half of the hold
@@ -39,4 +39,4 @@ double hardest(const HeldScene& scene);
 LoopOutcome hold(const HeldScene& scene, const HandTraits& traits, double until, double seconds,
                  const std::function<void(const World&)>& after_step = {});
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

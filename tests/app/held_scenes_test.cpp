@@ -15,7 +15,7 @@
 #include "tests/app/held_loop.hpp"
 #include "tests/support/studies.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::HandTraits;
@@ -122,4 +122,4 @@ INSTANTIATE_TEST_SUITE_P(Shipped, HeldSceneTest,
                          [](const auto& instance) { return std::string(instance.param); });
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

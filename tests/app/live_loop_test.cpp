@@ -15,7 +15,7 @@
 #include "tests/app/live_session.hpp"
 #include "tests/support/allocation_guard.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::AllocationGuard;
@@ -316,4 +316,4 @@ TEST(LiveLoopTest, ThreeThreadsShareNothingButBoxesAndTheRecordingGivesTheSameBi
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -3,7 +3,7 @@
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/test_cache.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 PrepareOptions ball_options() {
   PrepareOptions options;
@@ -26,4 +26,4 @@ Session ball_session() {
   return session;
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

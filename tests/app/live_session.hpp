@@ -6,7 +6,7 @@
 #include "app/live/live_loop.hpp"
 #include "app/live/recording.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// The ball of the paper's first experiment just over the cube, contact model mdr, no body model.
 Session ball_session();
@@ -35,4 +35,4 @@ class LiveThread {
   std::thread thread_;
 };
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -14,7 +14,7 @@
 #include "tests/app/small_disk.hpp"
 #include "tests/support/waiting.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Refreshes until it holds.
@@ -206,4 +206,4 @@ TEST(LiveSessionTest, AMouseHoldsNoDeeperThanTheModelsGo) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

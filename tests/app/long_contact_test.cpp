@@ -14,7 +14,7 @@
 #include "tests/support/paths.hpp"
 #include "tests/support/studies.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 constexpr std::uint32_t kAutoSide = 20;  // choose_models_test.cpp
@@ -118,4 +118,4 @@ TEST(LongContactTest, TurningBoxesAreAsAutoSays) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

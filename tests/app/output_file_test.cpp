@@ -10,7 +10,7 @@
 #include "tests/app/program.hpp"
 #include "tests/app/small_disk.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Folder;
@@ -164,4 +164,4 @@ TEST(OutputFileTest, OfSeveralAllAppearOrNone) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "tests/app/run_digest.hpp"
 
 int main(int count, char** arguments) {
-  using namespace torsion::test;
+  using namespace torsion::engine::test;
   const std::string path = count > 1 ? arguments[1] : pinned_file();
   std::vector<std::string> lines;
   {

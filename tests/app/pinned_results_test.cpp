@@ -12,7 +12,7 @@
 #include "tests/app/run_digest.hpp"
 #include "tests/support/studies.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 std::vector<std::string> pinned_lines() {
@@ -56,4 +56,4 @@ std::string test_name(const testing::TestParamInfo<PinnedRun>& run) {
 INSTANTIATE_TEST_SUITE_P(Scenes, PinnedResultTest, testing::ValuesIn(pinned_runs()), test_name);
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

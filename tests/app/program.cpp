@@ -12,7 +12,7 @@
 
 #include "tests/support/paths.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 Process::Process(const std::vector<std::string>& words) {
   const std::string out = folder_ / "out";
@@ -103,4 +103,4 @@ std::vector<std::string> fields_of(const std::string& line) {
   return fields;
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -6,7 +6,7 @@
 
 #include <sys/types.h>
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// What a run of the program torsion left.
 struct Ran {
@@ -69,4 +69,4 @@ void write_text(const std::string& path, const std::string& text);
 /// The fields of a line of a .csv, empty ones too.
 std::vector<std::string> fields_of(const std::string& line);
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

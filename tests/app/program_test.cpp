@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using nlohmann::json;
@@ -321,4 +321,4 @@ TEST(RenderTest, DrawsOneMomentAFolderAndAVideo) {
 #endif
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

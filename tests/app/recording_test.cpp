@@ -6,7 +6,7 @@
 #include "tests/app/small_disk.hpp"
 #include "tests/support/allocation_guard.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Folder;
@@ -200,4 +200,4 @@ TEST(RecordingTest, ReplayTakesTheMaterialFromItsStepOn) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -12,7 +12,7 @@
 
 #include "tests/app/program.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::fields_of;
@@ -303,4 +303,4 @@ TEST(ReportTest, MissingGnuplotIsSaidBeforeMeasuring) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

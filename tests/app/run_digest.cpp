@@ -12,7 +12,7 @@
 #include "tests/app/held_loop.hpp"
 #include "tests/support/paths.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 constexpr const char* kPinnedScenes[] = {
@@ -118,4 +118,4 @@ std::string pinned_file() {
   return source_folder() + "/tests/app/pinned_results.txt";
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -9,7 +9,7 @@
 
 #include "ecs/world.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// A chain of hashes (XXH3), a link a step: of every tool the pose, the wrench and the work, of
 /// every region its place in the order of formation, its pair, and what it exerts and where.
@@ -53,4 +53,4 @@ std::string pinned_line(const PinnedRun& run, std::uint64_t digest);
 /// tests/app/pinned_results.txt; `./dev pin` renews it.
 std::string pinned_file();
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 TEST(HistogramTest, QuantilesAreRightWithinABin) {
@@ -85,4 +85,4 @@ TEST(RunStatisticsTest, OtherModelsHaveNoResiduals) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -15,7 +15,7 @@
 #include "tests/support/paths.hpp"
 #include "tests/support/studies.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 SceneDescription case_scene(const std::string& name) {
@@ -228,4 +228,4 @@ TEST(SlenderBodyTest, AWideThinSlabCanBeHeldAtAPoint) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

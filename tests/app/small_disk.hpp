@@ -4,7 +4,7 @@
 
 #include <sys/resource.h>
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// While it lives no file of this process grows beyond a size, which a write hears of as it does of
 /// a full disk.
@@ -30,4 +30,4 @@ class SmallDisk {
   rlimit before_{};
 };
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -18,7 +18,7 @@
 #include "tests/support/standout.hpp"
 #include "tests/support/studies.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 struct SmoothRun {
@@ -155,4 +155,4 @@ INSTANTIATE_TEST_SUITE_P(Cases, SmoothForceTest, testing::ValuesIn(smooth_runs()
 INSTANTIATE_TEST_SUITE_P(Cases, CoarseStepsTest, testing::ValuesIn(coarse_runs()), test_name);
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -15,7 +15,7 @@
 #include "tests/reference/exact/hertz.hpp"
 #include "tests/support/paths.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 struct CurvePoint {
@@ -102,4 +102,4 @@ TEST(StickySceneTest, ItsFirstTwistIsNearBoundaryElements) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 std::string written(const std::vector<std::string>& tools, const std::vector<TraceRow>& rows) {
@@ -49,4 +49,4 @@ TEST(TraceTest, SeveralToolsHaveColumnsNamedAfterThem) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

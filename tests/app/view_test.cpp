@@ -14,7 +14,7 @@
 #include "app/view/tool_drag.hpp"
 #include "tests/app/program.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr glm::dvec2 kPicture(1280.0, 720.0);
@@ -170,4 +170,4 @@ TEST(SceneWatchTest, SaysOnceThatAFileOrItsBufferHasChanged) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

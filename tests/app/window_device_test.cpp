@@ -15,7 +15,7 @@
 #include "tests/device/mock_usb.hpp"
 #include "tests/support/waiting.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::EmulatedFalcon;
@@ -104,4 +104,4 @@ TEST_F(WindowDeviceTest, AFalconPressesTheToolAndItsLossIsSaidInRed) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

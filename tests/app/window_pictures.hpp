@@ -8,7 +8,7 @@
 
 #include "render/image.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// Whether the upper middle has the banner's red on it.
 inline bool has_red_banner(const Image& image) {
@@ -39,4 +39,4 @@ inline double changed(const Image& a, const Image& b, std::uint32_t left, std::u
   return count / (static_cast<double>(right - left) * (bottom - top));
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -11,7 +11,7 @@
 #include "tests/app/window_pictures.hpp"
 #include "tests/support/paths.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::changed;
@@ -109,4 +109,4 @@ TEST_F(WindowTest, ItsRecordingPlaysBack) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

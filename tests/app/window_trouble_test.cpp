@@ -12,7 +12,7 @@
 #include "tests/app/window_pictures.hpp"
 #include "tests/support/paths.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::read_text;
@@ -93,4 +93,4 @@ TEST_F(WindowTroubleTest, AfterwardsTheToolCanBeTakenAgain) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -15,7 +15,8 @@
 
 namespace {
 
-using namespace torsion;  // NOLINT(google-build-using-namespace): one program, one namespace
+using namespace torsion::engine;  // NOLINT(google-build-using-namespace): one program, one
+                                  // namespace
 
 /// A ball of radius 0.05 m, 2 mm deep in the top of the cube.
 void press(World& world) {

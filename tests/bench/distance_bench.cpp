@@ -17,7 +17,7 @@
 #include "tests/systems/geometry/distance_meshes.hpp"
 #include "tests/systems/geometry/field_world.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 World world_with(const std::vector<ShapePart>& shapes) {
@@ -164,4 +164,4 @@ BENCHMARK_CAPTURE(union_of_ten, all, false);
 BENCHMARK_CAPTURE(union_of_ten, near_only, true);
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -21,7 +21,8 @@
 
 namespace {
 
-using namespace torsion;  // NOLINT(google-build-using-namespace): one program, one namespace
+using namespace torsion::engine;  // NOLINT(google-build-using-namespace): one program, one
+                                  // namespace
 
 constexpr double kSeconds = 10.0;
 constexpr Nanoseconds kDevicePeriod = 1'000'300;

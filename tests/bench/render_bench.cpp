@@ -21,7 +21,8 @@
 
 namespace {
 
-using namespace torsion;  // NOLINT(google-build-using-namespace): one program, one namespace
+using namespace torsion::engine;  // NOLINT(google-build-using-namespace): one program, one
+                                  // namespace
 
 constexpr std::uint32_t kSquares = 128;  // 6 x 129 x 129 vertices
 constexpr int kFrames = 30;

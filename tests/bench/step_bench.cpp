@@ -26,7 +26,7 @@
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/paths.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using SteadyClock = std::chrono::steady_clock;
@@ -412,10 +412,10 @@ void register_longest_steps() {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine
 
 int main(int argc, char** argv) {
-  torsion::register_longest_steps();
+  torsion::engine::register_longest_steps();
   std::vector<char*> arguments(argv, argv + argc);
   std::string interleave = "--benchmark_enable_random_interleaving=true";
   arguments.insert(arguments.begin() + 1, interleave.data());
@@ -424,7 +424,7 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) {
     return 2;
   }
-  torsion::Rows rows;
+  torsion::engine::Rows rows;
   benchmark::RunSpecifiedBenchmarks(&rows);
   return 0;
 }

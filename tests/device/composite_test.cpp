@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 class CarriedToolTest : public testing::TestWithParam<std::size_t> {
@@ -80,4 +80,4 @@ TEST_P(CarriedToolTest, ForcesComeToTheWrenchAndAreTheLeast) {
 INSTANTIATE_TEST_SUITE_P(TwoAndThree, CarriedToolTest, testing::Values(2, 3));
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

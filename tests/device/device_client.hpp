@@ -2,7 +2,7 @@
 
 #include "device/drivers/driver.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// Who holds the devices in a test: wants one wrench while they are live, and remembers.
 struct DeviceClient {
@@ -19,4 +19,4 @@ struct DeviceClient {
   SampleSink sink() { return {this, on_sample}; }
 };
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

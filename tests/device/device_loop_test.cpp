@@ -8,7 +8,7 @@
 #include "tests/device/device_client.hpp"
 #include "tests/device/fake_bus.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::DeviceClient;
@@ -216,4 +216,4 @@ TEST(DeviceLoopTest, NoDeviceIsAskedForMoreThanItsOwnLimit) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

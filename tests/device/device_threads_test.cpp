@@ -9,7 +9,7 @@
 #include "device/handle_slot.hpp"
 #include "tests/device/fake_bus.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// The sink of a session, as far as threads see it.
@@ -80,4 +80,4 @@ TEST(DeviceThreadsTest, PosesAndWrenchesPassWholeWhileDevicesComeAndGo) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

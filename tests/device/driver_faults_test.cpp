@@ -9,7 +9,7 @@
 #include "tests/device/device_client.hpp"
 #include "tests/device/fake_bus.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Buffer;
@@ -149,4 +149,4 @@ TEST(DriverFaultsTest, SaysWhoKeepsItFromTheDeviceAndTriesAgain) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "tests/device/device_client.hpp"
 #include "tests/device/fake_bus.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Buffer;
@@ -336,4 +336,4 @@ TEST(OdriveDriverTest, SaysThatItIsNotCalibratedAndWhenItLeftItsControlWithoutAn
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 
 #include "tests/device/space_mouse_descriptor.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 constexpr std::uint32_t kFalconBaud = 0x2;       // 1.5 Mbaud, as firmware speaks
@@ -344,4 +344,4 @@ Buffer space_mouse_report(std::uint8_t id, std::array<std::int16_t, 3> axes) {
   return report;
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

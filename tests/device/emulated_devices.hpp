@@ -12,7 +12,7 @@
 
 #include "device/drivers/drivers.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 using Buffer = std::vector<std::uint8_t>;
 
@@ -86,4 +86,4 @@ Buffer descriptors_of(const EmulatedDevice& device);
 /// A SpaceMouse's report of three axes, raw counts; id 1 translation, 2 rotation.
 Buffer space_mouse_report(std::uint8_t id, std::array<std::int16_t, 3> axes);
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 constexpr double kSoon = 1e-4;     // s: a transfer's end
@@ -44,7 +44,7 @@ void FakeBus::unplug(std::size_t row) {
 
 void FakeBus::rest(std::size_t row) {
   UsbRequests requests;
-  torsion::rest(loop_, row, now_, requests);
+  torsion::engine::rest(loop_, row, now_, requests);
   execute(row, requests);
 }
 
@@ -199,4 +199,4 @@ void FakeBus::run_until(double time) {
   now_ = time;
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

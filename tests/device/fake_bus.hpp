@@ -11,7 +11,7 @@
 #include "device/device_loop.hpp"
 #include "tests/device/emulated_devices.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 inline constexpr double kStartTime = 0.5;  // s: by then a device that needs nobody is live
 
@@ -96,4 +96,4 @@ class FakeBus {
   std::mt19937 random_{1};
 };
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -106,4 +106,4 @@ TEST(FalconKinematicsTest, ACountIsAThirtiethOfADegree) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

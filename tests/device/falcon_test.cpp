@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// What the device sends: the same frame as it receives, with encoders for motors.
@@ -101,4 +101,4 @@ TEST(FalconTest, TakesTheLastOfSeveralPackets) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

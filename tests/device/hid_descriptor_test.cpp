@@ -6,7 +6,7 @@
 
 #include "tests/device/space_mouse_descriptor.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::kSpaceMouseDescriptor;
@@ -102,4 +102,4 @@ TEST(HidDescriptorTest, SurvivesAnyBytes) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

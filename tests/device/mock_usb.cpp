@@ -12,7 +12,7 @@
 #include <linux/ioctl.h>
 #include <linux/usbdevice_fs.h>
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 constexpr std::size_t kSetupSize = 8;
@@ -375,4 +375,4 @@ MockDevice& MockUsb::plug(EmulatedDevice device, std::string driver) {
   return *devices_.back();
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

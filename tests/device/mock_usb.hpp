@@ -16,7 +16,7 @@
 
 #include "tests/device/emulated_devices.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// One device on the emulated bus. Its ioctls come on a thread of umockdev.
 class MockDevice {
@@ -122,4 +122,4 @@ class MockUsb {
   std::vector<std::unique_ptr<MockDevice>> devices_;
 };
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

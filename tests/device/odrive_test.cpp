@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 TEST(OdriveTest, SendsTorqueAndAsksForPositionAtOnce) {
@@ -91,4 +91,4 @@ TEST(OdriveTest, SkipsALineThatIsTooLongAndGoesOn) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 
 #include "tests/support/directions.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::kUp;
@@ -105,4 +105,4 @@ TEST(ScriptedMotionTest, SameTimeGivesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

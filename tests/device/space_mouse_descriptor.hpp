@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// A report descriptor as a SpaceMouse has it: translation in report 1, rotation in report 2, two
 /// buttons and padding in report 3, a light in output report 4.
@@ -21,4 +21,4 @@ inline constexpr std::array<std::uint8_t, 99> kSpaceMouseDescriptor = {
     0x02, 0x85, 0x04, 0x05, 0x08, 0x09, 0x4B, 0x75, 0x01, 0x95, 0x01,  // report 4: a light
     0x91, 0x02, 0xC0, 0xC0};
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

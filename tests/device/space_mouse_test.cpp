@@ -5,7 +5,7 @@
 
 #include "tests/device/space_mouse_descriptor.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 SpaceMouseLayout described() {
@@ -133,4 +133,4 @@ TEST(SpaceMouseTest, TheOldestHaveYUp) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -15,7 +15,7 @@
 #include "tests/device/mock_usb.hpp"
 #include "tests/support/waiting.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::EmulatedFalcon;
@@ -198,4 +198,4 @@ TEST_F(UsbBusTest, IsPulledOutAtRandomMoments) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 TEST(WoodenHapticsTest, ReadsSixEncodersAndTheButton) {
@@ -107,4 +107,4 @@ TEST(WoodenHapticsTest, KeepsTheDirectionOfForcesThatAreTooLarge) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

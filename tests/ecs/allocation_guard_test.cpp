@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 // Written through, so that the compiler may not leave an allocation out.
@@ -76,4 +76,4 @@ TEST(AllocationGuardTest, LeavesOtherThreadsOut) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -8,7 +8,7 @@
 
 #include "tests/ecs/small_world.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 TEST(CheckStateTest, AWholeStatePasses) {
@@ -67,4 +67,4 @@ const std::vector<Damage> kDamages = {
 INSTANTIATE_TEST_SUITE_P(All, CheckStateDamageTest, testing::ValuesIn(kDamages));
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 #include "tests/ecs/small_world.hpp"
 #include "tests/support/allocation_guard.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 TEST(HashTest, EqualWorldsHaveEqualHashes) {
@@ -70,4 +70,4 @@ TEST(HashTest, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

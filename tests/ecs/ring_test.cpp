@@ -7,7 +7,7 @@
 
 #include "tests/support/allocation_guard.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 TEST(RingTest, ValuesComeOutInOrder) {
@@ -85,4 +85,4 @@ TEST(RingTest, TwoThreadsLoseNothingAndKeepTheOrder) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

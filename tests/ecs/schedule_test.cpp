@@ -9,7 +9,7 @@
 
 #include "tests/support/allocation_guard.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 struct Log {
@@ -82,4 +82,4 @@ TEST(ScheduleTest, RunAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

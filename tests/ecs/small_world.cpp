@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 template <class AnyTable>
@@ -121,4 +121,4 @@ World small_world(unsigned seed) {
   return world;
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

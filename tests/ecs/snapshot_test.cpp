@@ -8,7 +8,7 @@
 #include "tests/ecs/small_world.hpp"
 #include "tests/support/allocation_guard.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 template <class T>
@@ -72,4 +72,4 @@ TEST(SnapshotTest, RegionsMayComeAndGoBetweenCapturesWithoutAllocating) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

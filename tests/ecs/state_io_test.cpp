@@ -15,7 +15,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 48;
@@ -216,4 +216,4 @@ TEST_F(StateFileTest, AFailedSaveLeavesNothingBehind) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 
 #include "tests/support/allocation_guard.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 struct Mass {
@@ -117,4 +117,4 @@ TEST(TableDeathTest, ARowThatIsNotThereStopsTheProgram) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

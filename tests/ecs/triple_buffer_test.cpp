@@ -10,7 +10,7 @@
 
 #include "tests/support/allocation_guard.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 TEST(TripleBufferTest, TheReaderGetsTheNewestValueOnce) {
@@ -82,4 +82,4 @@ TEST(TripleBufferTest, TwoThreadsNeverSeeATornOrOlderValue) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -15,7 +15,7 @@
 #include "scenes/load_gltf.hpp"
 #include "tests/support/paths.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr int kDamagesOfAFile = 250;
@@ -136,4 +136,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, LoadGltfFuzzTest,
                          });
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "ecs/model_names.hpp"
 #include "tests/support/contact_scenes.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 class Dice {
@@ -143,4 +143,4 @@ RandomScene random_scene(std::uint64_t seed) {
   return random;
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

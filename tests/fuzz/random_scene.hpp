@@ -8,7 +8,7 @@
 #include "ecs/scene_description.hpp"
 #include "systems/step.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// What one tool of a random scene does: it comes down along -y and is pressed in, slides and turns
 /// about y at that depth, goes the same way back, and leaves.
@@ -33,4 +33,4 @@ struct RandomScene {
 /// shapes and meshes, also coarse ones with sharp edges, one or two parts, one or two tools.
 RandomScene random_scene(std::uint64_t seed);
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -8,7 +8,7 @@
 #include "tests/fuzz/scene_properties.hpp"
 #include "tests/support/studies.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 struct Seed {
@@ -47,4 +47,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const testing::TestParamInfo<Seed>& seed) { return std::string(seed.param.what); });
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

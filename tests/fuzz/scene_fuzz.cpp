@@ -18,8 +18,8 @@ int main(int count, char** words) {
   std::uint64_t seed = first;
   std::uint64_t broken = 0;
   for (; Clock::now() < end; ++seed) {
-    const torsion::test::RandomScene scene = torsion::test::random_scene(seed);
-    if (const auto property = torsion::test::broken_property(scene)) {
+    const torsion::engine::test::RandomScene scene = torsion::engine::test::random_scene(seed);
+    if (const auto property = torsion::engine::test::broken_property(scene)) {
       broken += 1;
       fmt::print("seed {}: {}\n  {}\n", seed, *property, scene.text);
       std::fflush(stdout);

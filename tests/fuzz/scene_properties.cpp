@@ -16,7 +16,7 @@
 #include "systems/scratch.hpp"
 #include "tests/support/standout.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 // Steps. Slow enough that ten of them are a small part of every motion.
@@ -398,4 +398,4 @@ std::optional<std::string> broken_property(const RandomScene& scene) {
   return straight.into_a_side ? std::nullopt : not_turned(random, straight, poses);
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -5,7 +5,7 @@
 
 #include "tests/fuzz/random_scene.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// Runs the scene along its tools' ways, which are smooth in time, and says which of these does not
 /// hold: every wrench is finite; no fault; no step's force stands out of its ten neighbours' median
@@ -14,4 +14,4 @@ namespace torsion::test {
 /// @return nothing where all hold, or the scene cannot be prepared, which is said in its own words
 std::optional<std::string> broken_property(const RandomScene& random);
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

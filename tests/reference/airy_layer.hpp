@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// A plane of an elastic layer that a wave cos k x with k = 1 loads, as rows by the coefficients
 /// (A, B, C, D) of Airy's function phi = [(A + B z) cosh z + (C + D z) sinh z] cos x. Displacements
@@ -28,4 +28,4 @@ inline AiryRows airy_rows(double poisson_ratio, double z) {
   return rows;
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 // Frictionless contact of a rigid shape with an elastic half-space, on a square grid, by the
 // plainest method that there is; for shapes that have no closed form.
@@ -103,4 +103,4 @@ DensePressure dense_pressure(double modulus, double half, int side, const Depth&
   return result;
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

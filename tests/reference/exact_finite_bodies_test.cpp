@@ -13,7 +13,7 @@
 #include "tests/reference/exact/quadrature.hpp"
 #include "tests/reference/printed_number.hpp"
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 namespace {
 
 using std::numbers::pi;
@@ -197,4 +197,4 @@ TEST(BarsTest, ConesMatchPrintedTwistsAndTheSumOfSlices) {
 }
 
 }  // namespace
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

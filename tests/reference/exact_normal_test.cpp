@@ -10,7 +10,7 @@
 #include "tests/reference/exact/quadrature.hpp"
 #include "tests/reference/printed_number.hpp"
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 namespace {
 
 using std::numbers::pi;
@@ -264,4 +264,4 @@ TEST(FlatPunchTest, PressureCarriesTheForceAndFarFieldIsThatOfAPoint) {
 }
 
 }  // namespace
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

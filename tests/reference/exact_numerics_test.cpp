@@ -7,7 +7,7 @@
 #include "tests/reference/exact/quadrature.hpp"
 #include "tests/reference/exact/stable_differences.hpp"
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 namespace {
 
 using std::numbers::pi;
@@ -86,4 +86,4 @@ TEST(StableDifferencesTest, SeriesMeetsTheClosedForm) {
 }
 
 }  // namespace
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -15,7 +15,7 @@
 #include "tests/reference/exact/torque_limits.hpp"
 #include "tests/reference/printed_number.hpp"
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 namespace {
 
 using std::numbers::pi;
@@ -271,4 +271,4 @@ TEST(TorqueLimitsTest, SpinOfTheLimitSurfaceIsHertzsLimit) {
 }
 
 }  // namespace
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

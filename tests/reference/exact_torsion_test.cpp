@@ -14,7 +14,7 @@
 #include "tests/reference/printed_number.hpp"
 #include "tests/reference/twisted_rubber.hpp"
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 namespace {
 
 using std::numbers::pi;
@@ -277,4 +277,4 @@ TEST(LubkinTest, TurnGivesTheSameAsTheHistory) {
 }
 
 }  // namespace
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -12,7 +12,7 @@
 #include "tests/reference/printed_number.hpp"
 #include "tests/reference/twisted_rubber.hpp"
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 namespace {
 
 using std::numbers::pi;
@@ -162,4 +162,4 @@ TEST(TwistFieldTest, ReversesToItsMirrorImage) {
 }
 
 }  // namespace
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

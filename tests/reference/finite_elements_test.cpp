@@ -13,7 +13,7 @@
 #include "tests/reference/exact/materials.hpp"
 #include "tests/support/paths.hpp"
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 namespace {
 
 /// One pose of a finite element case; see finite_elements/README.md.
@@ -123,4 +123,4 @@ TEST(FiniteElementsTest, TwoMeshesAgree) {
 }
 
 }  // namespace
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

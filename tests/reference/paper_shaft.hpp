@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// Equations (2)-(9) of the paper with one coefficient of friction, summed exactly over a disc:
 /// elastic-perfectly plastic torsion of a shaft of radius a and length l under uniform pressure F /
@@ -36,4 +36,4 @@ struct PaperShaft {
   }
 };
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

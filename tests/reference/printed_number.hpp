@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// Whether `value` is the `printed` number at the digits that were printed: within half a unit of
 /// the last one, and a hundredth for numbers that fall on the edge.
@@ -19,4 +19,4 @@ inline ::testing::AssertionResult rounds_to(double value, double printed, int si
          << " digits, off by " << (value - printed) / last << " of the last";
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -4,7 +4,7 @@
 #include "tests/reference/exact/lubkin.hpp"
 #include "tests/reference/exact/materials.hpp"
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 inline constexpr PressureShape kPressureShapes[] = {PressureShape::kWinkler, PressureShape::kHertz,
                                                     PressureShape::kUniform,
@@ -17,4 +17,4 @@ inline LubkinContact twisted_rubber(PressureShape shape = PressureShape::kHertz,
   return {shape, force, friction, sphere.radius, shear_modulus(3e6, 0.5)};
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -9,7 +9,7 @@
 
 #include "tests/render/render_scenes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr glm::vec3 kColor(0.1F, 0.2F, 0.3F);
@@ -130,4 +130,4 @@ TEST(ArrowsTest, FullForceIsAsLongAsTheScaleSays) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

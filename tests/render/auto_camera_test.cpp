@@ -4,7 +4,7 @@
 
 #include "tests/render/render_scenes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 TEST(AutoCameraTest, EveryVertexIsInThePicture) {
@@ -39,4 +39,4 @@ TEST(AutoCameraTest, AnEmptySceneGivesACamera) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -12,7 +12,7 @@
 #include "tests/render/gpu_fixture.hpp"
 #include "tests/render/render_scenes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// The largest position's size in the scenes below, m: what errors are relative to.
@@ -221,4 +221,4 @@ TEST_F(ComputePassesTest, LaterFramesReadLaterColumns) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

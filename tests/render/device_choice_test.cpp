@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 const std::array<DeviceFacts, 4> kDevices = {{
@@ -57,4 +57,4 @@ TEST(DeviceChoiceTest, NamesTheDriverToInstallWhenThereIsNoDevice) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 
 #include "tests/render/render_scenes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kAspect = 4.0 / 3.0;
@@ -156,4 +156,4 @@ TEST(FrameViewTest, PoseRowsPlaceAPoint) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -14,7 +14,7 @@
 #include "tests/support/image_compare.hpp"
 #include "tests/support/paths.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint32_t kWidth = 320;
@@ -104,4 +104,4 @@ TEST_F(GoldenTest, WrongPicturesAreSeen) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

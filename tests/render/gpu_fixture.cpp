@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-namespace torsion {
+namespace torsion::engine {
 
 void validate_across_submits() {
   // NOLINTNEXTLINE(concurrency-mt-unsafe): before any driver starts a thread
@@ -15,4 +15,4 @@ Renderer GpuTest::open(const RendererOptions& options, const FrameWorld& frame) 
   return must(Renderer::create(options, frame));
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 
 #include "render/renderer.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Switches synchronization validation on across submits too, which the layer of Debian 12 leaves
 /// off: without it nothing between two frames is looked at. Before the first Vulkan instance.
@@ -46,4 +46,4 @@ T must(Result<T> result) {
   return std::move(result).value();
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

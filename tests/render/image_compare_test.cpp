@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 Image gray(std::uint32_t width, std::uint32_t height, std::uint8_t level) {
@@ -62,4 +62,4 @@ TEST(ImageCompareTest, DifferencePictureIsBrightWhereTheyDiffer) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 class ImageIoTest : public testing::Test {
@@ -44,4 +44,4 @@ TEST_F(ImageIoTest, WhatIsNotAPictureIsRefused) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 
 #include "tests/render/render_scenes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 std::vector<glm::vec4> rest_positions(const FrameWorld& frame, std::uint32_t body) {
@@ -132,4 +132,4 @@ TEST(NormalRingsTest, BodiesCountFromTheirOwnFirstVertex) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

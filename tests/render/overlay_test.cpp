@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 OverlayContent full_content() {
@@ -84,4 +84,4 @@ TEST(OverlayTest, EmptyContentDrawsNothing) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 
 #include "ecs/assert.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// The six faces of the box from -1 to 1: x and y axes of each, x cross y pointing out.
@@ -201,4 +201,4 @@ TwistedCube twisted_cube(double turn, std::uint32_t squares) {
   return scene;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@
 #include "ecs/snapshot.hpp"
 #include "render/camera.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A triangle mesh to be drawn: one normal for each position.
 struct TestMesh {
@@ -60,4 +60,4 @@ struct TwistedCube {
 };
 TwistedCube twisted_cube(double turn, std::uint32_t squares);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@
 #include "tests/render/gpu_fixture.hpp"
 #include "tests/render/render_scenes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using Pixel = std::array<int, 3>;
@@ -264,4 +264,4 @@ TEST_F(RendererTest, UnknownDeviceNameIsAnErrorThatListsTheDevices) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "render/memory.hpp"
 #include "tests/render/gpu_fixture.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using Usage = vk::BufferUsageFlagBits;
@@ -109,4 +109,4 @@ TEST_F(ValidationTest, IsSilentWhereTheBarriersAre) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

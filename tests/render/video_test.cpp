@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 class VideoTest : public testing::Test {
@@ -70,4 +70,4 @@ TEST_F(VideoTest, SaysWhereFfmpegIsMissing) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

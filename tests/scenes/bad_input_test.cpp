@@ -11,7 +11,7 @@
 #include "scenes/load_gltf.hpp"
 #include "tests/scenes/gltf_builder.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 using nlohmann::json;
@@ -441,4 +441,4 @@ TEST(BadFileTest, EveryCutOfATextIsRefused) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -5,7 +5,7 @@
 #include "scenes/exact_shapes.hpp"
 #include "tests/scenes/gltf_builder.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 /// Every triangle with three vertices of its own, as exporters write flat shading.
@@ -187,4 +187,4 @@ TEST(ClosedMeshTest, GriddedCubeIsClosed) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -8,7 +8,7 @@
 #include "scenes/load_gltf.hpp"
 #include "tests/scenes/gltf_builder.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 using nlohmann::json;
@@ -137,4 +137,4 @@ TEST(DamagedFilesTest, EveryValueReplacedByEveryOddOneGetsAVerdict) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

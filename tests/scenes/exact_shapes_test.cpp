@@ -7,7 +7,7 @@
 
 #include "scenes/closed_mesh.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 using std::numbers::pi;
@@ -118,4 +118,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const testing::TestParamInfo<Solid>& solid) { return std::string(solid.param.name); });
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -4,7 +4,7 @@
 
 #include "tests/scenes/gltf_builder.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 using Object = tinygltf::Value::Object;
@@ -147,4 +147,4 @@ TEST(ExtrasTest, MaterialThenMeshThenNodeWinsInAWholeScene) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -7,7 +7,7 @@
 
 #include "tests/scenes/gltf_builder.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 constexpr double kFloatTolerance = 1e-8;  // m: positions of about 0.1 m are floats
@@ -208,4 +208,4 @@ TEST(FixedRegionsTest, SmallVolumeIsNotFlat) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

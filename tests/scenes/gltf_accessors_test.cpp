@@ -5,7 +5,7 @@
 #include "scenes/gltf_file.hpp"
 #include "tests/scenes/gltf_builder.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 using nlohmann::json;
@@ -154,4 +154,4 @@ TEST(GltfAccessorsTest, QuantisedPositionsReachTheBody) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

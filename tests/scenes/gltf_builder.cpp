@@ -6,7 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 using nlohmann::json;
@@ -202,4 +202,4 @@ std::filesystem::path TestFolder::write(const std::string& name, std::string_vie
   return path;
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

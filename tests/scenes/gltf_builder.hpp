@@ -12,7 +12,7 @@
 #include "ecs/surface.hpp"
 #include "scenes/load_gltf.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// The values as a glTF file holds them.
 template <class T>
@@ -92,4 +92,4 @@ class TestFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -6,7 +6,7 @@
 #include "device/scripted_motion.hpp"
 #include "tests/scenes/gltf_builder.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 // Positions are floats of about 0.1 m in the file: half a unit in their last place is 4e-9 m.
@@ -235,4 +235,4 @@ TEST(LoadGltfTest, EveryFaultOfAFileIsListedAtOnce) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

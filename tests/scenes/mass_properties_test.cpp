@@ -8,7 +8,7 @@
 #include "scenes/exact_shapes.hpp"
 #include "tests/scenes/gltf_builder.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 PartDescription box_part(const glm::dvec3& half_extent, const glm::dvec3& center) {
@@ -72,4 +72,4 @@ TEST(MassPropertiesTest, MovingTheCenterAddsTheParallelAxes) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -6,7 +6,7 @@
 
 #include "tests/scenes/gltf_builder.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 using nlohmann::json;
@@ -203,4 +203,4 @@ TEST(MeshPartsTest, DrawnMeshesFollowEachOther) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -9,7 +9,7 @@
 #include "device/scripted_motion.hpp"
 #include "tests/scenes/gltf_builder.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 const float kHalfRoot = static_cast<float>(std::sqrt(0.5));
@@ -261,4 +261,4 @@ TEST(MotionTest, FirstKeyOfBlenderMayBeAfterTheStart) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

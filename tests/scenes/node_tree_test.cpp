@@ -10,7 +10,7 @@
 
 #include "tests/scenes/gltf_builder.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 double largest_difference(const glm::dmat4& a, const glm::dmat4& b) {
@@ -140,4 +140,4 @@ TEST(NodeTreeTest, DeepTreesAreNoRecursion) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -4,7 +4,7 @@
 
 #include "tests/scenes/gltf_builder.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 using nlohmann::json;
@@ -64,4 +64,4 @@ TEST(PhysicsExtensionTest, DraftsThatSaySomethingElseAreNoHarm) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

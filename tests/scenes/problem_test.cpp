@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 TEST(ProblemTest, TextHasEveryPartInTurn) {
@@ -25,4 +25,4 @@ TEST(ProblemTest, SeveralStandOneUnderTheOther) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

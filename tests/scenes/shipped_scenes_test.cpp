@@ -16,7 +16,7 @@
 #include "tests/support/paths.hpp"
 #include "tests/support/test_cache.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 /// Paths below scenes/, those exported from Blender included.
@@ -177,4 +177,4 @@ TEST(ShippedScenesTest, ANewGridHoldsALopsidedContactAroundItsMiddle) {
 INSTANTIATE_TEST_SUITE_P(Scenes, ShippedSceneTest, testing::ValuesIn(shipped_scenes()), test_name);
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

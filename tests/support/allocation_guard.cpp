@@ -90,7 +90,7 @@ void free(void* block) {
 
 #endif
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 AllocationGuard::AllocationGuard()
     : allocations_before_(allocation_count), releases_before_(release_count) {}
@@ -103,4 +103,4 @@ std::uint64_t AllocationGuard::releases() const {
   return release_count - releases_before_;
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

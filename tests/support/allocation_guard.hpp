@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// Counts what the calling thread takes from and gives back to the heap while the guard lives,
 /// through any door: new, malloc, aligned_alloc, the insides of a library. Linking
@@ -26,4 +26,4 @@ class AllocationGuard {
   std::uint64_t releases_before_;
 };
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -8,7 +8,7 @@
 #include "systems/math/frames.hpp"
 #include "tests/support/test_cache.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 /// A box surface of n x n quads a face, welded, counter-clockwise from outside, with side 2 about
@@ -143,7 +143,7 @@ Hand::Hand(const SceneDescription& scene, const PrepareOptions& options) {
 
 void Hand::step_to(const std::vector<Pose>& next) {
   poses = next;
-  torsion::step(simulation_, poses);
+  torsion::engine::step(simulation_, poses);
 }
 
 void Hand::move(const glm::dvec3& shift, const glm::dvec3& turn_axis, double turn, int steps) {
@@ -160,4 +160,4 @@ void Hand::move(const glm::dvec3& shift, const glm::dvec3& turn_axis, double tur
   }
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -5,7 +5,7 @@
 #include "ecs/scene_description.hpp"
 #include "systems/step.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 // Scenes made in memory for tests of the step, so that a test shows all that it depends on.
 
@@ -54,4 +54,4 @@ class Hand {
   Simulation simulation_;
 };
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -4,7 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& symmetric) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly)
@@ -24,4 +24,4 @@ Eigen::MatrixXd solve_definite(const Eigen::MatrixXd& a, const Eigen::MatrixXd& 
   return a.llt().solve(b);
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -4,7 +4,7 @@
 
 // Eigen's decompositions as tests use them, compiled once and optimized.
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// Of a symmetric matrix, rising.
 Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& symmetric);
@@ -17,4 +17,4 @@ Eigen::MatrixXd inverse(const Eigen::MatrixXd& matrix);
 /// X of A X = B for a symmetric, positive definite A.
 Eigen::MatrixXd solve_definite(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -4,7 +4,7 @@
 
 #include "systems/geometry/distance.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// Memory for many points' distances at once.
 class PointBatch {
@@ -34,4 +34,4 @@ class PointBatch {
   std::vector<double> memory_;
 };
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -6,7 +6,7 @@
 
 #include "render/image_io.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint32_t kBlock = 8;  // pixels
@@ -115,4 +115,4 @@ testing::AssertionResult matches_golden(const Image& actual, const std::filesyst
   return failure;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 
 #include "render/image.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// How far two pictures of one size are from each other.
 struct ImageDifference {
@@ -43,4 +43,4 @@ Image difference_picture(const Image& actual, const Image& golden);
 testing::AssertionResult matches_golden(const Image& actual, const std::filesystem::path& golden,
                                         const std::filesystem::path& kept);
 
-}  // namespace torsion
+}  // namespace torsion::engine

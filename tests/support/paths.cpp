@@ -1,6 +1,6 @@
 #include "tests/support/paths.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 std::string source_folder() {
   return TORSION_SOURCE_DIR;
@@ -14,4 +14,4 @@ std::string shipped_scene(const std::string& name) {
   return source_folder() + "/scenes/" + name + ".gltf";
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

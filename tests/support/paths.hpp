@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// The project's root folder, where the tests' own files are.
 std::string source_folder();
@@ -14,4 +14,4 @@ std::string build_folder();
 /// @param name  without ".gltf"
 std::string shipped_scene(const std::string& name);
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 inline double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -55,4 +55,4 @@ inline Standout largest_standout(const std::vector<glm::dvec3>& vectors, double 
   return largest;
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// Whether tests that look at many cases of a kind look at all of them (`./dev test --all`), or at
 /// as many as a run for every change has the time for.
@@ -23,4 +23,4 @@ inline int trials_of(int all, int of = 5) {
 
 inline constexpr const char* kLeftOut = "one of many of its kind: ./dev test --all looks at it";
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <thread>
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// How long a test waits for what another thread or process is to do, s: far longer than any
 /// machine takes that runs other tests beside it, under a sanitizer.
@@ -23,4 +23,4 @@ bool comes_true(F&& holds) {
   return false;
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -10,7 +10,7 @@
 #include "systems/model/prepare.hpp"
 #include "systems/step.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -192,4 +192,4 @@ std::uint32_t add_region(World& world, const RegionOnBody& region) {
   return row;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

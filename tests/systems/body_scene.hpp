@@ -9,7 +9,7 @@
 #include "ecs/scene_description.hpp"
 #include "ecs/world.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A closed mesh of the shape's surface, about `cells` cells along an edge or a quarter turn.
 SurfaceMesh shape_surface(ShapeKind kind, const glm::dvec3& half_extent, std::uint32_t cells);
@@ -36,4 +36,4 @@ struct RegionOnBody {
 /// Adds a region of tool 0 on body 0; its row.
 std::uint32_t add_region(World& world, const RegionOnBody& region);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -12,7 +12,7 @@
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/studies.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr glm::dvec3 kUp(0.0, 1.0, 0.0);
@@ -157,4 +157,4 @@ TEST(ColumnWritersTest, NoSystemChangesWhatItDoesNotDeclareAndAllThatItDeclaresI
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

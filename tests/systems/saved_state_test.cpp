@@ -7,7 +7,7 @@
 #include "systems/scratch.hpp"
 #include "tests/support/contact_scenes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Presses, turns and slides, so that every table has something to carry over.
@@ -82,4 +82,4 @@ TEST(CopiedStateTest, TwoCopiesWithDifferentPosesDoNotDisturbEachOther) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -3,7 +3,7 @@
 #include "systems/scratch.hpp"
 #include "tests/support/contact_scenes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Hand;
@@ -73,4 +73,4 @@ TEST(ScheduleOfScenesTest, ABodyModelNoneLeavesTheSkeletonOut) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

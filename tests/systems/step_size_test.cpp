@@ -13,7 +13,7 @@
 #include "tests/reference/exact/torque_limits.hpp"
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -201,4 +201,4 @@ INSTANTIATE_TEST_SUITE_P(Cases, StepSizeTest, testing::ValuesIn(kStepCases),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "systems/contact/scratch.hpp"
 #include "systems/math/linear_algebra.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -429,4 +429,4 @@ void compliance(StepContext& context) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

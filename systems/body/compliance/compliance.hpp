@@ -5,7 +5,7 @@
 #include "systems/contact/step_context.hpp"
 #include "systems/contact/support/body_law.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 extern const BodyLaw kComplianceLaw;
 
@@ -31,4 +31,4 @@ struct ComplianceScratch {
 /// own compliance and follows by plain iteration.
 void compliance(StepContext& context);
 
-}  // namespace torsion
+}  // namespace torsion::engine

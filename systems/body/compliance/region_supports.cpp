@@ -8,7 +8,7 @@
 #include "systems/contact/law.hpp"
 #include "systems/contact/scratch.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Motion of each of two regions that were one by a wrench on the other.
@@ -159,4 +159,4 @@ void join_support(const Model& model, State& state, std::uint32_t ended, std::ui
   state.regions.at<RegionReaction>(heir) = RegionReaction{};
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -17,7 +17,7 @@
 #include "systems/half_space/layer.hpp"
 #include "systems/math/linear_algebra.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// The smallest allowed eigenvalue of K^(1/2) C K^(1/2). At -1 no compliance would be left;
@@ -349,4 +349,4 @@ Matrix6 layer_motion(const Model& model, std::uint32_t body, const ContactEllips
   return motion;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

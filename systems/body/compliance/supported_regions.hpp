@@ -9,7 +9,7 @@
 #include "systems/contact/support/contact_load.hpp"
 #include "systems/contact/support/support_fit.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A region on a body with body model compliance.
 struct SupportedRegion {
@@ -92,4 +92,4 @@ void split_support(const Model& model, State& state, std::uint32_t from, std::ui
 /// BodyLaw::join. Writes RegionSupport and RegionReaction.
 void join_support(const Model& model, State& state, std::uint32_t ended, std::uint32_t heir);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "systems/math/frames.hpp"
 #include "systems/math/linear_algebra.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using Complex = std::complex<double>;
@@ -165,4 +165,4 @@ glm::dvec3 beam_reference(const FixedRegion& fixed, const Bounds& bounds) {
   return length > 1e-6 * size ? to_middle / length : glm::dvec3(0.0, 1.0, 0.0);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 
 #include "ecs/model.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Area and moments of a polygon, about its centroid.
 struct PolygonMoments {
@@ -40,4 +40,4 @@ TransverseAxes transverse_axes(const glm::dvec3& direction, const glm::dvec3& re
 /// normal, else from the fixed point to the middle of the body's box.
 glm::dvec3 beam_reference(const FixedRegion& fixed, const Bounds& bounds);
 
-}  // namespace torsion
+}  // namespace torsion::engine

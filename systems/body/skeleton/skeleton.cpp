@@ -8,7 +8,7 @@
 #include "systems/body/skeleton/beam_sections.hpp"
 #include "systems/contact/law.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kStations = static_cast<double>(kBeamStations);
@@ -188,4 +188,4 @@ void main_beams(StepContext& context) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "systems/contact/step_context.hpp"
 #include "systems/contact/support/body_law.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// The straight beam from a body's fixed point q_f (its root) to a point of the surface, cut into
 /// kBeamStations pieces of equal length and constant section.
@@ -73,4 +73,4 @@ BeamSpring beam_spring(const MainBeam& beam, const Elasticity& elasticity);
 /// whose body model is kSkeleton, to where p_eq was at rest. Writes ContactScratch::beams.
 void main_beams(StepContext& context);
 
-}  // namespace torsion
+}  // namespace torsion::engine

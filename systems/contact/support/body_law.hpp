@@ -6,7 +6,7 @@
 
 #include "ecs/state.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// One body model: how the material under a region has been moved by what presses on the body.
 struct BodyLaw {
@@ -40,4 +40,4 @@ inline const BodyLaw& body_law_of(const Model& model, std::uint32_t body) {
   return body_law(model.bodies.at<BodyModels>(body).body);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -16,7 +16,7 @@
 #include "systems/math/lanes.hpp"
 #include "systems/math/linear_algebra.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// One region's cells.
@@ -335,4 +335,4 @@ SupportAnswer support_answer(const Model& model, const State& state, std::uint32
   return found;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

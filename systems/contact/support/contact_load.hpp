@@ -10,7 +10,7 @@
 #include "systems/contact/scratch.hpp"
 #include "systems/contact/support/support_fit.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// What a region's contact does to the material.
 struct ContactLoad {
@@ -55,4 +55,4 @@ SupportAnswer support_answer(const Model& model, const State& state, std::uint32
                              const OwnAnswer& answer, const ContactLoads& more,
                              const ContactLoads& accounted);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "systems/math/lanes.hpp"
 #include "systems/math/linear_algebra.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 glm::dvec3 displacement_at(const SupportField& field, const glm::dvec3& point) {
   const glm::dvec3 from = point - field.origin;
   const auto terms = support_terms(support_coordinates(
@@ -371,4 +371,4 @@ void find_response(const PortCompliance& body, const SupportFit& support_fit,
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

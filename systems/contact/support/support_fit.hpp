@@ -16,7 +16,7 @@
 #include "systems/half_space/curved_influence.hpp"
 #include "systems/math/linear_algebra.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Degree of each of a SupportField's terms.
 inline constexpr std::array<int, kSupportTerms> kSupportDegrees{0, 1, 1, 2, 2, 2, 3, 3,
@@ -146,4 +146,4 @@ SurfaceBend find_surface_bend(const Model& model, std::uint32_t body, const Supp
 /// Whether any surface of the body may be curved at all.
 bool may_bend(const Model& model, std::uint32_t body);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 #include "systems/geometry/distance.hpp"
 #include "systems/math/frames.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Of the elements' length. Ports that are nearer to each other than this influence each other as
@@ -86,4 +86,4 @@ bool may_bend(const Model& model, std::uint32_t body) {
                              [](const ShapePart& part) { return part.kind != ShapeKind::kBox; });
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

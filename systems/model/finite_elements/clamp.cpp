@@ -5,7 +5,7 @@
 
 #include "systems/model/finite_elements/grid.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// A clamped node that is this near to the clamp's end stays: the search for a face's nodes allows
@@ -113,4 +113,4 @@ void fit_clamp(const ElasticSolid& solid, SolidGrid& grid) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -19,7 +19,7 @@
 #include "systems/model/finite_elements/loads.hpp"
 #include "systems/model/finite_elements/solver.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint32_t kVersion = 6;  // raise it when the same solid and ports give other numbers
@@ -362,4 +362,4 @@ Result<SmoothCompliance> build_smooth_compliance(const ElasticSolid& solid,
   return compliance;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -14,7 +14,7 @@
 #include "systems/half_space/fields.hpp"
 #include "systems/model/expected_rolling.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A linear elastic body, at rest and free but for where it is clamped.
 struct ElasticSolid {
@@ -95,4 +95,4 @@ std::vector<Port> choose_ports(const ElasticSolid& solid, std::uint32_t count,
 double port_distance_over_thickness(const ElasticSolid& solid, std::span<const Port> ports,
                                     const ExpectedPlace& expected);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 
 #include "systems/geometry/bounds.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// Cells and nodes of a lattice over the bounds, x fastest.
@@ -379,4 +379,4 @@ Result<SolidGrid> build_solid_grid(const ElasticSolid& solid, std::uint32_t elem
   return grid;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 
 #include "systems/model/finite_elements/compliance.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Hexahedra of a lattice that fills a solid, with the surface's nodes moved onto its surface.
 struct SolidGrid {
@@ -46,4 +46,4 @@ inline constexpr std::array<std::array<std::uint32_t, 4>, 6> kElementSides{
 /// The corners of element `element`.
 std::array<glm::dvec3, 8> element_corners(const SolidGrid& grid, std::size_t element);
 
-}  // namespace torsion
+}  // namespace torsion::engine

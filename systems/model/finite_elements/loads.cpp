@@ -14,7 +14,7 @@
 #include "systems/math/linear_algebra.hpp"
 #include "systems/math/smooth_step.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// The distance from a port within which the surface counts as the contact's own surroundings: wide
@@ -289,4 +289,4 @@ MotionFit fit_motion(const SolidGrid& grid, const glm::dvec3& point) {
   return fit;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

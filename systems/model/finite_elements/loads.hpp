@@ -7,7 +7,7 @@
 
 #include "systems/model/finite_elements/grid.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Three rows for each node of a grid, one column for each unit wrench: force along, then torque
 /// about, the body's axes; the first three alone where forces are all.
@@ -36,4 +36,4 @@ struct MotionFit {
 
 MotionFit fit_motion(const SolidGrid& grid, const glm::dvec3& point);
 
-}  // namespace torsion
+}  // namespace torsion::engine

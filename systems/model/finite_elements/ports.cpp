@@ -10,7 +10,7 @@
 #include "systems/model/finite_elements/compliance.hpp"
 #include "systems/model/finite_elements/solid_surface.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// The end of the line from the clamp through the middle of the body: where contacts are likeliest.
@@ -331,4 +331,4 @@ double port_distance_over_thickness(const ElasticSolid& solid, std::span<const P
   return *at;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -127,4 +127,4 @@ std::vector<double> walls_at(const ElasticSolid& solid, std::span<const Port> po
   return walls;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -5,7 +5,7 @@
 
 #include "systems/model/finite_elements/compliance.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// Points spread over a solid's surface.
 struct SurfacePoints {
@@ -32,4 +32,4 @@ std::vector<double> walls_at(const ElasticSolid& solid, std::span<const Port> po
 /// That of the solid's thin walls, m: of its free surface a tenth has less behind it.
 double wall_thickness(const ElasticSolid& solid, const SurfacePoints& points);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -12,7 +12,7 @@
 
 #include "systems/model/finite_elements/grid.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr int kModes = 18;
@@ -298,4 +298,4 @@ void solve_stiffness(const StiffnessFactor& factor, NodeColumns& columns) {
   }
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

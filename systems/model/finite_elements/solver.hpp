@@ -11,7 +11,7 @@
 #include "ecs/result.hpp"
 #include "systems/model/finite_elements/grid.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 using ElementStiffness = Eigen::Matrix<double, 24, 24>;
 
@@ -63,4 +63,4 @@ Result<StiffnessFactor> factor_stiffness(
 /// @param columns  3 factor.free_nodes rows
 void solve_stiffness(const StiffnessFactor& factor, NodeColumns& columns);
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -29,9 +29,9 @@ std::filesystem::path own_folder() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const std::filesystem::path folder = own_folder();
-  static const torsion::SurfaceMesh mesh =
-      torsion::test::tessellate(torsion::ShapeKind::kBox, glm::dvec3(0.01), 2);
-  static const auto whole = torsion::load_or_build_distance_field({mesh, mesh});
+  static const torsion::engine::SurfaceMesh mesh =
+      torsion::engine::test::tessellate(torsion::engine::ShapeKind::kBox, glm::dvec3(0.01), 2);
+  static const auto whole = torsion::engine::load_or_build_distance_field({mesh, mesh});
   // The file that it has written, with the input over its end.
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     std::fstream file(entry.path(), std::ios::binary | std::ios::in | std::ios::out);
@@ -40,7 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                std::ios::end);
     file.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   }
-  const auto again = torsion::load_or_build_distance_field({mesh, mesh});
+  const auto again = torsion::engine::load_or_build_distance_field({mesh, mesh});
   if (!again || again.value().nodes.size() != whole.value().nodes.size()) {
     std::abort();
   }

@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::ofstream file(path, std::ios::binary);
     file.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   }
-  const torsion::LoadedScene loaded = torsion::load_gltf(path);
+  const torsion::engine::LoadedScene loaded = torsion::engine::load_gltf(path);
   std::filesystem::remove(path);
   if (loaded.scene.has_value() == !loaded.problems.empty()) {
     std::abort();  // both, or neither

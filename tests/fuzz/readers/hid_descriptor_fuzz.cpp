@@ -7,14 +7,14 @@
 #include "device/protocols/space_mouse.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const torsion::Bytes bytes(data, size);
+  const torsion::engine::Bytes bytes(data, size);
   const std::size_t cut = size > 0 ? std::min<std::size_t>(data[0] * std::size_t{4}, size) : 0;
-  const auto inputs = torsion::parse_hid_descriptor(bytes.first(cut));
-  const auto layout = inputs ? torsion::space_mouse_layout(*inputs) : std::nullopt;
-  torsion::SpaceMouseState state;
-  for (const auto& one : {layout, std::optional(torsion::usual_space_mouse_layout())}) {
+  const auto inputs = torsion::engine::parse_hid_descriptor(bytes.first(cut));
+  const auto layout = inputs ? torsion::engine::space_mouse_layout(*inputs) : std::nullopt;
+  torsion::engine::SpaceMouseState state;
+  for (const auto& one : {layout, std::optional(torsion::engine::usual_space_mouse_layout())}) {
     if (one) {
-      torsion::take_space_mouse_report(*one, bytes.subspan(cut), state);
+      torsion::engine::take_space_mouse_report(*one, bytes.subspan(cut), state);
     }
   }
   return 0;

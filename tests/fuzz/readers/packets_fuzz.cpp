@@ -11,25 +11,27 @@
 #include "device/protocols/wooden_haptics.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  torsion::Bytes rest(data, size);
-  torsion::FalconStream falcon;
-  torsion::OdriveStream odrive;
-  torsion::OdriveStream version;
+  torsion::engine::Bytes rest(data, size);
+  torsion::engine::FalconStream falcon;
+  torsion::engine::OdriveStream odrive;
+  torsion::engine::OdriveStream version;
   bool versioned = false;
   while (!rest.empty()) {
     const std::size_t length = std::min<std::size_t>(rest[0] % 64 + 1, rest.size());
-    const torsion::Bytes transfer = rest.first(length);
+    const torsion::engine::Bytes transfer = rest.first(length);
     rest = rest.subspan(length);
     const std::string_view text(reinterpret_cast<const char*>(transfer.data()), transfer.size());
-    if (const auto input = torsion::take_ftdi_packet(falcon, transfer)) {
-      torsion::falcon_forward(torsion::falcon_joint_angles(*input), {0.0, 0.0, 0.115});
+    if (const auto input = torsion::engine::take_ftdi_packet(falcon, transfer)) {
+      torsion::engine::falcon_forward(torsion::engine::falcon_joint_angles(*input),
+                                      {0.0, 0.0, 0.115});
     }
-    torsion::take_odrive_bytes(odrive, text);
-    versioned = versioned || torsion::take_odrive_version(version, text).has_value();
-    if (const auto input = torsion::decode_wooden(transfer)) {
-      const auto geometry = torsion::wooden_haptics_2015();
-      torsion::wooden_currents(geometry, torsion::wooden_body_angles(geometry, *input),
-                               glm::dvec3(1.0, -2.0, 3.0));
+    torsion::engine::take_odrive_bytes(odrive, text);
+    versioned = versioned || torsion::engine::take_odrive_version(version, text).has_value();
+    if (const auto input = torsion::engine::decode_wooden(transfer)) {
+      const auto geometry = torsion::engine::wooden_haptics_2015();
+      torsion::engine::wooden_currents(geometry,
+                                       torsion::engine::wooden_body_angles(geometry, *input),
+                                       glm::dvec3(1.0, -2.0, 3.0));
     }
   }
   return 0;

@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     file.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
     file.write(reinterpret_cast<const char*>(&checksum), sizeof checksum);
   }
-  const auto recording = torsion::load_recording(path);
+  const auto recording = torsion::engine::load_recording(path);
   std::filesystem::remove(path);
   return recording || !recording.error().text.empty() ? 0 : 1;
 }

@@ -18,7 +18,7 @@
 namespace {
 
 struct Base {
-  torsion::Model model;
+  torsion::engine::Model model;
   std::vector<std::byte> bytes;
   std::size_t content = 0;  // where it begins, behind the header, which ends with its checksum
 };
@@ -28,13 +28,13 @@ std::uint64_t checksum_of(std::span<const std::byte> content) {
 }
 
 Base make_base() {
-  torsion::PrepareOptions options;
-  options.contact_model = torsion::ContactModel::kMdr;
-  options.body_model = torsion::BodyModel::kNone;
+  torsion::engine::PrepareOptions options;
+  options.contact_model = torsion::engine::ContactModel::kMdr;
+  options.body_model = torsion::engine::BodyModel::kNone;
   options.use_cache = false;
-  auto simulation = torsion::prepare(torsion::test::ball_on_cube(), options);
-  torsion::World& world = simulation.value().world;
-  std::vector<std::byte> bytes = torsion::to_bytes(world.model, world.state);
+  auto simulation = torsion::engine::prepare(torsion::engine::test::ball_on_cube(), options);
+  torsion::engine::World& world = simulation.value().world;
+  std::vector<std::byte> bytes = torsion::engine::to_bytes(world.model, world.state);
   Base base{std::move(world.model), std::move(bytes), 0};
   for (std::size_t at = sizeof(std::uint64_t); at < 256; ++at) {
     std::uint64_t there = 0;
@@ -61,6 +61,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const std::uint64_t checksum = checksum_of(std::span(bytes).subspan(base.content));
   std::memcpy(bytes.data() + base.content - sizeof checksum, &checksum, sizeof checksum);
-  const auto state = torsion::from_bytes(bytes, base.model, "fuzz");
+  const auto state = torsion::engine::from_bytes(bytes, base.model, "fuzz");
   return state || !state.error().text.empty() ? 0 : 1;
 }

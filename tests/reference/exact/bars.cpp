@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 namespace {
 
@@ -51,4 +51,4 @@ double cone_twist(double torque, double shear_modulus, double length, double rad
          (3.0 * pi * shear_modulus * std::pow(radius * other_radius, 3));
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// Torsion of straight bars by Saint-Venant: free warping, ends far away. J is the torsion
 /// constant, m^4; the torque of a bar of the length L, N m, is G J twist / L. Source: Timoshenko
@@ -25,4 +25,4 @@ double rectangle_largest_shear(double shear_modulus, double side, double other_s
 double cone_twist(double torque, double shear_modulus, double length, double radius,
                   double other_radius);
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

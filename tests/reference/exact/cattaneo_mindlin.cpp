@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 namespace {
 
@@ -95,4 +95,4 @@ double tangential_loss_per_cycle(const CattaneoMindlin& contact, double force_am
   return unit * sum;
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// A Hertz contact (circle) that is pushed sideways at constant normal force, with Coulomb
 /// friction: the rim slips, a disc of radius c sticks. Source of all: Cattaneo 1938; Mindlin, J.
@@ -52,4 +52,4 @@ double tangential_traction_after_turn(const CattaneoMindlin& contact, double tur
 /// cancels).
 double tangential_loss_per_cycle(const CattaneoMindlin& contact, double force_amplitude);
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

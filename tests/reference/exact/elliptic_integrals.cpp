@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 CompleteElliptic complete_elliptic(double m, double complement) {
   assert(m >= 0.0 && complement >= 0.0 && std::abs(m + complement - 1.0) < 1e-12);
@@ -42,4 +42,4 @@ double elliptic_e(double m) {
   return complete_elliptic(m, 1.0 - m).e;
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// Complete elliptic integrals of one parameter m (the square of the modulus k), and the two
 /// differences in which the textbooks' formulas cancel: each is a sum of terms of one sign here, so
@@ -26,4 +26,4 @@ double elliptic_k(double m);
 /// E(m), 0 <= m <= 1. Error: relative under 1e-14.
 double elliptic_e(double m);
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

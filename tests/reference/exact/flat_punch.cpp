@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 double flat_punch_force(const FlatPunch& punch) {
   return 2.0 * punch.modulus * punch.radius * punch.depth;
@@ -34,4 +34,4 @@ double bonded_punch_ratio(double poisson) {
   return gap == 0.0 ? 1.0 : (1.0 - poisson) * std::log1p(2.0 * gap) / gap;
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// A rigid flat circular punch pressed on an elastic half-space without friction.
 /// Source: Boussinesq 1885; Sneddon, Int. J. Eng. Sci. 3 (1965) 47. Error: closed forms, relative
@@ -25,4 +25,4 @@ double flat_punch_displacement(const FlatPunch& punch, double r);
 /// relative under 1e-14, 0 <= nu <= 0.5.
 double bonded_punch_ratio(double poisson);
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

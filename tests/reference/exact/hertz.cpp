@@ -7,7 +7,7 @@
 
 #include "tests/reference/exact/stable_differences.hpp"
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 namespace {
 
@@ -82,4 +82,4 @@ SneddonSphere sneddon_sphere_at_depth(double sphere_radius, double modulus, doub
                                   std::min(sphere_radius * std::tanh(high), largest));
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

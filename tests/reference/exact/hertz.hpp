@@ -1,6 +1,6 @@
 #pragma once
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// A rigid sphere pressed on an elastic half-space without friction, in Hertz's approximation
 /// (paraboloid). Lengths m, moduli Pa, forces N. Source of all: Johnson, Contact Mechanics, 1985,
@@ -43,4 +43,4 @@ SneddonSphere sneddon_sphere_at_radius(double sphere_radius, double modulus, dou
 /// 1e-12.
 SneddonSphere sneddon_sphere_at_depth(double sphere_radius, double modulus, double depth);
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -8,7 +8,7 @@
 #include "tests/reference/exact/elliptic_integrals.hpp"
 #include "tests/reference/exact/quadrature.hpp"
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 namespace {
 
@@ -126,4 +126,4 @@ double hertz_ellipse_displacement(const HertzEllipse& contact, double x, double 
   return 0.5 * contact.peak_pressure * contact.major * contact.minor / contact.modulus * integral;
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// A rigid body with two principal radii of curvature pressed on an elastic half-space without
 /// friction: the contact is an ellipse. Source of all: Hertz 1882; Johnson, Contact Mechanics,
@@ -30,4 +30,4 @@ double hertz_ellipse_pressure(const HertzEllipse& contact, double x, double y);
 /// of the place.
 double hertz_ellipse_displacement(const HertzEllipse& contact, double x, double y);
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

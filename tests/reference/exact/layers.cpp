@@ -10,7 +10,7 @@
 #include "tests/reference/exact/hertz.hpp"
 #include "tests/reference/exact/quadrature.hpp"
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 namespace {
 
@@ -154,4 +154,4 @@ LayerContact layer_sphere_at_depth(const Layer& layer, double sphere_radius, dou
   return layer_sphere_at_radius(layer, sphere_radius, std::exp(middle));
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

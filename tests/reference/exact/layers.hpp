@@ -1,6 +1,6 @@
 #pragma once
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// An elastic layer of constant thickness without end, on a rigid base, as dual integral equations
 /// reduced to Fredholm equations of the second kind and solved by Nystrom's method on
@@ -44,4 +44,4 @@ LayerContact layer_sphere_at_radius(const Layer& layer, double sphere_radius, do
 /// The same for a depth > 0, by a bracketed secant search to 1e-12 of the radius.
 LayerContact layer_sphere_at_depth(const Layer& layer, double sphere_radius, double depth);
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

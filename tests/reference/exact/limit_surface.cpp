@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 namespace {
 
@@ -112,4 +112,4 @@ double ellipse_limit_load(const SlidingSpinning& load) {
   return std::hypot(load.force, load.moment / kPureSpinMoment);
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// Friction force and moment of a rigid body that slides with the velocity v and spins with w on a
 /// disc with Hertz's pressure, everything slipping; x = v / (w a). Elementary functions. Source:
@@ -39,4 +39,4 @@ SlidingSpinning ellipse_limit_surface(double slide_over_spin);
 /// sqrt(force^2 + (moment / (3 pi / 16))^2): hertz_limit_load for the ellipse. Exact.
 double ellipse_limit_load(const SlidingSpinning& load);
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -10,7 +10,7 @@
 #include "tests/reference/exact/reissner_sagoci.hpp"
 #include "tests/reference/exact/stable_differences.hpp"
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 namespace {
 
@@ -234,4 +234,4 @@ double twist_traction(const LubkinContact& contact, double twist, double r) {
   return std::copysign(4.0 * contact.shear_modulus * r / std::numbers::pi * sum, twist);
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -2,7 +2,7 @@
 
 #include "tests/reference/exact/torque_limits.hpp"
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// A rigid body pressed with constant force F on a disc of an elastic half-space and turned about
 /// its axis, with Coulomb friction: the rim slips, a disc of radius c sticks. Exact for any of the
@@ -69,4 +69,4 @@ double twist_displacement_after_turn(const LubkinContact& contact, double turn, 
 /// inside the stick radius, mu p outside it. Error: relative under 1e-10.
 double twist_traction(const LubkinContact& contact, double twist, double r);
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// The turning points of a path that still matter to a stack of parallel elastic-frictional
 /// springs: a reversal that a later, larger swing has passed is forgotten (Madelung's rules). One
@@ -54,4 +54,4 @@ double move_to(MasingHistory& history, const Loading& loading, double target) {
   return history.response;
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

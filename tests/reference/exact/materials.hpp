@@ -1,6 +1,6 @@
 #pragma once
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// G = E / (2 (1 + nu)), Pa. Exact.
 constexpr double shear_modulus(double young, double poisson) {
@@ -19,4 +19,4 @@ constexpr double tangential_modulus(double young, double poisson) {
   return 4.0 * shear_modulus(young, poisson) / (2.0 - poisson);
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

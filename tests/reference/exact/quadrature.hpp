@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// Nodes and weights of a rule on an interval.
 struct Quadrature {
@@ -106,4 +106,4 @@ double integrate_tanh_sinh(Integrand&& integrand, double start, double end) {
   return length * step * sum;
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

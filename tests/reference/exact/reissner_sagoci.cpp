@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 namespace {
 
@@ -66,4 +66,4 @@ double bonded_disc_twist_ratio(double radius, double r, double z) {
   return 2.0 / std::numbers::pi * oblate_twist(std::sqrt(zeta_squared));
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// A rigid disc of radius a, bonded to an elastic half-space z >= 0 and turned by the twist phi
 /// about its axis. The only displacement is around the axis. Angles rad, lengths m, moduli Pa.
@@ -32,4 +32,4 @@ double bonded_disc_displacement(const BondedDisc& disc, double r, double z);
 /// Displacement over (phi r): the twist angle at (r, z), also on the axis, over that of the disc.
 double bonded_disc_twist_ratio(double radius, double r, double z);
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// (1 + t^2) atanh(t) - t, ~ (4/3) t^3 for t -> 0, 0 <= t < 1. Needed by Sneddon's sphere (force)
 /// and by the pressure of a Winkler foundation (slip twist).
@@ -21,4 +21,4 @@ inline double atanh_difference(double t, double atanh_t) {
   return sum;
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <string_view>
 
-namespace torsion::reference {
+namespace torsion::engine::reference {
 
 /// The pressures over a disc that contact models in use assume.
 enum class PressureShape {
@@ -39,4 +39,4 @@ constexpr double torque_limit_factor(PressureShape shape) {
   return 0.0;
 }
 
-}  // namespace torsion::reference
+}  // namespace torsion::engine::reference

@@ -12,7 +12,7 @@
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Hand;
@@ -150,4 +150,4 @@ TEST(BodyEdgesTest, ARodHeldOnABodyThatGivesWayComesToRest) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

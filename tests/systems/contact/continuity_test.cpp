@@ -7,7 +7,7 @@
 #include "tests/support/directions.hpp"
 #include "tests/support/studies.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Hand;
@@ -168,4 +168,4 @@ TEST(ContinuityTest, AxisEntersAndLeavesTheRegion) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Hand;
@@ -132,4 +132,4 @@ TEST(DeterminismTest, TwoRunsGiveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

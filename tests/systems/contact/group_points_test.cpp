@@ -7,7 +7,7 @@
 
 #include "systems/contact/detect_contacts.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 struct Groups {
@@ -115,4 +115,4 @@ TEST(GroupPointsTest, NeighboursThatJoinAllAreEnough) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

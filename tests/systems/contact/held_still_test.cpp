@@ -11,7 +11,7 @@
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Hand;
@@ -130,4 +130,4 @@ INSTANTIATE_TEST_SUITE_P(Models, HeldStillTest,
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Hand;
@@ -70,4 +70,4 @@ TEST(MeshInvarianceTest, ABallCutIntoTrianglesFeelsLikeTheExactBall) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 
 #include "tests/support/contact_scenes.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 using std::numbers::pi;
@@ -100,4 +100,4 @@ TEST(JoinClustersTest, ACornerIsOneRegion) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -12,7 +12,7 @@
 
 #include "tests/support/contact_scenes.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 constexpr double kTubeRadius = 0.01;  // m
@@ -121,4 +121,4 @@ INSTANTIATE_TEST_SUITE_P(Models, LineContactTest,
                          });
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

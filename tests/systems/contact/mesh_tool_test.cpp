@@ -13,7 +13,7 @@
 #include "tests/support/directions.hpp"
 #include "tests/systems/geometry/distance_meshes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Hand;
@@ -169,4 +169,4 @@ TEST(MeshToolTest, ATorusOnItsSideTouchesInOneRing) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Hand;
@@ -161,13 +161,13 @@ TEST(RegionsTest, AStepAllocatesNothing) {
       const double t = i / 300.0;
       pose[0].position = {0.0, 2e-4 - 6e-4 * std::sin(3.14159 * t), 0.0};
       pose[0].rotation = glm::angleAxis(0.5 * std::sin(6.28318 * t), kUp);
-      torsion::step(hand.simulation(), pose);
+      torsion::engine::step(hand.simulation(), pose);
     }
   };
   const test::AllocationGuard guard;
   std::vector<Pose> pose(1, Pose{glm::dvec3(0.0, 2e-4, 0.0), kUpright});
   const std::uint64_t of_the_test = guard.allocations();
-  torsion::step(hand.simulation(), pose);
+  torsion::engine::step(hand.simulation(), pose);
   EXPECT_EQ(guard.allocations(), of_the_test);
   press_twist_lift();
   // One vector of the lambda; the 301 steps, with regions that begin and end, took nothing.
@@ -175,4 +175,4 @@ TEST(RegionsTest, AStepAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 
 #include "tests/support/contact_scenes.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 constexpr double kSide = 0.02;    // m, of the punch
@@ -77,4 +77,4 @@ TEST(RimStiffnessTest, AFlatPunchIsAsStiffHoweverItLiesToTheCells) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

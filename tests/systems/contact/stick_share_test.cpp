@@ -6,7 +6,7 @@
 
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -79,4 +79,4 @@ INSTANTIATE_TEST_SUITE_P(Models, StickShareTest,
                          testing::Values(ContactModel::kMdr, ContactModel::kPatch));
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

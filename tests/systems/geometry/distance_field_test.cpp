@@ -18,7 +18,7 @@
 #include "tests/systems/geometry/distance_meshes.hpp"
 #include "tests/systems/geometry/field_world.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 BuiltField built(const SurfaceMesh& mesh, const FieldOptions& options) {
@@ -290,4 +290,4 @@ TEST(DistanceFieldBuildTest, ComesFromTheCacheTheSecondTimeAndIsMadeAnewWhenTheE
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

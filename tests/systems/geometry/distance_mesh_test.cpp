@@ -13,7 +13,7 @@
 #include "systems/geometry/distance_shapes.hpp"
 #include "tests/systems/geometry/distance_meshes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 MeshDistance built(const SurfaceMesh& mesh) {
@@ -210,4 +210,4 @@ TEST(MeshDistanceTest, RefusesWhatIsNoMesh) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

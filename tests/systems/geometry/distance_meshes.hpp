@@ -15,7 +15,7 @@
 
 #include "ecs/surface.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// A sphere about the origin whose vertices lie on it: an octahedron cut `levels` times, 8 *
 /// 4^levels triangles.
@@ -111,4 +111,4 @@ inline SurfaceMesh l_shape_mesh(double size, double half_depth) {
       half_depth);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -16,7 +16,7 @@
 #include "systems/geometry/distance_shapes.hpp"
 #include "tests/support/distance_columns.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using Random = std::mt19937;
@@ -351,4 +351,4 @@ TEST(PartsNearTest, KeepsEveryPartThatIsNearestToSomePointWithinReach) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "systems/geometry/distance_mesh.hpp"
 #include "tests/systems/geometry/distance_meshes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 TEST(DistanceThreadsTest, MayAskOneMeshAtOnce) {
@@ -51,4 +51,4 @@ TEST(DistanceThreadsTest, AFieldDoesNotDependOnTheirNumber) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include "ecs/world.hpp"
 #include "systems/geometry/distance_field.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 inline World field_world(const BuiltField& field) {
   World world;
@@ -30,4 +30,4 @@ inline World field_world(const BuiltField& field) {
   return world;
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

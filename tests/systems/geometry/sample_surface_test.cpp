@@ -12,7 +12,7 @@
 
 #include "tests/systems/geometry/distance_meshes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 PartDescription exact_part(ShapeKind kind, const glm::dvec3& half_extent, const Pose& pose = {}) {
@@ -349,4 +349,4 @@ TEST(SampleSurfaceTest, TheSameInputGivesTheSameBitsAndNothingGivesNothing) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

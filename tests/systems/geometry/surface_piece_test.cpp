@@ -8,7 +8,7 @@
 
 #include "systems/geometry/distance_shapes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 Distance distance_to(const ShapePart& part, const glm::dvec3& point) {
@@ -102,4 +102,4 @@ TEST(SurfacePieceTest, EndsWhereTheShapeBends) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

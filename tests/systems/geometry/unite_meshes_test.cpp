@@ -12,7 +12,7 @@
 #include "systems/geometry/distance_mesh.hpp"
 #include "tests/support/contact_scenes.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 SurfaceMesh box(const glm::dvec3& center, const glm::dvec3& half, bool inside_out = false) {
@@ -130,4 +130,4 @@ TEST(UniteMeshesTest, TwoPartsAreFeltAsOneMeshOfThem) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

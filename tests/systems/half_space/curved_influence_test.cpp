@@ -15,7 +15,7 @@
 
 #include "systems/half_space/layer.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -261,4 +261,4 @@ TEST(CurvedInfluenceTest, MeanOverADiscIsThatOfItsPlaces) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "tests/reference/exact/hertz_ellipse.hpp"
 #include "tests/reference/exact/lubkin.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kModulus = 4e6;  // Pa
@@ -175,4 +175,4 @@ TEST(ContactShapeTest, WithoutOverlapThereIsNoShape) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@
 
 #include "systems/half_space/fields.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -219,4 +219,4 @@ TEST(HalfSpaceFieldsTest, AbovePlaneTheFieldGoesOnWithoutJumpOrPole) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 
 #include "tests/reference/exact/quadrature.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -208,4 +208,4 @@ TEST(InfluenceTest, IncompressiblePressureMovesNothingSideways) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -14,7 +14,7 @@
 #include "tests/reference/airy_layer.hpp"
 #include "tests/reference/exact/layers.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 std::vector<double> kernel_of(double poisson_ratio) {
@@ -183,4 +183,4 @@ TEST(LayerInfluenceTest, DiscsOnLayersMeetTheIntegralEquations) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 #include "systems/patch/passes.hpp"
 #include "tests/systems/patch/local_inverse_at.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::local_inverse_at;
@@ -69,4 +69,4 @@ TEST_P(LocalInverseOnGridTest, AsksEveryCellAndItsNeighbours) {
 INSTANTIATE_TEST_SUITE_P(Sides, LocalInverseOnGridTest, testing::Values(1, 3, 7, 8, 9, 12, 16));
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

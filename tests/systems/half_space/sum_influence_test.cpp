@@ -7,7 +7,7 @@
 #include "systems/half_space/influence.hpp"
 #include "systems/half_space/sum_influence_block.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// A grid with tractions on some of its cells, and what they displace by one table.
@@ -139,4 +139,4 @@ TEST_P(SumInfluenceTest, HasTheSameBitsWithAvx2AndAvx512) {
 INSTANTIATE_TEST_SUITE_P(Sides, SumInfluenceTest, testing::Range(2U, 27U));
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "systems/math/frames.hpp"
 #include "tests/systems/hold/held_tool.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::kPeriod;
@@ -131,4 +131,4 @@ TEST(CountPlayTest, WhatDoesNotCountIsTakenAsItIs) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

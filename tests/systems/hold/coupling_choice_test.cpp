@@ -6,7 +6,7 @@
 #include "systems/hold/virtual_coupling.hpp"
 #include "tests/systems/hold/held_tool.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::kPeriod;
@@ -74,4 +74,4 @@ TEST(CouplingChoiceTest, CouplingFormAllowsPiTimesAsMuch) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/math/frames.hpp"
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 glm::dvec3 counted(const glm::dvec3& value, double step) {
@@ -84,4 +84,4 @@ void EmulatedHand::move(const Wrench& wrench, const Pose& wanted, double period)
   }
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -7,7 +7,7 @@
 #include "ecs/device_sample.hpp"
 #include "systems/hold/virtual_coupling.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// A hand that holds a haptic device, with no hardware: the arm is a spring and a damper to where
 /// the person wants to be, the device a mass with its own damping, its motors saturate, its
@@ -63,4 +63,4 @@ class EmulatedHand {
   std::mt19937 random_;
 };
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -10,7 +10,7 @@
 #include "systems/math/frames.hpp"
 #include "tests/systems/hold/held_tool.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::kPeriod;
@@ -171,4 +171,4 @@ TEST(HandleSideTest, NeverMoreThanTheDeviceTakes) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -2,10 +2,10 @@
 
 #include <limits>
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 // What tests of a tool held through a device have in common.
 inline constexpr double kPeriod = 1e-3;                                        // s: a device's
 inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();  // of a coupling
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -15,7 +15,7 @@
 #include "tests/support/contact_scenes.hpp"
 #include "tests/systems/hold/emulated_hand.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::EmulatedHand;
@@ -248,4 +248,4 @@ TEST(HeldToolLoopTest, WithoutTheChoiceOfStiffnessTheLoopShakes) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

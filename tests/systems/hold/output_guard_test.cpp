@@ -7,7 +7,7 @@
 #include "systems/hold/handle_side.hpp"
 #include "tests/systems/hold/held_tool.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::kPeriod;
@@ -137,4 +137,4 @@ TEST(OutputGuardTest, AFaultWhileItRisesFallsFromWhereItIs) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

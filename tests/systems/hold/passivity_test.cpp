@@ -7,7 +7,7 @@
 #include "systems/hold/handle_side.hpp"
 #include "tests/systems/hold/held_tool.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::kPeriod;
@@ -120,4 +120,4 @@ TEST(PassivityTest, DividesByNothingWhenStill) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

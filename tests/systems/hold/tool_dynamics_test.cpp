@@ -8,7 +8,7 @@
 #include "tests/support/directions.hpp"
 #include "tests/systems/hold/held_tool.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::kUnlimited;
@@ -110,4 +110,4 @@ TEST(ToolDynamicsTest, ComesToRestWhereAToolWithoutMassDoes) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 #include "tests/support/contact_scenes.hpp"
 #include "tests/systems/hold/held_tool.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::kUnlimited;
@@ -95,4 +95,4 @@ TEST(ToolEquilibriumTest, GoesNoFasterThanContactsCanBeFound) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

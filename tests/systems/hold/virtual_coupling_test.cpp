@@ -9,7 +9,7 @@
 #include "systems/math/frames.hpp"
 #include "tests/systems/hold/held_tool.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -115,4 +115,4 @@ TEST(VirtualCouplingTest, DampsWhatMovesApart) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 
 #include "systems/math/linear_algebra.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -69,4 +69,4 @@ TEST(GeneralSolveTest, OfASingularMatrixFindsNothingFinite) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "systems/mdr/places.hpp"
 #include "tests/reference/exact/limit_surface.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// A load in the reference's units: force over mu F, couple over mu F a.
@@ -76,4 +76,4 @@ TEST(LimitCurveTest, PureLoadsAreKeptPure) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -14,7 +14,7 @@
 #include "tests/support/paths.hpp"
 #include "tests/systems/mdr/mdr_springs.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// A twist and its couple, by boundary elements: tests/reference/boundary_elements.
@@ -76,4 +76,4 @@ TEST(MdrEllipseTest, TheWholeTwistIsNearBoundaryElements) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

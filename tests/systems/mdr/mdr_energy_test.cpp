@@ -8,7 +8,7 @@
 #include "tests/support/studies.hpp"
 #include "tests/systems/patch/worked_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -70,4 +70,4 @@ TEST(MdrNormalForceTest, IsAFunctionOfTheDepthAlone) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Hand;
@@ -85,4 +85,4 @@ TEST(MdrLayerForceTest, ABallOnASlabPressesAsOnTheLayer) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 #include "tests/systems/body/compliance/fixed_springs.hpp"
 #include "tests/systems/mdr/mdr_springs.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::MdrSprings;
@@ -230,4 +230,4 @@ TEST(MdrLayersTest, ABreathingContactForgetsNoMoreThanItShould) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 
 #include "tests/systems/mdr/mdr_springs.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::MdrSprings;
@@ -262,4 +262,4 @@ TEST(MdrPropertiesTest, WithoutFrictionNothingIsHeld) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

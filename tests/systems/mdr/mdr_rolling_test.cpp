@@ -11,7 +11,7 @@
 #include "systems/model/choose_models.hpp"
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -76,4 +76,4 @@ TEST(MdrRollingTest, IsAsFarOffAsAutoSays) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

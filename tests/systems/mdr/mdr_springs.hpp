@@ -12,7 +12,7 @@
 #include "tests/reference/exact/limit_surface.hpp"
 #include "tests/reference/exact/lubkin.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 inline constexpr double kShearModulus = 1e6;  // Pa
 inline constexpr double kFriction = 0.75;
@@ -83,4 +83,4 @@ class MdrSprings {
   std::vector<MdrLayer> layers = std::vector<MdrLayer>(kMdrLayers);
 };
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

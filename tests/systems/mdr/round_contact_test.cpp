@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kModulus = 3e5;  // E*, Pa
@@ -59,4 +59,4 @@ TEST(RoundContactTest, SlopeIsTheForcesChange) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -15,7 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -216,4 +216,4 @@ TEST_F(CacheTest, FolderIsTheChosenOneElseXdgElseHome) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 
 #include "tests/support/contact_scenes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// A contact of radius 1 on a body 100 high, round, that only turns.
@@ -161,4 +161,4 @@ TEST(ChooseModelsTest, WinklerGetsNoBodyModelUnlessOneIsAskedFor) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

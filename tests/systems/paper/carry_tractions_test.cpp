@@ -6,7 +6,7 @@
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using reference::PaperShaft;
@@ -114,4 +114,4 @@ TEST(CarryTractionsTest, LongContactThatSticksTurnsWithItsMaterial) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using reference::PaperShaft;
@@ -221,4 +221,4 @@ TEST(PaperTorqueTest, SlidingWhileSpinningStaysInsideTheLimitSurface) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

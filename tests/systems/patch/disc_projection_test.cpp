@@ -11,7 +11,7 @@
 
 #include "systems/math/wide_lanes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint32_t kAcross = 7;
@@ -93,4 +93,4 @@ TEST(DiscProjectionTest, BodyMovesByTheLoadAndEveryCellIsAtItsLeast) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -15,7 +15,7 @@
 #include "tests/support/paths.hpp"
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -95,4 +95,4 @@ INSTANTIATE_TEST_SUITE_P(Models, FallingFrictionTest,
                                          FallingCase{ContactModel::kMdr, 16, 0.02}));
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -4,7 +4,7 @@
 
 #include "systems/half_space/influence.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// The traction that the local inverse gives for a displacement of a cell at one that is (x, y)
 /// cells away.
@@ -13,4 +13,4 @@ inline double local_inverse_at(const LocalInverse& inverse, int x, int y) {
   return std::abs(x) <= 1 && std::abs(y) <= 1 ? rows[std::abs(x)][std::abs(y)] : 0.0;
 }
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

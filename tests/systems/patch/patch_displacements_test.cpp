@@ -7,7 +7,7 @@
 
 #include "systems/patch/solver.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr double kPoissonRatio = 0.3;
@@ -90,4 +90,4 @@ INSTANTIATE_TEST_SUITE_P(Sides, PatchDisplacementsTest,
                          testing::Values(1U, 2U, 3U, 6U, 7U, 12U, 15U, 24U));
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

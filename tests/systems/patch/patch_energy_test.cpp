@@ -17,7 +17,7 @@
 
 // The holder's work on the contact model `patch`.
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -353,4 +353,4 @@ TEST(PatchStiffestTest, IsStifferThanAllInfluences) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

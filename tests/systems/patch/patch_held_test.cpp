@@ -10,7 +10,7 @@
 #include "tests/support/directions.hpp"
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -112,4 +112,4 @@ TEST(PatchHeldTest, ASlenderEllipseAcrossTheGridKeepsItsForceAndCouple) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

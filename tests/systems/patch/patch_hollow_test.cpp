@@ -15,7 +15,7 @@
 #include "tests/support/directions.hpp"
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -155,4 +155,4 @@ INSTANTIATE_TEST_SUITE_P(Shapes, PatchHollowTest, testing::ValuesIn(kHollowCases
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include "systems/half_space/influence.hpp"
 #include "systems/patch/grid.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 TEST(SecondMomentsTest, ARectanglesAreThoseOfItsSides) {
@@ -81,4 +81,4 @@ TEST(PatchLayoutTest, ARimThatIsNotSharpGetsWhatItNeeds) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

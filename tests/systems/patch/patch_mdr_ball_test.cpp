@@ -11,7 +11,7 @@
 #include "tests/systems/body/compliance/fixed_springs.hpp"
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -261,4 +261,4 @@ TEST(PatchAgainstMdrTest, BothModelsAgreeOnTheWholeOfAMotion) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

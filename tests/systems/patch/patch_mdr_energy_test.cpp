@@ -7,7 +7,7 @@
 
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -135,4 +135,4 @@ INSTANTIATE_TEST_SUITE_P(Models, EnergyTest, testing::ValuesIn(kEnergyCases),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

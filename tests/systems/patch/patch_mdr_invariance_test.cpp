@@ -10,7 +10,7 @@
 #include "tests/support/studies.hpp"
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -251,4 +251,4 @@ INSTANTIATE_TEST_SUITE_P(Models, ScaledModelTest, testing::ValuesIn(kInvarianceC
                          name_of_case);
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 #include "tests/reference/exact/flat_punch.hpp"
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -90,4 +90,4 @@ TEST(NearlyIncompressibleTest, MovesAsTheIncompressible) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -12,7 +12,7 @@
 #include "tests/support/directions.hpp"
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -266,4 +266,4 @@ INSTANTIATE_TEST_SUITE_P(Models, ShapeTest, testing::ValuesIn(kShapeCases),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -11,7 +11,7 @@
 #include "tests/support/studies.hpp"
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -171,4 +171,4 @@ INSTANTIATE_TEST_SUITE_P(Resolutions, PatchRollingTest,
                                          RollingCase{24, 8, 0.005, 0.0065}));
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 #include "tests/reference/exact/hertz.hpp"
 #include "tests/reference/exact/lubkin.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 constexpr std::uint32_t kSide = 24;
@@ -289,4 +289,4 @@ TEST(PatchSolverTest, NoOverlapGivesNothing) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -17,7 +17,7 @@
 #include "tests/support/studies.hpp"
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -135,4 +135,4 @@ TEST_P(PatchSteadyRollingTest, IsNearBoundaryElements) {
 INSTANTIATE_TEST_SUITE_P(Sides, PatchSteadyRollingTest, testing::Values(12U, 16U, 20U));
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

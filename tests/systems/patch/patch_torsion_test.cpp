@@ -7,7 +7,7 @@
 #include "tests/reference/exact/masing.hpp"
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -183,4 +183,4 @@ TEST(PatchHysteresisTest, LoopsInLoopsFollowMasing) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

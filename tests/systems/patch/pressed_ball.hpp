@@ -8,7 +8,7 @@
 #include "tests/reference/exact/lubkin.hpp"
 #include "tests/support/contact_scenes.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 inline constexpr double kBallRadius = 0.05;                      // m
 inline constexpr double kBallShearModulus = 1e6;                 // Pa
@@ -115,4 +115,4 @@ class PressedBall {
   Hand hand;
 };
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -8,7 +8,7 @@
 
 #include "tests/support/contact_scenes.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 /// Two balls side by side, one tool, over a cube.
@@ -100,4 +100,4 @@ INSTANTIATE_TEST_SUITE_P(Bodies, SplitPatchTest,
                                          Event{BodyModel::kNone, 0.25}));
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

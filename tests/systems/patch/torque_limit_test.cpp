@@ -13,7 +13,7 @@
 #include "tests/support/directions.hpp"
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using reference::PressureShape;
@@ -93,4 +93,4 @@ INSTANTIATE_TEST_SUITE_P(Models, TorqueLimitTest, testing::ValuesIn(kLimitCases)
                          [](const auto& at) { return std::string(at.param.name); });
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

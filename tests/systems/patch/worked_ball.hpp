@@ -9,7 +9,7 @@
 
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// Where the ball is, over the place where it was pressed.
 struct Place {
@@ -139,4 +139,4 @@ class WorkedBall {
   double turn_ = 0.0;
 };
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -6,7 +6,7 @@
 
 #include "tests/systems/surface/drawn_body.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 TEST(DeformVerticesTest, MatchesRotationsInDoublePrecision) {
@@ -44,4 +44,4 @@ TEST(DeformVerticesTest, MatchesRotationsInDoublePrecision) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@
 #include "tests/support/directions.hpp"
 #include "tests/systems/body_scene.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 
 /// One body with its frame world; regions are put on it by hand.
 struct Drawn {
@@ -86,4 +86,4 @@ inline void press_sphere(World& world, double top, double depth, const glm::dvec
   world.state.tools.at<ToolPose>(0).now.position = glm::dvec3(place.x, top + 0.05 - depth, place.y);
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

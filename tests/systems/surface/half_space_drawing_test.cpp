@@ -15,7 +15,7 @@
 #include "tests/reference/exact/reissner_sagoci.hpp"
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::BallScene;
@@ -289,4 +289,4 @@ INSTANTIATE_TEST_SUITE_P(Slip, DrawnTwistTest, testing::ValuesIn(kFieldCases),
                          [](const auto& drawn) { return std::string(drawn.param.name); });
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

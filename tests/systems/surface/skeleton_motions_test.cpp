@@ -11,7 +11,7 @@
 #include "systems/surface/take_snapshot.hpp"
 #include "tests/systems/body_scene.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -196,4 +196,4 @@ TEST(SkeletonMotionsTest, AnchorsMoveContinuouslyWhileTheContactSlides) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

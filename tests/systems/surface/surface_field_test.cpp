@@ -10,7 +10,7 @@
 #include "systems/math/frames.hpp"
 #include "tests/systems/surface/drawn_body.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 TEST(SurfaceFieldTest, FixedVerticesStay) {
@@ -212,4 +212,4 @@ TEST(SurfaceFieldTest, ToolsAreDrawnWhereTheSnapshotHasThem) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -10,7 +10,7 @@
 
 #include "tests/systems/surface/drawn_body.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 TEST(RegionTwistTest, AnglesAreThePapersThroughTheRegion) {
@@ -209,4 +209,4 @@ TEST(RegionTwistTest, RegionsKeepTheirSlotsInTheOrderOfFormation) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -6,7 +6,7 @@
 
 #include "tests/systems/patch/pressed_ball.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -80,4 +80,4 @@ TEST(WinklerTest, HoldsNothingAtRest) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include "tests/support/contact_scenes.hpp"
 #include "tests/systems/body/compliance/soft_bodies.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Hand;
@@ -281,4 +281,4 @@ TEST(ComplianceTest, SaysHowFarItIsWhileItIsFound) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

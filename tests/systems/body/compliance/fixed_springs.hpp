@@ -8,7 +8,7 @@
 #include "tests/reference/exact/lubkin.hpp"
 #include "tests/reference/exact/quadrature.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 /// Springs of a half-space under a sphere, at fixed places, whose limits follow the depth: the
 /// method of dimensionality reduction without resampling, for twist alone or sliding alone. Exact
@@ -49,4 +49,4 @@ struct FixedSprings {
   }
 };
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

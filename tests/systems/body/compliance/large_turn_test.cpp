@@ -15,7 +15,7 @@
 #include "tests/support/directions.hpp"
 #include "tests/systems/body/compliance/soft_bodies.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Hand;
@@ -291,4 +291,4 @@ TEST(TurnedByAToolTest, SurfaceTurnsWithTheToolAndTheColumnSwellsOnlyByTheForce)
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -16,7 +16,7 @@
 #include "tests/support/studies.hpp"
 #include "tests/systems/body/compliance/soft_bodies.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Hand;
@@ -133,4 +133,4 @@ INSTANTIATE_TEST_SUITE_P(Cases, MeshBodyTest, testing::ValuesIn(kMeshCases),
                          [](const auto& at) { return std::string(at.param.name); });
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

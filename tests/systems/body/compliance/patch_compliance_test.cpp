@@ -16,7 +16,7 @@
 #include "tests/support/directions.hpp"
 #include "tests/support/studies.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Hand;
@@ -237,4 +237,4 @@ TEST(SupportResponseTest, IsWhatThePortsMakeOfMoments) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -15,7 +15,7 @@
 #include "tests/support/studies.hpp"
 #include "tests/systems/body/compliance/soft_bodies.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using test::Hand;
@@ -183,4 +183,4 @@ INSTANTIATE_TEST_SUITE_P(Grounds, PatchRegionsTest,
                          [](const auto& at) { return std::string(at.param.name); });
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

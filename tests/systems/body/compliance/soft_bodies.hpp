@@ -1,9 +1,9 @@
 #pragma once
 
-namespace torsion::test {
+namespace torsion::engine::test {
 
 // What tests of bodies with compliance press, and with what.
 inline constexpr double kSoftShearModulus = 1e5;  // Pa
 inline constexpr double kSmallBallRadius = 0.02;  // m
 
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

@@ -19,7 +19,7 @@
 #include "tests/support/dense_algebra.hpp"
 #include "tests/support/studies.hpp"
 
-namespace torsion::test {
+namespace torsion::engine::test {
 namespace {
 
 /// Two balls that pinch a column of this width at its upper third, 1 mm deep each.
@@ -291,4 +291,4 @@ TEST(ForceBoundTest, ALongSessionHasNoFault) {
 }
 
 }  // namespace
-}  // namespace torsion::test
+}  // namespace torsion::engine::test

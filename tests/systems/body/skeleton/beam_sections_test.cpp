@@ -9,7 +9,7 @@
 #include "systems/body/skeleton/skeleton.hpp"
 #include "tests/systems/body_scene.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -121,4 +121,4 @@ TEST(BeamSpringTest, ASquareBarHasEAOverL) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,7 +7,7 @@
 #include "systems/math/frames.hpp"
 #include "tests/support/contact_scenes.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 /// A ball pressed into a cube and turned, by cells.
@@ -63,4 +63,4 @@ TEST(ContactLoadTest, MomentsAreTheSumsOverTheCells) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 const glm::dvec3 kNormal(0.0, 0.0, 1.0);
@@ -150,4 +150,4 @@ TEST(SupportFitTest, BendingOfAQuarticIsFound) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

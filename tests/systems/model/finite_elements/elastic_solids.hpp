@@ -9,7 +9,7 @@
 #include "systems/model/finite_elements/compliance.hpp"
 
 // Solids with exact distances, clamped at their lowest z. E = 1.
-namespace torsion {
+namespace torsion::engine {
 
 inline bool is_lowest(const glm::dvec3& point, double height) {
   return point.z < 1e-6 * height;
@@ -80,4 +80,4 @@ inline Port top_port(double height) {
   return {glm::dvec3(0.0, 0.0, height), glm::dvec3(0.0, 0.0, 1.0)};
 }
 
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -8,7 +8,7 @@
 
 #include "tests/systems/model/finite_elements/elastic_solids.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 namespace fs = std::filesystem;
@@ -76,4 +76,4 @@ TEST_F(SmoothComplianceCacheTest, AFileOfAnotherSizeIsBuiltAnew) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -13,7 +13,7 @@
 #include "tests/support/dense_algebra.hpp"
 #include "tests/systems/model/finite_elements/elastic_solids.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -210,4 +210,4 @@ TEST(MotionFitTest, QuadraticFieldsComeOutExactly) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

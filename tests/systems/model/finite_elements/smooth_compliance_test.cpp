@@ -14,7 +14,7 @@
 #include "tests/support/studies.hpp"
 #include "tests/systems/model/finite_elements/elastic_solids.hpp"
 
-namespace torsion {
+namespace torsion::engine {
 namespace {
 
 using std::numbers::pi;
@@ -395,4 +395,4 @@ TEST(ChoosePortsTest, PortsLieOnTheFreeSurfaceSpreadAndAwayFromEdges) {
 }
 
 }  // namespace
-}  // namespace torsion
+}  // namespace torsion::engine

@@ -7,6 +7,7 @@
 #include "app/commands.hpp"
 #include "app/scene_warnings.hpp"
 #include "app/session.hpp"
+#include "device/scripted_motion.hpp"
 #include "ecs/model_names.hpp"
 #include "scenes/load_gltf.hpp"
 #include "systems/scratch.hpp"

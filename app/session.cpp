@@ -47,24 +47,6 @@ Result<Simulation> prepare_with_bar(const SceneDescription& scene, const Prepare
   return prepare(scene, shown);
 }
 
-std::vector<std::vector<Pose>> expected_poses(const SceneDescription& scene) {
-  constexpr int kTimes = 60;
-  const auto is_animated = [](const ToolDescription& tool) {
-    return tool.device == "animation" && tool.script.end_time > 0.0;
-  };
-  std::vector<std::vector<Pose>> poses;
-  if (!std::ranges::all_of(scene.tools, is_animated)) {
-    return poses;
-  }
-  for (int k = 0; k <= kTimes; ++k) {
-    std::vector<Pose>& at_time = poses.emplace_back();
-    for (const ToolDescription& tool : scene.tools) {
-      at_time.push_back(scripted_pose(tool.script, scene.duration * k / kTimes));
-    }
-  }
-  return poses;
-}
-
 double next_time(const World& world) {
   return static_cast<double>(world.state.clock.step) * world.model.dt;
 }

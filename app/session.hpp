@@ -29,10 +29,6 @@ Result<Session> open_session(const std::filesystem::path& path, const PrepareOpt
 Result<Simulation> prepare_with_bar(const SceneDescription& scene, const PrepareOptions& options,
                                     bool quiet);
 
-/// Where the tools will be at equal intervals of the scene's animations, (times) of (tools); empty
-/// where something else than an animation moves one of them.
-std::vector<std::vector<Pose>> expected_poses(const SceneDescription& scene);
-
 /// The time of the step to come, s.
 double next_time(const World& world);
 

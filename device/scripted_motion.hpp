@@ -1,7 +1,10 @@
 #pragma once
 
+#include <vector>
+
 #include "ecs/components.hpp"
 #include "ecs/motion_script.hpp"
+#include "ecs/scene_description.hpp"
 
 namespace torsion::engine {
 
@@ -15,5 +18,9 @@ glm::dvec3 translation_at(const KeyedChannel& channel, double time);
 
 /// The value of a channel of rotations at `time` [s]. @pre the channel is not empty
 glm::dquat rotation_at(const KeyedChannel& channel, double time);
+
+/// Where the tools will be at equal intervals of the scene's animations, (times) of (tools); empty
+/// where something else than an animation moves one of them.
+std::vector<std::vector<Pose>> expected_poses(const SceneDescription& scene);
 
 }  // namespace torsion::engine

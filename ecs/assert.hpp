@@ -1,11 +1,19 @@
 #pragma once
 
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 
 namespace torsion::engine::detail {
 
+/// What a host of the library wants called (include/torsion/types.hpp); null: nothing.
+inline std::atomic<void (*)(const char* condition, const char* file, int line)> assertion_handler{
+    nullptr};
+
 [[noreturn]] inline void assertion_failed(const char* condition, const char* file, int line) {
+  if (const auto handler = assertion_handler.load()) {
+    handler(condition, file, line);
+  }
   std::fprintf(stderr, "%s:%d: assertion failed: %s\n", file, line, condition);
   std::abort();
 }

@@ -27,7 +27,8 @@ struct Scratch {
   Schedule<StepContext> schedule;
 
   /// Takes all memory that a step can need. Load time only.
-  void reserve(const Model& model, State& state);
+  /// @param tables  those of another scratch of the same model, which take 40 ms to make; or null
+  void reserve(const Model& model, State& state, const MdrTables* tables = nullptr);
 
   /// What the systems of a step get.
   StepContext context(const Model& model, State& state, std::span<const Pose> tool_poses);

@@ -88,13 +88,13 @@ std::vector<System<StepContext>> step_systems() {
   return systems;
 }
 
-void Scratch::reserve(const Model& model, State& state) {
+void Scratch::reserve(const Model& model, State& state, const MdrTables* tables) {
   contact.reserve(model, state);
   paper.reserve(model);
   patch.reserve(model, state);
   compliance.reserve(state);
   if (!state.mdr_layers.empty()) {
-    mdr = make_mdr_tables();
+    mdr = tables != nullptr ? *tables : make_mdr_tables();
   }
   schedule = Schedule<StepContext>(step_systems(), context(model, state, {}));
 }

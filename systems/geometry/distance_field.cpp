@@ -313,7 +313,7 @@ void fill_bricks(const MeshDistance& mesh, std::uint32_t threads, BuiltField& fi
 }  // namespace
 
 Result<BuiltField> build_distance_field(const FieldOfMesh& mesh, const FieldOptions& options) {
-  Result<MeshDistance> distance = MeshDistance::build(mesh.solid);
+  Result<MeshDistance> distance = MeshDistance::build(mesh.solid, options.threads);
   if (!distance) {
     return distance.error();
   }

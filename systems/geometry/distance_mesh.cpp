@@ -175,7 +175,7 @@ struct MeshDistance::Tree {
   void set_corners(const SurfaceMesh& mesh);
   void set_vertex_normals(std::size_t vertex_count);
   void set_edge_normals();
-  [[nodiscard]] bool build_boxes(const SurfaceMesh& mesh);
+  [[nodiscard]] bool build_boxes(const SurfaceMesh& mesh, std::uint32_t threads);
   [[nodiscard]] const glm::dvec3& pseudonormal(std::uint32_t triangle, Feature feature) const;
 };
 
@@ -245,8 +245,8 @@ void MeshDistance::Tree::set_edge_normals() {
   }
 }
 
-bool MeshDistance::Tree::build_boxes(const SurfaceMesh& mesh) {
-  device = rtcNewDevice("threads=2");
+bool MeshDistance::Tree::build_boxes(const SurfaceMesh& mesh, std::uint32_t threads) {
+  device = rtcNewDevice(threads == 1 ? "threads=1" : "threads=2");
   if (device == nullptr) {
     return false;
   }
@@ -296,7 +296,7 @@ MeshDistance::MeshDistance(MeshDistance&&) noexcept = default;
 MeshDistance& MeshDistance::operator=(MeshDistance&&) noexcept = default;
 MeshDistance::~MeshDistance() = default;
 
-Result<MeshDistance> MeshDistance::build(const SurfaceMesh& mesh) {
+Result<MeshDistance> MeshDistance::build(const SurfaceMesh& mesh, std::uint32_t threads) {
   if (mesh.triangles.empty()) {
     return Error{"a signed distance needs a closed mesh, but the mesh has no triangles"};
   }
@@ -318,7 +318,7 @@ Result<MeshDistance> MeshDistance::build(const SurfaceMesh& mesh) {
   tree->set_corners(mesh);
   tree->set_vertex_normals(mesh.positions.size());
   tree->set_edge_normals();
-  if (!tree->build_boxes(mesh)) {
+  if (!tree->build_boxes(mesh, threads)) {
     return Error{"the search tree of the mesh's triangles could not be built (out of memory?)"};
   }
   return MeshDistance(std::move(tree));

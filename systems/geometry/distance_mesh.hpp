@@ -25,7 +25,7 @@ class MeshDistance {
 
   /// Fails for a mesh without triangles, with indices out of range or with positions that are not
   /// finite.
-  static Result<MeshDistance> build(const SurfaceMesh& mesh);
+  static Result<MeshDistance> build(const SurfaceMesh& mesh, std::uint32_t threads = 2);
 
   MeshDistance(const MeshDistance&) = delete;
   MeshDistance& operator=(const MeshDistance&) = delete;

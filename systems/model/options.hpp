@@ -29,7 +29,8 @@ struct PrepareOptions {
   Settings settings;                              // grid_side 0: as the chosen models need
   std::vector<std::vector<Pose>> expected_poses;  // (times) of (tools): what the run will bring as
                                                   // far as that is known, for kAuto; empty: unknown
-  bool use_cache = true;  // distance fields and beam sections from the user's cache folder
+  std::uint32_t threads = 0;  // of what is prepared; 0: as many as there are cores
+  bool use_cache = true;      // distance fields and beam sections from the user's cache folder
   // Called with 0 to 1, never falling, while bodies' compliances are found that no cache has; if
   // set.
   std::function<void(double)> progress;

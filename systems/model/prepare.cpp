@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <thread>
 
 #include "systems/contact/law.hpp"
 #include "systems/contact/support/support_fit.hpp"
@@ -30,6 +31,10 @@ struct Built {
   std::vector<SampledSurface> surfaces;  // one for each tool
 };
 
+std::uint32_t threads_of(const PrepareOptions& options) {
+  return options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+}
+
 SurfaceMesh in_part_frame(const PartDescription& part, SurfaceMesh mesh) {
   for (glm::dvec3& position : mesh.positions) {
     position = to_inner(part.shape.pose, position);
@@ -37,8 +42,9 @@ SurfaceMesh in_part_frame(const PartDescription& part, SurfaceMesh mesh) {
   return mesh;
 }
 
-Result<Done> build_fields(std::span<const PartDescription> parts, bool use_cache,
+Result<Done> build_fields(std::span<const PartDescription> parts, const PrepareOptions& options,
                           std::vector<BuiltField>& fields) {
+  const FieldOptions field_options{.threads = threads_of(options)};
   for (const PartDescription& part : parts) {
     if (part.shape.kind != ShapeKind::kMesh) {
       continue;
@@ -47,8 +53,9 @@ Result<Done> build_fields(std::span<const PartDescription> parts, bool use_cache
     const SurfaceMesh solid =
         part.solid != nullptr ? in_part_frame(part, *part.solid) : SurfaceMesh{};
     const FieldOfMesh wanted{mesh, part.solid != nullptr ? solid : mesh};
-    Result<BuiltField> field =
-        use_cache ? load_or_build_distance_field(wanted) : build_distance_field(wanted);
+    Result<BuiltField> field = options.use_cache
+                                   ? load_or_build_distance_field(wanted, field_options)
+                                   : build_distance_field(wanted, field_options);
     if (!field) {
       return Error{"node '" + part.node + "': " + field.error().text};
     }
@@ -60,13 +67,13 @@ Result<Done> build_fields(std::span<const PartDescription> parts, bool use_cache
 Result<Built> build(const SceneDescription& scene, const PrepareOptions& options) {
   Built built;
   for (const BodyDescription& body : scene.bodies) {
-    const Result<Done> done = build_fields(body.parts, options.use_cache, built.fields);
+    const Result<Done> done = build_fields(body.parts, options, built.fields);
     if (!done) {
       return done.error();
     }
   }
   for (const ToolDescription& tool : scene.tools) {
-    const Result<Done> done = build_fields(tool.parts, options.use_cache, built.fields);
+    const Result<Done> done = build_fields(tool.parts, options, built.fields);
     if (!done) {
       return done.error();
     }
@@ -214,8 +221,9 @@ Result<std::vector<PreparedCompliance>> build_compliances(const Model& model,
   };
   for (std::uint32_t row = 0; row < choices.size(); ++row) {
     if (choices[row].models.body == BodyModel::kCompliance) {
-      Result<PreparedCompliance> built = prepare_compliance(
-          scene.bodies[row], model, row, choices[row].place, options.use_cache, progress);
+      Result<PreparedCompliance> built =
+          prepare_compliance(scene.bodies[row], model, row, choices[row].place, threads_of(options),
+                             options.use_cache, progress);
       done += 1.0;
       if (!built && choices[row].body_is_auto) {
         choices[row].models.body = BodyModel::kSkeleton;

@@ -45,10 +45,12 @@ struct PreparedCompliance {
 /// Fails where elements or ports are too coarse for the body's walls.
 /// @param model     shapes and the body `row` are there
 /// @param place     where contacts are expected
+/// @param threads   at least 1
 /// @param progress  called with 0 to 1 while there is something to solve, if set
 Result<PreparedCompliance> prepare_compliance(const BodyDescription& description,
                                               const Model& model, std::uint32_t row,
-                                              const ExpectedPlace& place, bool use_cache,
+                                              const ExpectedPlace& place, std::uint32_t threads,
+                                              bool use_cache,
                                               const std::function<void(double)>& progress);
 
 /// A scene's tables, filled.

@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <cstring>
 #include <string>
-#include <thread>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -194,7 +193,8 @@ Result<Done> holds_walls(const ElasticSolid& solid, double wall, std::uint32_t e
 
 Result<PreparedCompliance> prepare_compliance(const BodyDescription& description,
                                               const Model& model, std::uint32_t row,
-                                              const ExpectedPlace& place, bool use_cache,
+                                              const ExpectedPlace& place, std::uint32_t threads,
+                                              bool use_cache,
                                               const std::function<void(double)>& progress) {
   const Range parts = model.bodies.at<OwnedRows>(row).parts;
   ElasticSolid solid;
@@ -219,7 +219,7 @@ Result<PreparedCompliance> prepare_compliance(const BodyDescription& description
   if (const Result<Done> fits = holds_walls(solid, wall, options.elements, ports, place); !fits) {
     return Error{"node '" + description.node + "', body model compliance: " + fits.error().text};
   }
-  options.threads = std::max(1U, std::thread::hardware_concurrency());
+  options.threads = threads;
   const Result<SmoothCompliance> built =
       use_cache ? load_or_build_smooth_compliance(solid, identity_of(description), ports, options)
                 : build_smooth_compliance(solid, ports, options);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -119,8 +120,11 @@ constexpr std::size_t kPortsAtOnce = 8;  // solved together: enough for the matr
 constexpr double kShareOfFactor = 0.3;   // of the time, roughly, for the progress
 
 /// Eigen cuts large products into blocks by the sizes of the processor's caches, which determine
-/// the order of rounding. Fixed sizes give the same bits on every machine.
+/// the order of rounding. Fixed sizes give the same bits on every machine. They are Eigen's globals:
+/// scenes may be prepared in several threads.
 void fix_product_blocks() {
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
   constexpr int kL1 = 48 << 10;  // bytes; other sizes cost little
   constexpr int kL2 = 1280 << 10;
   constexpr int kL3 = 32 << 20;

@@ -1,0 +1,24 @@
+#!/usr/bin/env python3
+"""Fails when the shared library shows other symbols than those of include/torsion/.
+
+usage: check_symbols.py LIBRARY
+"""
+import re
+import subprocess
+import sys
+
+# The C functions; the C++ interface, of which nothing is in torsion::engine.
+ALLOWED = re.compile(r"^(TORSION_\d+|torsion_\w+|(?:vtable for |typeinfo (?:name )?for )?torsion::(?!engine\b).*)$")
+
+
+def main():
+    listed = subprocess.run(["nm", "--dynamic", "--defined-only", "--demangle", "--format=posix", sys.argv[1]],
+                            check=True, capture_output=True, text=True).stdout
+    names = [re.sub(r"(@@TORSION_\d+)? [A-Za-z] [0-9a-f ]*$", "", line) for line in listed.splitlines()]
+    others = [name for name in names if not ALLOWED.match(name)]
+    print("\n".join(others) if others else f"{len(names)} symbols, all of the interface")
+    return 1 if others or not names else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -18,6 +18,7 @@ ALLOWED = {
     "shaders": set(),
     "include": set(),
     "library": {"ecs", "systems", "scenes", "device", "include"},
+    "python": {"include"},
     "app": {"ecs", "systems", "scenes", "device", "render"},
     "tests": {"ecs", "systems", "scenes", "device", "render", "shaders", "app", "include"},
 }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/scene_settings.hpp"
 #include "ecs/model_names.hpp"
 
 namespace torsion::engine {
@@ -54,6 +55,15 @@ void SceneOptions::add_to(CLI::App& subcommand) {
       .add_option("--iterations", iterations,
                   "Iterations of contact model patch in a step, at most; 2 unless said")
       ->check(CLI::Range(1U, kMostIterations));
+}
+
+CLI::Option* SceneOptions::add_settings_to(CLI::App& subcommand) {
+  return subcommand
+      .add_option("--set", settings,
+                  "NODE.KEY=VALUE: a value over what the scene says, as cube.youngs_modulus=2e4")
+      ->check(CLI::Validator(setting_form_problem, "NODE.KEY=VALUE"))
+      ->take_all()
+      ->expected(1);
 }
 
 PrepareOptions SceneOptions::prepare_options() const {

@@ -24,6 +24,7 @@ void add_render(CLI::App& app, Command& command);
 void add_view(CLI::App& app, Command& command);
 void add_export(CLI::App& app, Command& command);
 void add_check(CLI::App& app, Command& command);
+void add_sweep(CLI::App& app, Command& command);
 void add_devices(CLI::App& app, Command& command);
 
 /// The scene's path and what may be chosen over what it says.
@@ -35,7 +36,11 @@ struct SceneOptions {
   std::uint32_t cells = 0;       // in a round contact; 0: as the models need
   std::uint32_t iterations = 2;  // of contact model patch over its cells in a step
 
+  std::vector<std::string> settings;  // of --set, in their order
+
   void add_to(CLI::App& subcommand);
+  /// --set, for commands that prepare a scene once.
+  CLI::Option* add_settings_to(CLI::App& subcommand);
   [[nodiscard]] PrepareOptions prepare_options() const;
 };
 

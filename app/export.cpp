@@ -67,8 +67,8 @@ int export_scene(const ExportOptions& options) {
   if (!options.replay.empty()) {
     return export_recording(options, extension == ".glb");
   }
-  Result<Session> opened =
-      open_session(options.scene.scene, options.scene.prepare_options(), options.quiet);
+  Result<Session> opened = open_session(options.scene.scene, options.scene.prepare_options(),
+                                        options.quiet, options.scene.settings);
   if (!opened) {
     return fail(opened.error().text);
   }
@@ -104,6 +104,7 @@ void add_export(CLI::App& app, Command& command) {
       "--replay", options->replay,
       "A recording instead of a moment: the scene, its tools animated as they were recorded");
   replay->excludes(at);
+  options->scene.add_settings_to(*subcommand)->excludes(replay);
   subcommand->add_option("--out", options->out, "A .glb or .gltf to write")->required();
   subcommand->add_flag("--quiet", options->quiet, "Print nothing but errors");
   subcommand->callback([options, at, replay, &command] {

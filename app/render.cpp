@@ -144,8 +144,8 @@ PictureScales scales_of_run(Session& session, const RenderOptions& options, doub
 }
 
 int render(const RenderOptions& options) {
-  Result<Session> opened =
-      open_session(options.scene.scene, options.scene.prepare_options(), options.quiet);
+  Result<Session> opened = open_session(options.scene.scene, options.scene.prepare_options(),
+                                        options.quiet, options.scene.settings);
   if (!opened) {
     return fail(opened.error().text);
   }
@@ -220,6 +220,7 @@ void add_render(CLI::App& app, Command& command) {
       app.add_subcommand("render", "Draw a scene to a PNG, a folder of PNGs, or an .mp4");
   auto options = std::make_shared<RenderOptions>();
   options->scene.add_to(*subcommand);
+  options->scene.add_settings_to(*subcommand);
   subcommand->add_option("--out", options->out, "NAME.png with --at, NAME.mp4, or a folder")
       ->required();
   subcommand->add_option("--at", options->at, "The one moment to draw (s)")

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/progress.hpp"
+#include "app/scene_settings.hpp"
 #include "device/scripted_motion.hpp"
 #include "scenes/load_gltf.hpp"
 #include "systems/contact/region_wrenches.hpp"
@@ -22,10 +23,13 @@ Result<Session> open_scene(const std::filesystem::path& path) {
 }
 
 Result<Session> open_session(const std::filesystem::path& path, const PrepareOptions& options,
-                             bool quiet) {
+                             bool quiet, std::span<const std::string> settings) {
   Result<Session> session = open_scene(path);
   if (!session) {
     return session.error();
+  }
+  if (const Result<Done> done = apply_settings(settings, session.value().scene); !done) {
+    return done.error();
   }
   PrepareOptions informed = options;
   informed.expected_poses = expected_poses(session.value().scene);

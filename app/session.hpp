@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "ecs/scene_description.hpp"
@@ -21,9 +22,10 @@ Result<Session> open_scene(const std::filesystem::path& path);
 
 /// Loads and prepares a scene, with a bar where that takes long. The error has all problems of the
 /// file, one a line.
-/// @param quiet  no bar
+/// @param quiet     no bar
+/// @param settings  values over what the file says (app/scene_settings.hpp)
 Result<Session> open_session(const std::filesystem::path& path, const PrepareOptions& options,
-                             bool quiet);
+                             bool quiet, std::span<const std::string> settings = {});
 
 /// prepare() with a bar where that takes long.
 Result<Simulation> prepare_with_bar(const SceneDescription& scene, const PrepareOptions& options,

@@ -35,10 +35,10 @@ std::vector<std::string> tool_names(const SceneDescription& scene) {
 /// What the command line can get wrong in ways that only the file behind it shows.
 Result<Session> open_for_run(const SimulateOptions& options, const Recording* replayed) {
   const bool quiet = options.quiet || options.json;
-  Result<Session> opened =
-      replayed != nullptr
-          ? open_recorded(options.scene.scene, *replayed, quiet)
-          : open_session(options.scene.scene, options.scene.prepare_options(), quiet);
+  Result<Session> opened = replayed != nullptr
+                               ? open_recorded(options.scene.scene, *replayed, quiet)
+                               : open_session(options.scene.scene, options.scene.prepare_options(),
+                                              quiet, options.scene.settings);
   if (opened && replayed == nullptr && options.seconds < 0.0 &&
       opened.value().scene.duration <= 0.0) {
     return Error{opened.value().scene.path +
@@ -179,6 +179,8 @@ void add_simulate(CLI::App& app, Command& command) {
                    "What holds the tool: usb, or usb:falcon+odrive and the like")
       ->needs(realtime);
   add_device_options(*subcommand, options->device);
+  // A recording is of what the scene's file says and what was picked in the window.
+  options->scene.add_settings_to(*subcommand)->excludes(record)->excludes(replay);
   replay->excludes(record)->excludes(realtime);
   for (const char* chosen :
        {"--contact-model", "--body-model", "--rate", "--cells", "--iterations"}) {

@@ -1,0 +1,177 @@
+#include "app/scene_settings.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "ecs/model_names.hpp"
+#include "scenes/conventions.hpp"
+#include "scenes/extras.hpp"
+
+namespace torsion::engine {
+namespace {
+
+struct Setting {
+  std::string node;
+  std::string key;
+  std::string value;
+};
+
+Setting split(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::size_t dot = text.rfind('.', equals);
+  return {text.substr(0, dot), text.substr(dot + 1, equals - dot - 1), text.substr(equals + 1)};
+}
+
+struct BodyNumber {
+  std::string_view key;
+  double& (*of)(BodyDescription&);
+};
+constexpr BodyNumber kBodyNumbers[] = {{"youngs_modulus",
+                                        [](BodyDescription& body) -> double& {
+                                          return body.elasticity.youngs_modulus;
+                                        }},
+                                       {"poisson_ratio",
+                                        [](BodyDescription& body) -> double& {
+                                          return body.elasticity.poisson_ratio;
+                                        }},
+                                       {"density",
+                                        [](BodyDescription& body) -> double& {
+                                          return body.elasticity.density;
+                                        }},
+                                       {"static_friction",
+                                        [](BodyDescription& body) -> double& {
+                                          return body.friction.static_friction;
+                                        }},
+                                       {"dynamic_friction",
+                                        [](BodyDescription& body) -> double& {
+                                          return body.friction.dynamic_friction;
+                                        }},
+                                       {"tolerance",
+                                        [](BodyDescription& body) -> double& {
+                                          return body.models.tolerance;
+                                        }},
+                                       {"region_threshold", [](BodyDescription& body) -> double& {
+                                          return body.models.region_threshold;
+                                        }}};
+constexpr std::string_view kBodyTexts[] = {"contact_model", "body_model"};
+
+const SceneKey& scene_key(std::string_view key) {
+  return *std::ranges::find(kSceneKeys, "torsion_" + std::string(key), &SceneKey::name);
+}
+
+/// The number that the text is, within the bounds of the file's key.
+std::optional<double> number_of(const Setting& setting) {
+  double number = 0.0;
+  const char* const end = setting.value.data() + setting.value.size();
+  const auto read = std::from_chars(setting.value.data(), end, number);
+  const SceneKey& key = scene_key(setting.key);
+  const bool fits = read.ec == std::errc{} && read.ptr == end && number >= key.least &&
+                    number <= key.most && (number > key.least || key.least_is_allowed);
+  return fits ? std::optional(number) : std::nullopt;
+}
+
+/// What a value should have been.
+std::string expected(std::string_view key) {
+  const SceneKey& known = scene_key(key);
+  return known.kind == KeyKind::kText ? "expected one of " + std::string(known.allowed)
+                                      : "expected " + std::string(known.allowed);
+}
+
+std::string unknown_key(const Setting& setting, std::span<const std::string_view> keys,
+                        const char* what) {
+  std::vector<std::string_view> known(keys.begin(), keys.end());
+  const auto meant = did_you_mean(setting.key, known);
+  return fmt::format("{} has no \"{}\"{}; it has {}", what, setting.key,
+                     meant ? ", did you mean \"" + *meant + "\"?" : "", fmt::join(known, ", "));
+}
+
+/// Empty, or what is wrong.
+std::string set_on_body(const Setting& setting, BodyDescription& body) {
+  const auto number = std::ranges::find(kBodyNumbers, setting.key, &BodyNumber::key);
+  if (number != std::end(kBodyNumbers)) {
+    const std::optional<double> value = number_of(setting);
+    if (!value) {
+      return expected(setting.key);
+    }
+    number->of(body) = *value;
+    return "";
+  }
+  if (setting.key == "contact_model") {
+    const auto model = contact_model_named(setting.value);
+    body.models.contact = model.value_or(body.models.contact);
+    return model ? "" : expected(setting.key);
+  }
+  if (setting.key == "body_model") {
+    const auto model = body_model_named(setting.value);
+    body.models.body = model.value_or(body.models.body);
+    return model ? "" : expected(setting.key);
+  }
+  std::vector<std::string_view> keys;
+  std::ranges::transform(kBodyNumbers, std::back_inserter(keys), &BodyNumber::key);
+  std::ranges::copy(kBodyTexts, std::back_inserter(keys));
+  return unknown_key(setting, keys, "an elastic node");
+}
+
+std::string set_on_tool(const Setting& setting, ToolDescription& tool) {
+  if (setting.key != "mass") {
+    constexpr std::string_view kKeys[] = {"mass"};
+    return unknown_key(setting, kKeys, "a tool");
+  }
+  const std::optional<double> mass = number_of(setting);
+  if (!mass) {
+    return expected(setting.key);
+  }
+  tool.mass.inertia *= *mass / tool.mass.mass;
+  tool.mass.mass = *mass;
+  return "";
+}
+
+std::string set(const Setting& setting, SceneDescription& scene) {
+  const auto body = std::ranges::find(scene.bodies, setting.node, &BodyDescription::node);
+  if (body != scene.bodies.end()) {
+    return set_on_body(setting, *body);
+  }
+  const auto tool = std::ranges::find(scene.tools, setting.node, &ToolDescription::node);
+  if (tool != scene.tools.end()) {
+    return set_on_tool(setting, *tool);
+  }
+  std::vector<std::string_view> names;
+  std::ranges::transform(scene.bodies, std::back_inserter(names), &BodyDescription::node);
+  std::ranges::transform(scene.tools, std::back_inserter(names), &ToolDescription::node);
+  return fmt::format("the scene has no elastic node or tool \"{}\"; it has {}", setting.node,
+                     fmt::join(names, ", "));
+}
+
+}  // namespace
+
+std::string setting_form_problem(const std::string& setting) {
+  const std::size_t equals = setting.find('=');
+  const std::size_t dot = setting.rfind('.', equals);
+  const bool fits = equals != std::string::npos && dot != std::string::npos && dot > 0 &&
+                    dot + 1 < equals && equals + 1 < setting.size();
+  return fits ? "" : "expected NODE.KEY=VALUE, as cube.youngs_modulus=2e4";
+}
+
+Result<Done> apply_settings(std::span<const std::string> settings, SceneDescription& scene) {
+  for (const std::string& text : settings) {
+    const std::string problem = set(split(text), scene);
+    if (!problem.empty()) {
+      return Error{fmt::format("{}: --set {}: {}", scene.path, text, problem)};
+    }
+  }
+  for (const BodyDescription& body : scene.bodies) {
+    if (body.friction.static_friction < body.friction.dynamic_friction) {
+      return Error{fmt::format(
+          "{}: --set leaves node \"{}\" with a static_friction of {}, expected at least the "
+          "dynamic_friction of {}; set both",
+          scene.path, body.node, body.friction.static_friction, body.friction.dynamic_friction)};
+    }
+  }
+  return Done{};
+}
+
+}  // namespace torsion::engine

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "ecs/result.hpp"
+#include "ecs/scene_description.hpp"
+
+namespace torsion::engine {
+
+/// Empty for a text of the form NODE.KEY=VALUE, else what is wrong with it. A node's name may have
+/// dots, a key has none.
+std::string setting_form_problem(const std::string& setting);
+
+/// Puts values over what a scene file says, in their order: of an elastic node youngs_modulus,
+/// poisson_ratio, density, static_friction, dynamic_friction, tolerance, region_threshold,
+/// contact_model and body_model, of a tool mass; each with the bounds that the file's key has
+/// (docs/scenes.md). Fails on the first that cannot be. @pre they have that form
+Result<Done> apply_settings(std::span<const std::string> settings, SceneDescription& scene);
+
+}  // namespace torsion::engine

@@ -5,8 +5,8 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
-#include <optional>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -120,8 +120,8 @@ constexpr std::size_t kPortsAtOnce = 8;  // solved together: enough for the matr
 constexpr double kShareOfFactor = 0.3;   // of the time, roughly, for the progress
 
 /// Eigen cuts large products into blocks by the sizes of the processor's caches, which determine
-/// the order of rounding. Fixed sizes give the same bits on every machine. They are Eigen's globals:
-/// scenes may be prepared in several threads.
+/// the order of rounding. Fixed sizes give the same bits on every machine. They are Eigen's
+/// globals: scenes may be prepared in several threads.
 void fix_product_blocks() {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);

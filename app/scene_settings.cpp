@@ -91,7 +91,7 @@ std::string unknown_key(const Setting& setting, std::span<const std::string_view
 
 /// Empty, or what is wrong.
 std::string set_on_body(const Setting& setting, BodyDescription& body) {
-  const auto number = std::ranges::find(kBodyNumbers, setting.key, &BodyNumber::key);
+  const auto* const number = std::ranges::find(kBodyNumbers, setting.key, &BodyNumber::key);
   if (number != std::end(kBodyNumbers)) {
     const std::optional<double> value = number_of(setting);
     if (!value) {

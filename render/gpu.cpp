@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -191,10 +192,25 @@ std::string full_name(const vk::raii::PhysicalDevice& physical) {
          ", " + driver.driverName.data() + " " + driver.driverInfo.data();
 }
 
+/// A Gpu with nothing but the loader; none where there is no loader to be found.
+std::optional<Gpu> find_loader() {
+  try {
+    return Gpu{};
+  } catch (const std::runtime_error&) {  // what vulkan.hpp's dynamic loader says
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 Result<Gpu> open_gpu(const GpuOptions& options) {
-  Gpu gpu;
+  std::optional<Gpu> found = find_loader();
+  if (!found) {
+    return Error{
+        "Drawing needs Vulkan, and its loader is not installed (package libvulkan1; with a driver, "
+        "such as those of mesa-vulkan-drivers)."};
+  }
+  Gpu gpu = *std::move(found);
   if (options.validation != nullptr && !has_validation_layer(gpu.context)) {
     return Error{"The Vulkan validation layer is not installed (package vulkan-validationlayers)."};
   }

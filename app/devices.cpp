@@ -68,7 +68,7 @@ std::vector<std::string> notes_of(const ListedDevice& device) {
           "--device usb:woodenhaptics takes it");
       break;
     case DeviceKind::kOdrive:
-      notes.emplace_back("measures and displays torque about the twist axis");
+      notes.emplace_back("measures and displays torque about the turn axis");
       break;
   }
   return notes;

@@ -64,7 +64,7 @@ std::size_t carry_with_falcons(DeviceLoop& loop) {
   return count;
 }
 
-/// Who does what: a device with force translates before one without, a knob twists, and what is
+/// Who does what: a device with force translates before one without, a knob turns, and what is
 /// left that can turn turns.
 void give_roles(DeviceLoop& loop) {
   for (DeviceRow& row : loop.rows) {
@@ -84,7 +84,7 @@ void give_roles(DeviceLoop& loop) {
       mouse->role = mover != nullptr ? DeviceRole::kRotation : DeviceRole::kTranslationAndRotation;
     }
     if (knob != nullptr) {
-      knob->role = DeviceRole::kTwist;
+      knob->role = DeviceRole::kKnob;
     }
   }
 }
@@ -124,7 +124,7 @@ void add_traits(DeviceTraits& whole, const DeviceRow& row) {
     whole.largest_force = part.largest_force;
     whole.largest_stiffness = part.largest_stiffness;
   }
-  if (turns(row.role) || row.role == DeviceRole::kTwist) {
+  if (turns(row.role) || row.role == DeviceRole::kKnob) {
     whole.encoder_turn_step = std::max(whole.encoder_turn_step, part.encoder_turn_step);
     whole.largest_torque = std::max(whole.largest_torque, part.largest_torque);
   }
@@ -162,7 +162,7 @@ void turn_by_buttons(DeviceLoop& loop, double now) {
   const double right = (whole.buttons & by.right) != 0 ? 1.0 : 0.0;
   loop.button_turn = std::remainder(loop.button_turn + (left - right) * by.speed * elapsed,
                                     2.0 * std::numbers::pi);
-  whole.pose.rotation = glm::angleAxis(loop.button_turn, loop.options.twist_axis);
+  whole.pose.rotation = glm::angleAxis(loop.button_turn, loop.options.turn_axis);
 }
 
 /// All devices as one.
@@ -174,7 +174,7 @@ void compose(DeviceLoop& loop) {
   whole.steers_rate = false;
   whole.buttons = 0;
   Pose pose;
-  glm::dquat twist(1.0, 0.0, 0.0, 0.0);
+  glm::dquat knob_turn(1.0, 0.0, 0.0, 0.0);
   for (const DeviceRow& row : loop.rows) {
     const DeviceSample& sample = row.report.sample;
     if (!row.used || row.role == DeviceRole::kNone) {
@@ -193,14 +193,14 @@ void compose(DeviceLoop& loop) {
       whole.sensed |= kRotationAxes;
       whole.actuated |= sample.actuated & kRotationAxes;
     }
-    if (row.role == DeviceRole::kTwist) {
+    if (row.role == DeviceRole::kKnob) {
       const double angle = 2.0 * std::atan2(sample.pose.rotation.y, sample.pose.rotation.w);
-      twist = glm::angleAxis(angle, loop.options.twist_axis);
-      whole.sensed |= kTwistAxis;
-      whole.actuated |= kTwistAxis;
+      knob_turn = glm::angleAxis(angle, loop.options.turn_axis);
+      whole.sensed |= kTurnAxis;
+      whole.actuated |= kTurnAxis;
     }
   }
-  whole.pose = {pose.position, pose.rotation * twist};
+  whole.pose = {pose.position, pose.rotation * knob_turn};
   if (loop.carried.count >= 2) {
     compose_points(loop, whole);
   }
@@ -229,8 +229,8 @@ Wrench part_of(const DeviceLoop& loop, const DeviceRow& row) {
     case DeviceRole::kTranslation:
     case DeviceRole::kTranslationAndRotation:
       return {loop.wrench.force, glm::dvec3(0.0)};
-    case DeviceRole::kTwist: {
-      const glm::dvec3 axis = whole.pose.rotation * loop.options.twist_axis;
+    case DeviceRole::kKnob: {
+      const glm::dvec3 axis = whole.pose.rotation * loop.options.turn_axis;
       return {glm::dvec3(0.0), {0.0, glm::dot(loop.wrench.torque, axis), 0.0}};
     }
     case DeviceRole::kPoint: {

@@ -18,11 +18,11 @@ enum class DeviceRole : std::uint8_t {
   kTranslation,
   kRotation,
   kTranslationAndRotation,
-  kTwist,  // on top of the rotation, if there is another
+  kKnob,   // on top of the rotation, if there is another
   kPoint,  // one of two or three that carry the tool
 };
 
-/// Buttons that turn the tool about its twist axis, for a device that senses no turn.
+/// Buttons that turn the tool about its turn axis, for a device that senses no turn.
 struct TurnButtons {
   std::uint32_t left = 1U << 0;   // bits of DeviceSample::buttons: counter-clockwise while held
   std::uint32_t right = 1U << 3;  // clockwise
@@ -32,9 +32,9 @@ struct TurnButtons {
 struct LoopOptions {
   DriverOptions drivers;
   TurnButtons turn_buttons;
-  std::uint32_t kinds = kUsualDevices;   // bits 1 << DeviceKind: which may be used
-  glm::dvec3 twist_axis{0.0, 1.0, 0.0};  // world, at rest: what a knob turns about
-  double spacing = 0.2;                  // m: between devices that carry a tool together
+  std::uint32_t kinds = kUsualDevices;  // bits 1 << DeviceKind: which may be used
+  glm::dvec3 turn_axis{0.0, 1.0, 0.0};  // world, at rest: what a knob turns about
+  double spacing = 0.2;                 // m: between devices that carry a tool together
 };
 
 struct DeviceRow {

@@ -38,7 +38,7 @@ std::string trouble_text(const DeviceSample& sample) {
 std::string sensed_text(std::uint8_t sensed) {
   const bool moves = (sensed & kTranslationAxes) != 0;
   const char* const turns = (sensed & kRotationAxes) != 0 ? "turning"
-                            : (sensed & kTwistAxis) != 0  ? "twist"
+                            : (sensed & kTurnAxis) != 0   ? "turn"
                                                           : "";
   return fmt::format("{}{}{}", moves ? "translation" : "", moves && *turns != 0 ? " and " : "",
                      turns);
@@ -47,7 +47,7 @@ std::string sensed_text(std::uint8_t sensed) {
 std::string actuated_text(std::uint8_t actuated) {
   const bool force = (actuated & kTranslationAxes) != 0;
   const char* const torque = (actuated & kRotationAxes) != 0 ? "torque"
-                             : (actuated & kTwistAxis) != 0  ? "torque about the twist axis"
+                             : (actuated & kTurnAxis) != 0   ? "torque about the turn axis"
                                                              : "";
   if (!force && *torque == 0) {
     return "nothing: force and torque are not displayed";

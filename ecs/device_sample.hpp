@@ -13,7 +13,7 @@ enum DeviceAxes : std::uint8_t {
   kNoAxes = 0,
   kTranslationAxes = 1,
   kRotationAxes = 2,  // all three
-  kTwistAxis = 4,     // only about the tool's own y axis
+  kTurnAxis = 4,      // only about the tool's own y axis
 };
 
 enum class DeviceState : std::uint8_t {

@@ -98,7 +98,7 @@ Result<std::unique_ptr<DeviceLink>> DeviceLink::open(const DeviceChoice& choice,
   link->side_.hold = choice.hold;
   UsbBusOptions options;
   options.loop.kinds = kinds.value();
-  options.loop.twist_axis = tool.rotation * glm::dvec3(0.0, 1.0, 0.0);
+  options.loop.turn_axis = tool.rotation * glm::dvec3(0.0, 1.0, 0.0);
   options.loop.drivers.falcon_firmware = link->firmware_;
   options.loop.drivers.largest_knob_torque = choice.largest_knob_torque;
   options.loop.turn_buttons = choice.turn_buttons;

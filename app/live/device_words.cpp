@@ -80,16 +80,16 @@ std::string not_displayed(const DeviceView& view) {
   }
   const bool force = (sample.actuated & kTranslationAxes) != 0;
   const bool torque = (sample.actuated & kRotationAxes) != 0;
-  const bool twist = (sample.actuated & kTwistAxis) != 0;
-  if (!force && !torque && !twist) {
+  const bool turn_only = (sample.actuated & kTurnAxis) != 0;
+  if (!force && !torque && !turn_only) {
     return "Force and torque are only drawn: this device displays neither.";
   }
   if (!force) {
     return "The force is only drawn: this device does not display it.";
   }
   if (!torque) {
-    return twist ? "Of the torque only the part about the twist axis is displayed."
-                 : "The torque is only drawn: this device does not display it.";
+    return turn_only ? "Of the torque only the part about the turn axis is displayed."
+                     : "The torque is only drawn: this device does not display it.";
   }
   return "";
 }

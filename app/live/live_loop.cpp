@@ -170,7 +170,7 @@ LiveRow live_row(const LiveLoop& loop, std::uint32_t tool, double step_us, doubl
       const glm::dquat& to_world = world.model.bodies.at<Pose>(identity.body).rotation;
       row.normal = to_world * world.state.regions.at<RegionFrame>(region).normal;
       row.tangent_x = to_world * world.state.regions.at<RegionFrame>(region).tangent_x;
-      row.twist = world.state.regions.at<RegionMotion>(region).turn;
+      row.turn = world.state.regions.at<RegionMotion>(region).turn;
       row.couple = world.state.regions.at<RegionFriction>(region).couple;
       break;
     }

@@ -76,7 +76,7 @@ struct LiveRow {
   // Of the tool's oldest region; without one zero.
   glm::dvec3 normal{0.0};     // world, unit
   glm::dvec3 tangent_x{0.0};  // world, unit
-  double twist = 0.0;         // rad: since the region formed
+  double turn = 0.0;          // rad: of the tool, since the region formed
   double couple = 0.0;        // N m: about the normal through the pressure centre, on the tool
   std::uint64_t generation = 0;
   std::uint32_t tool = 0;

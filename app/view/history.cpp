@@ -31,7 +31,7 @@ void History::add(const LiveRow& row, double device_hz) {
       row.trace.time,
       row.trace.wrench,
       in_contact_axes(row.trace.wrench, row.normal, row.tangent_x),
-      row.twist,
+      row.turn,
       row.couple,
       longest_step_,
       latest_,

@@ -13,7 +13,7 @@ struct PlotPoint {
   double time = 0.0;       // s
   Wrench world;            // on the tool
   Wrench contact;          // the same along the oldest region's tangents (x, y) and normal (z)
-  double twist = 0.0;      // rad
+  double turn = 0.0;       // rad: of the tool
   double couple = 0.0;     // N m
   double step_us = 0.0;    // the longest of the rows that the point stands for
   double late_us = 0.0;    // likewise

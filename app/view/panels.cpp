@@ -272,11 +272,11 @@ void turn_plot(const History& history) {
   Curve current{"", kBlue, {}, {}};
   for (std::size_t i = 0; i < history.size(); ++i) {
     const PlotPoint& point = history[i];
-    if (point.generation + 1 < now || (point.twist == 0.0 && point.couple == 0.0)) {
+    if (point.generation + 1 < now || (point.turn == 0.0 && point.couple == 0.0)) {
       continue;
     }
     Curve& curve = point.generation == now ? current : before;
-    curve.x.push_back(point.twist * 180.0 / std::numbers::pi);
+    curve.x.push_back(point.turn * 180.0 / std::numbers::pi);
     curve.y.push_back(point.couple);
   }
   if (before.x.empty()) {

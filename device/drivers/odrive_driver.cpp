@@ -162,8 +162,8 @@ void again_later(OdriveDriver& driver, DriverCall& call, DeviceTrouble trouble) 
 void begin(OdriveDriver& driver, DriverCall& call) {
   driver = fresh(driver);
   DeviceSample& sample = call.report.sample;
-  sample.sensed = kTwistAxis;
-  sample.actuated = kTwistAxis;
+  sample.sensed = kTurnAxis;
+  sample.actuated = kTurnAxis;
   sample.traits = {};
   sample.traits.largest_torque = call.options.largest_knob_torque;
   sample.traits.encoder_turn_step = 2.0 * std::numbers::pi / 8192.0;  // rad: its usual encoder

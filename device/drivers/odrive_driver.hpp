@@ -1,6 +1,6 @@
 #pragma once
 
-// ODrive v3 as a knob: its motor's shaft is the tool's twist axis. Torque in N m goes out, turns
+// ODrive v3 as a knob: its motor's shaft is the tool's turn axis. Torque in N m goes out, turns
 // come back, as lines of text.
 
 #include "device/drivers/motor_driver.hpp"

@@ -21,7 +21,7 @@ struct Seen {
   bool held;                 // whether it is
   double normal_force;       // N, along z
   glm::dvec3 tangent_force;  // N
-  double twist;              // N m, about z
+  double torsion;            // N m, about z
   glm::dvec3 arm;            // N m: a dipole (force along z, at +arm less at -arm) is the couple
 };
 
@@ -37,7 +37,7 @@ Seen seen_from(const Port& load, const Wrench& wrench, const glm::dvec3& point) 
   seen.sum = seen.distance * (seen.held ? 0.2 + share * share / 0.8 : share);
   seen.normal_force = glm::dot(wrench.force, seen.inward);
   seen.tangent_force = wrench.force - seen.normal_force * seen.inward;
-  seen.twist = glm::dot(wrench.torque, seen.inward);
+  seen.torsion = glm::dot(wrench.torque, seen.inward);
   // arm x inward is the couple about the tangents
   seen.arm = glm::cross(seen.inward, wrench.torque);
   return seen;
@@ -46,7 +46,7 @@ Seen seen_from(const Port& load, const Wrench& wrench, const glm::dvec3& point) 
 /// Displacement times 4 pi G. With e inward, p along, k = 1 - 2 nu, s = R + z:
 ///   Boussinesq  (z/R^3 - k/(R s)) p + (z^2/R^3 + (1 + k)/R) e
 ///   Cerruti     (1/R + k/s) Q + (Q.p) [(1/R^3 - k/(R s^2)) p + (z/R^3 + k/(R s)) e]
-///   twist       e x p / R^3
+///   torsion     e x p / R^3
 ///   dipole      minus the derivative of Boussinesq's along `arm`
 glm::dvec3 scaled_displacement(const Seen& seen, double k) {
   const double r1 = 1.0 / seen.distance;
@@ -63,13 +63,13 @@ glm::dvec3 scaled_displacement(const Seen& seen, double k) {
   return seen.tangent_force * (r1 + k * s1) - seen.arm * spread +
          seen.along * (seen.normal_force * spread + pull * (r3 - k * r1 * s1 * s1) - spread_slope) +
          seen.inward * (seen.normal_force * sink + pull * (z * r3 + k * r1 * s1) - sink_slope) +
-         glm::cross(seen.inward, seen.along) * (seen.twist * r3);
+         glm::cross(seen.inward, seen.along) * (seen.torsion * r3);
 }
 
 /// Half its curl times 4 pi G. The derivatives collapse to
 ///   Boussinesq  (1 + k) e x p / R^3
 ///   Cerruti     Q x p / R^3 + (z/R^3 + k/(R s)) Q x e + k (Q.p) (z + 2 R)/(R^3 s^2) e x p
-///   twist       (3 z (p + z e)/R^5 - e/R^3) / 2
+///   torsion     (3 z (p + z e)/R^5 - e/R^3) / 2
 glm::dvec3 scaled_rotation(const Seen& seen, double k) {
   const double r1 = 1.0 / seen.distance;
   const double r3 = r1 * r1 * r1;
@@ -85,7 +85,7 @@ glm::dvec3 scaled_rotation(const Seen& seen, double k) {
          glm::cross(seen.inward, seen.arm) * ((1.0 + k) * r3) +
          glm::cross(seen.tangent_force, seen.along) * r3 +
          glm::cross(seen.tangent_force, seen.inward) * (z * r3 + k * r1 * s1) +
-         (offset * (3.0 * z * r5) - seen.inward * r3) * (0.5 * seen.twist);
+         (offset * (3.0 * z * r5) - seen.inward * r3) * (0.5 * seen.torsion);
 }
 
 /// A third of the stress's trace, Pa: exact at nu = 0.5, where it does not follow from the
@@ -141,7 +141,7 @@ glm::dmat3 scaled_gradient(const Seen& seen, double k) {
                                 spread_slope * seen.arm - lean * spread_slope_by;
   const glm::dvec3 inward_by = seen.normal_force * sink_by + dip * q + pull * dip_by -
                                sink_slope * seen.arm - lean * sink_slope_by;
-  const glm::dvec3 turned = seen.twist * r3 * e;
+  const glm::dvec3 turned = seen.torsion * r3 * e;
   glm::dmat3 gradient = glm::outerProduct(q, shift_by) - glm::outerProduct(seen.arm, spread_by) +
                         glm::outerProduct(p, outward_by) +
                         glm::outerProduct(e, inward_by - outward * e) +

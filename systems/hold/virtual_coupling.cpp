@@ -22,9 +22,9 @@ Wrench coupling_wrench(const VirtualCoupling& coupling, const MovingFrame& handl
   glm::dquat turn = handle.pose.rotation * glm::conjugate(tool.pose.rotation);
   turn = turn.w < 0.0 ? -turn : turn;
   // 2 sin(theta / 2) n
-  const glm::dvec3 twist = 2.0 * glm::dvec3(turn.x, turn.y, turn.z);
+  const glm::dvec3 chord = 2.0 * glm::dvec3(turn.x, turn.y, turn.z);
   const glm::dvec3 torque =
-      coupling.turn_stiffness * twist +
+      coupling.turn_stiffness * chord +
       coupling.turn_damping * (handle.angular_velocity - tool.angular_velocity);
   return {soft_limit(pull, coupling.largest_force), soft_limit(torque, coupling.largest_torque)};
 }

@@ -27,8 +27,8 @@ bool has(const std::string& text, const std::string& part) {
 TEST(DeviceWordsTest, TorqueThatIsNotDisplayedIsSaidAndTorqueThatIsNot) {
   EXPECT_TRUE(has(not_displayed(live_view(kTranslationAxes)), "torque is only drawn"));
   EXPECT_TRUE(has(not_displayed(live_view(kNoAxes)), "Force and torque are only drawn"));
-  EXPECT_TRUE(has(not_displayed(live_view(kTwistAxis)), "force is only drawn"));
-  EXPECT_TRUE(has(not_displayed(live_view(kTranslationAxes | kTwistAxis)), "twist axis"));
+  EXPECT_TRUE(has(not_displayed(live_view(kTurnAxis)), "force is only drawn"));
+  EXPECT_TRUE(has(not_displayed(live_view(kTranslationAxes | kTurnAxis)), "turn axis"));
   EXPECT_EQ(not_displayed(live_view(kTranslationAxes | kRotationAxes)), "");
 }
 
@@ -76,7 +76,7 @@ TEST(DeviceWordsTest, ABannerWhereThereIsNoForceAndNoneWhereAllIsWell) {
 }
 
 TEST(DeviceWordsTest, AMotorsErrorIsNamedWithWhatToDoInBannerAndSummary) {
-  DeviceView view = live_view(kTwistAxis);
+  DeviceView view = live_view(kTurnAxis);
   view.sample.state = DeviceState::kStarting;
   view.sample.trouble = DeviceTrouble::kMotorError;
   view.sample.motor_errors = 0x40000;

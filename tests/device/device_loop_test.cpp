@@ -32,8 +32,8 @@ TEST(DeviceLoopTest, AFalconMovesAndAKnobTwists) {
   const std::size_t second = bus.plug(knob);
   bus.run(kStartTime);
   ASSERT_EQ(client.last.state, DeviceState::kLive);
-  EXPECT_EQ(client.last.sensed, kTranslationAxes | kTwistAxis);
-  EXPECT_EQ(client.last.actuated, kTranslationAxes | kTwistAxis);
+  EXPECT_EQ(client.last.sensed, kTranslationAxes | kTurnAxis);
+  EXPECT_EQ(client.last.actuated, kTranslationAxes | kTurnAxis);
   EXPECT_NEAR(client.last.pose.position.x, 0.02, 1e-4);
   EXPECT_LT(client.last.pose.rotation.y, -0.38);  // sin(45 degrees / 2), less
   EXPECT_EQ(bus.without_force_for(first), 0.0);

@@ -160,7 +160,7 @@ TEST_F(UsbBusTest, AFalconAndAKnobAreOneDevice) {
   MockDevice& knob = usb_.plug(EmulatedOdrive{}, "cdc_acm");
   ASSERT_TRUE(test::comes_true([&] {
     const DeviceSample sample = client_.now();
-    return sample.state == DeviceState::kLive && sample.actuated == (kTranslationAxes | kTwistAxis);
+    return sample.state == DeviceState::kLive && sample.actuated == (kTranslationAxes | kTurnAxis);
   }));
   EXPECT_TRUE(test::comes_true([&] { return !falcon.without_force() && !knob.without_force(); }));
   knob.unplug();

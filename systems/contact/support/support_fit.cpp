@@ -159,8 +159,8 @@ const std::array<DiscPoint, kDiscPoints>& disc_points() {
 
 DiscForces spread_wrench(const ContactEllipse& contact, double DiscPoint::*shares,
                          const glm::dvec3& force, const glm::dvec3& couple) {
-  const double twist = glm::dot(couple, contact.normal);
-  const glm::dvec3 tilt = couple - contact.normal * twist;
+  const double about_normal = glm::dot(couple, contact.normal);
+  const glm::dvec3 tilt = couple - contact.normal * about_normal;
   double polar = 0.0;
   glm::dmat3 planar(0.0);
   for (const DiscPoint& point : disc_points()) {
@@ -178,7 +178,7 @@ DiscForces spread_wrench(const ContactEllipse& contact, double DiscPoint::*share
     const DiscPoint& point = disc_points()[q];
     const glm::dvec3 arm = contact.axis_1 * point.place.x + contact.axis_2 * point.place.y;
     forces[q] = point.*shares * (force + contact.normal * glm::dot(arm, slope) +
-                                 glm::cross(contact.normal, arm) * (twist / polar));
+                                 glm::cross(contact.normal, arm) * (about_normal / polar));
   }
   return forces;
 }

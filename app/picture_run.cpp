@@ -10,6 +10,7 @@
 
 #include "app/round_up.hpp"
 #include "render/auto_camera.hpp"
+#include "systems/contact/region_wrenches.hpp"
 #include "systems/surface/surface_field.hpp"
 
 namespace torsion::engine {

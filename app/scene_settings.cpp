@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
-#include <optional>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -63,15 +63,10 @@ const SceneKey& scene_key(std::string_view key) {
   return *std::ranges::find(kSceneKeys, "torsion_" + std::string(key), &SceneKey::name);
 }
 
-/// The number that the text is, within the bounds of the file's key.
+/// The number that the value is, within the bounds of the file's key.
 std::optional<double> number_of(const Setting& setting) {
-  double number = 0.0;
-  const char* const end = setting.value.data() + setting.value.size();
-  const auto read = std::from_chars(setting.value.data(), end, number);
-  const SceneKey& key = scene_key(setting.key);
-  const bool fits = read.ec == std::errc{} && read.ptr == end && number >= key.least &&
-                    number <= key.most && (number > key.least || key.least_is_allowed);
-  return fits ? std::optional(number) : std::nullopt;
+  const std::optional<double> number = read_number(setting.value);
+  return number && scene_key(setting.key).allows(*number) ? number : std::nullopt;
 }
 
 /// What a value should have been.
@@ -147,6 +142,14 @@ std::string set(const Setting& setting, SceneDescription& scene) {
 }
 
 }  // namespace
+
+std::optional<double> read_number(const std::string& text) {
+  double number = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, number);
+  return read.ec == std::errc{} && read.ptr == end && std::isfinite(number) ? std::optional(number)
+                                                                            : std::nullopt;
+}
 
 std::string setting_form_problem(const std::string& setting) {
   const std::size_t equals = setting.find('=');

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -7,6 +8,9 @@
 #include "ecs/scene_description.hpp"
 
 namespace torsion::engine {
+
+/// The finite number that all of a text is.
+std::optional<double> read_number(const std::string& text);
 
 /// Empty for a text of the form NODE.KEY=VALUE, else what is wrong with it. A node's name may have
 /// dots, a key has none.

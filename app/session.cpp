@@ -7,7 +7,6 @@
 #include "app/scene_settings.hpp"
 #include "device/scripted_motion.hpp"
 #include "scenes/load_gltf.hpp"
-#include "systems/contact/region_wrenches.hpp"
 
 namespace torsion::engine {
 
@@ -70,16 +69,6 @@ void step_scripted(Session& session) {
 std::uint64_t steps_in(const Session& session, double seconds) {
   const double dt = session.simulation.world.model.dt;
   return static_cast<std::uint64_t>(std::llround(seconds / dt));
-}
-
-std::string faults_text(std::uint32_t faults) {
-  std::string text;
-  for (const Fault fault : kAllFaults) {
-    if (raised(faults, fault)) {
-      text += std::string(fault_text(fault)) + "\n";
-    }
-  }
-  return text;
 }
 
 }  // namespace torsion::engine

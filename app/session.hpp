@@ -43,8 +43,4 @@ void step_scripted(Session& session);
 /// How many steps `seconds` take.
 std::uint64_t steps_in(const Session& session, double seconds);
 
-/// The faults in words, one a line; empty where there are none.
-/// @param faults  bits of Fault
-std::string faults_text(std::uint32_t faults);
-
 }  // namespace torsion::engine

@@ -52,6 +52,7 @@ Result<Study> read_study(const SweepOptions& options) {
   study.options = options.scene.prepare_options();
   study.options.threads = 1;  // runs are what is done at the same time
   study.options.expected_poses = expected_poses(study.scene);
+  study.mdr_tables = make_mdr_tables();
   study.seconds = options.seconds < 0.0 ? study.scene.duration : options.seconds;
   if (study.seconds <= 0.0) {
     return Error{study.scene.path +
@@ -63,7 +64,7 @@ Result<Study> read_study(const SweepOptions& options) {
 /// Of everything that a line of the table depends on: the scene's first run, prepared, and the
 /// study's own words.
 Result<std::string> identity_of(const Study& study) {
-  const Result<Simulation> first = prepare(study.scene, study.options);
+  const Result<Simulation> first = prepare(study.scene, study.options, &study.mdr_tables);
   if (!first) {
     return Error{study.scene.path + ": " + first.error().text};
   }

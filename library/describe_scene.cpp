@@ -25,9 +25,8 @@ using engine::ProblemList;
 /// Notes a number that the scene file's key of that meaning could not have.
 void check_number(const std::string& where, const char* field, const char* key, double value,
                   const ProblemList& problems) {
-  const auto row = std::ranges::find(engine::kSceneKeys, key, &engine::SceneKey::name);
-  if (value < row->least || value > row->most || std::isnan(value) ||
-      (value == row->least && !row->least_is_allowed)) {
+  const auto* const row = std::ranges::find(engine::kSceneKeys, key, &engine::SceneKey::name);
+  if (!row->allows(value)) {
     problems.add(where, field, fmt::format("{}", value), "expected " + std::string(row->allowed));
   }
 }

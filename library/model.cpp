@@ -123,13 +123,7 @@ Result<std::shared_ptr<const Model>> build(const Scene& scene, const Options& op
 }
 
 std::string describe_faults(std::uint32_t faults) {
-  std::string text;
-  for (const engine::Fault fault : engine::kAllFaults) {
-    if (engine::raised(faults, fault)) {
-      text += std::string(engine::fault_text(fault)) + "\n";
-    }
-  }
-  return text;
+  return engine::faults_text(faults);
 }
 
 }  // namespace torsion

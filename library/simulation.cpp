@@ -7,7 +7,7 @@
 #include "library/convert.hpp"
 #include "library/model_data.hpp"
 #include "library/simulation_data.hpp"
-#include "library/world_region.hpp"
+#include "systems/contact/world_region.hpp"
 #include "systems/hold/tool_hold.hpp"
 #include "systems/math/frames.hpp"
 
@@ -31,6 +31,12 @@ std::unique_ptr<Simulation::Data> make_data(const Model& model, const engine::St
   data->scratch.reserve(model.data().model(), data->state, &model.data().prepared.scratch->mdr);
   data->poses.resize(model.tool_count());
   return data;
+}
+
+/// As the body has moved the region's material by the end of the step.
+engine::WorldRegion world_region(const engine::Model& model, const engine::State& state,
+                                 std::uint32_t row) {
+  return {model, state, row, state.regions.at<engine::RegionSupport>(row)};
 }
 
 std::uint32_t row_of(std::size_t row) {
@@ -114,17 +120,19 @@ LoadParts Simulation::load_parts(std::size_t tool, const Vector3& point) const n
   glm::dvec3 lever(0.0);
   const engine::State& state = data_->state;
   for (std::uint32_t row = 0; row < state.regions.size(); ++row) {
-    const WorldRegion region(model_->data().model(), state, row);
-    if (region.identity.tool != tool) {
+    if (state.regions.at<engine::RegionIdentity>(row).tool != tool) {
       continue;
     }
+    const engine::WorldRegion region = world_region(model_->data().model(), state, row);
+    const engine::RegionFrame& frame = state.regions.at<engine::RegionFrame>(row);
+    const glm::dvec3 normal = region.direction(frame.normal);
     const engine::RegionFriction& tangential = state.regions.at<engine::RegionFriction>(row);
-    const glm::dvec3 pressed = state.regions.at<engine::RegionNormal>(row).force * region.normal();
-    const glm::dvec3 rubbed = region.along(tangential.force);
+    const glm::dvec3 pressed = state.regions.at<engine::RegionNormal>(row).force * normal;
+    const glm::dvec3 rubbed = region.direction(engine::tangent_to_body(frame, tangential.force));
     const glm::dvec3 place = region.place(state.regions.at<engine::Contact>(row).equivalent_point);
     normal_force += pressed;
     friction += rubbed;
-    couple += tangential.couple * region.normal();
+    couple += tangential.couple * normal;
     lever += glm::cross(place - to_engine(point), pressed + rubbed);
   }
   return {from_engine(normal_force), from_engine(friction), from_engine(couple),
@@ -158,22 +166,24 @@ std::size_t Simulation::region_count() const noexcept {
 Region Simulation::region(std::size_t region) const noexcept {
   TORSION_ASSERT(region < region_count());
   const engine::State& state = data_->state;
-  const WorldRegion at(model_->data().model(), state, row_of(region));
   const std::uint32_t row = row_of(region);
+  const engine::WorldRegion at = world_region(model_->data().model(), state, row);
+  const engine::RegionIdentity& identity = state.regions.at<engine::RegionIdentity>(row);
+  const engine::RegionFrame& frame = state.regions.at<engine::RegionFrame>(row);
   const engine::Contact& contact = state.regions.at<engine::Contact>(row);
   const engine::RegionFriction& friction = state.regions.at<engine::RegionFriction>(row);
   Region made;
-  made.id = at.identity.order;
-  made.body = at.identity.body;
-  made.tool = at.identity.tool;
+  made.id = identity.order;
+  made.body = identity.body;
+  made.tool = identity.tool;
   made.point = from_engine(at.place(contact.equivalent_point));
-  made.normal = from_engine(at.normal());
+  made.normal = from_engine(at.direction(frame.normal));
   made.area = contact.area;
   made.radius = contact.radius;
   made.depth = contact.depth;
   made.normal_force = state.regions.at<engine::RegionNormal>(row).force;
   made.mean_pressure = contact.area > 0.0 ? made.normal_force / contact.area : 0.0;
-  made.friction = from_engine(at.along(friction.force));
+  made.friction = from_engine(at.direction(engine::tangent_to_body(frame, friction.force)));
   made.couple = friction.couple;
   made.turn = state.regions.at<engine::RegionMotion>(row).turn;
   made.stick_share = friction.stick_share;
@@ -193,19 +203,22 @@ std::vector<Region> Simulation::regions() const {
 std::vector<Cell> Simulation::cells(std::size_t region) const {
   TORSION_ASSERT(region < region_count());
   const engine::State& state = data_->state;
-  const WorldRegion at(model_->data().model(), state, row_of(region));
+  const engine::WorldRegion at = world_region(model_->data().model(), state, row_of(region));
+  const engine::RegionIdentity& identity = state.regions.at<engine::RegionIdentity>(row_of(region));
+  const engine::RegionFrame& frame = state.regions.at<engine::RegionFrame>(row_of(region));
   const std::uint32_t side = model_->data().model().settings.grid_side;
-  const auto tractions = state.cells.rows<engine::CellTraction>(at.identity.cells);
-  const auto geometry = state.cells.rows<engine::CellGeometry>(at.identity.cells);
-  const double area = engine::cell_area(at.frame, side);
+  const auto tractions = state.cells.rows<engine::CellTraction>(identity.cells);
+  const auto geometry = state.cells.rows<engine::CellGeometry>(identity.cells);
+  const double area = engine::cell_area(frame, side);
   std::vector<Cell> made;
   for (std::uint32_t i = 0; i < tractions.size(); ++i) {
     if (tractions[i].pressure > 0.0) {
-      const glm::dvec2 center = engine::cell_center(at.frame, side, i % side, i / side);
+      const glm::dvec2 center = engine::cell_center(frame, side, i % side, i / side);
       made.push_back(
-          {from_engine(at.place(engine::grid_to_body(at.frame, {center, geometry[i].height}))),
+          {from_engine(at.place(engine::grid_to_body(frame, {center, geometry[i].height}))),
            area * tractions[i].coverage, tractions[i].pressure,
-           from_engine(at.along(tractions[i].traction)), tractions[i].sticks != 0});
+           from_engine(at.direction(engine::tangent_to_body(frame, tractions[i].traction))),
+           tractions[i].sticks != 0});
     }
   }
   return made;

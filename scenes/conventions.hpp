@@ -43,6 +43,12 @@ struct SceneKey {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
   bool least_is_allowed = true;
+
+  /// Whether a number is within the key's bounds. NaN and infinity are not.
+  [[nodiscard]] constexpr bool allows(double number) const {
+    return (least_is_allowed ? number >= least : number > least) && number <= most &&
+           number <= std::numeric_limits<double>::max();
+  }
 };
 
 constexpr std::uint32_t operator|(Role a, Role b) {

@@ -59,12 +59,7 @@ std::vector<std::string_view> words_of(std::string_view text) {
 }
 
 bool fits_number(const SceneKey& key, const tinygltf::Value& value) {
-  if (!value.IsNumber()) {
-    return false;
-  }
-  const double number = value.GetNumberAsDouble();
-  return std::isfinite(number) && number <= key.most &&
-         (key.least_is_allowed ? number >= key.least : number > key.least);
+  return value.IsNumber() && key.allows(value.GetNumberAsDouble());
 }
 
 bool fits_vector(const tinygltf::Value& value) {

@@ -27,7 +27,8 @@ struct Scratch {
   Schedule<StepContext> schedule;
 
   /// Takes all memory that a step can need. Load time only.
-  /// @param tables  those of another scratch of the same model, which take 40 ms to make; or null
+  /// @param tables  contact model mdr's, which are the same for all scenes; null: they are made,
+  ///                in 40 ms
   void reserve(const Model& model, State& state, const MdrTables* tables = nullptr);
 
   /// What the systems of a step get.

@@ -108,7 +108,8 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
-Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options) {
+Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options,
+                           const MdrTables* tables) {
   Result<PreparedWorld> prepared = prepare_world(scene, options);
   if (!prepared) {
     return prepared.error();
@@ -118,7 +119,7 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
   simulation.choices = std::move(prepared.value().choices);
   simulation.united_nodes = std::move(prepared.value().united_nodes);
   World& world = simulation.world;
-  simulation.scratch->reserve(world.model, world.state);
+  simulation.scratch->reserve(world.model, world.state, tables);
   simulation.snapshot_tables = std::make_unique<const SnapshotTables>(
       make_snapshot_tables(world.state, simulation.scratch->mdr));
   return simulation;

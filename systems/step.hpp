@@ -16,6 +16,7 @@
 namespace torsion::engine {
 
 struct Scratch;         // systems/scratch.hpp: memory of the systems of one step
+struct MdrTables;       // systems/mdr/places.hpp
 struct SnapshotTables;  // systems/surface/take_snapshot.hpp
 
 /// The systems of one step in the order of the paper's Fig. 4.
@@ -39,7 +40,9 @@ struct Simulation {
 
 /// What prepare_world (systems/model/prepare.hpp) makes of a scene, ready to step. Fails as that
 /// does.
-Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options);
+/// @param tables  contact model mdr's, which are the same for all scenes; null: they are made
+Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options,
+                           const MdrTables* tables = nullptr);
 
 /// One step of Model::dt: reads one pose a tool (that of the time Clock::step * dt). Never throws,
 /// never allocates; what went wrong is in Clock::faults. Different states, each with a scratch of

@@ -1,9 +1,7 @@
 #include "app/sweep/study.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -27,14 +25,6 @@ std::vector<std::string> parts_of(const std::string& text, char between) {
   return parts;
 }
 
-std::optional<double> number(const std::string& text) {
-  double value = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, value);
-  return read.ec == std::errc{} && read.ptr == end && std::isfinite(value) ? std::optional(value)
-                                                                           : std::nullopt;
-}
-
 /// The values of FIRST:LAST:COUNT or FIRST:LAST:COUNTlog; none where it is no such text.
 std::vector<std::string> range_of(const std::string& text) {
   std::vector<std::string> parts = parts_of(text, ':');
@@ -45,9 +35,9 @@ std::vector<std::string> range_of(const std::string& text) {
   if (ratios) {
     parts[2].resize(parts[2].size() - 3);
   }
-  const auto first = number(parts[0]);
-  const auto last = number(parts[1]);
-  const auto count = number(parts[2]);
+  const auto first = read_number(parts[0]);
+  const auto last = read_number(parts[1]);
+  const auto count = read_number(parts[2]);
   if (!first || !last || !count || *count < 2.0 || *count > 1e6 || *count != std::floor(*count) ||
       (ratios && !(*first > 0.0 && *last > 0.0))) {
     return {};
@@ -156,7 +146,7 @@ Result<std::string> run_one(const Study& study, std::uint64_t run) {
   if (const Result<Done> done = apply_settings(settings, session.scene); !done) {
     return done.error();
   }
-  Result<Simulation> prepared = prepare(session.scene, study.options);
+  Result<Simulation> prepared = prepare(session.scene, study.options, &study.mdr_tables);
   if (!prepared) {
     return Error{session.scene.path + ": " + prepared.error().text};
   }

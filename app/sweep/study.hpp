@@ -7,6 +7,7 @@
 
 #include "ecs/result.hpp"
 #include "ecs/scene_description.hpp"
+#include "systems/mdr/places.hpp"
 #include "systems/model/options.hpp"
 
 namespace torsion::engine {
@@ -29,6 +30,8 @@ struct Study {
   PrepareOptions options;
   double seconds = 0.0;    // s, of each run
   std::vector<Axis> axes;  // the last one changes fastest
+  // Of contact model mdr, the same for every run: they take as long to make as many a run.
+  MdrTables mdr_tables;
 
   [[nodiscard]] std::uint64_t runs() const;
   /// The settings of a run, NODE.KEY=VALUE.

@@ -12,6 +12,7 @@
 #include "systems/contact/scratch.hpp"
 #include "systems/contact/support/body_law.hpp"
 #include "systems/contact/tool_motion.hpp"
+#include "systems/contact/world_region.hpp"
 #include "systems/geometry/distance.hpp"
 #include "systems/math/finite.hpp"
 #include "systems/math/frames.hpp"
@@ -36,6 +37,16 @@ std::string_view fault_text(Fault fault) {
              "report the scene";
   }
   return "unknown fault";
+}
+
+std::string faults_text(std::uint32_t faults) {
+  std::string text;
+  for (const Fault fault : kAllFaults) {
+    if (raised(faults, fault)) {
+      text += std::string(fault_text(fault)) + "\n";
+    }
+  }
+  return text;
 }
 
 namespace {
@@ -229,29 +240,17 @@ RegionSupport support_now(const StepContext& context, std::uint32_t region) {
 }
 
 Wrench computed_wrench(const StepContext& context, std::uint32_t region) {
-  const Model& model = context.model;
   const State& state = context.state;
-  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const RegionFriction& friction = state.regions.at<RegionFriction>(region);
-  const Pose& body = model.bodies.at<Pose>(identity.body);
-  glm::dvec3 force = frame.normal * state.regions.at<RegionNormal>(region).force +
-                     tangent_to_body(frame, friction.force);
-  glm::dvec3 couple = frame.normal * friction.couple;
-  glm::dvec3 point = state.regions.at<Contact>(region).equivalent_point;
-  // The contact was found in the axes of the material under it, which has moved with the body.
-  const RegionSupport support = support_now(context, region);
-  const double turn = glm::length(support.rotation);
-  if (turn > 0.0) {
-    const glm::dquat rotation = glm::angleAxis(turn, support.rotation / turn);
-    force = rotation * force;
-    couple = rotation * couple;
-    point = support.about + rotation * (point - support.about) + support.translation;
-  }
-  const glm::dvec3 arm =
-      to_outer(body, point) - state.tools.at<ToolMotion>(identity.tool).mass_center;
-  const glm::dvec3 force_in_world = body.rotation * force;
-  return {force_in_world, glm::cross(arm, force_in_world) + body.rotation * couple};
+  const WorldRegion seen(context.model, state, region, support_now(context, region));
+  const glm::dvec3 force =
+      seen.direction(frame.normal * state.regions.at<RegionNormal>(region).force +
+                     tangent_to_body(frame, friction.force));
+  const std::uint32_t tool = state.regions.at<RegionIdentity>(region).tool;
+  const glm::dvec3 arm = seen.place(state.regions.at<Contact>(region).equivalent_point) -
+                         state.tools.at<ToolMotion>(tool).mass_center;
+  return {force, glm::cross(arm, force) + seen.direction(frame.normal * friction.couple)};
 }
 
 /// The share of a new region's force that comes from the tool's motion in this step: all of it if

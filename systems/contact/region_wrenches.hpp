@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "ecs/state.hpp"
@@ -18,6 +19,10 @@ inline bool raised(std::uint32_t faults, Fault fault) {
 
 /// What a fault means and what to do about it, one sentence.
 std::string_view fault_text(Fault fault);
+
+/// The faults in words, one a line; empty where there are none.
+/// @param faults  bits of Fault
+std::string faults_text(std::uint32_t faults);
 
 inline constexpr Fault kAllFaults[] = {Fault::kPoseNotFinite,   Fault::kPoseJumped,
                                        Fault::kTooDeep,         Fault::kRegionsFull,

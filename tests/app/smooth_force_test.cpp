@@ -14,6 +14,7 @@
 
 #include "app/session.hpp"
 #include "ecs/model_names.hpp"
+#include "systems/contact/region_wrenches.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/standout.hpp"
 #include "tests/support/studies.hpp"

@@ -91,9 +91,10 @@ TEST(LibrarySimulationTest, CellsCarryTheRegionsForce) {
     force += cell.pressure * cell.area;
     EXPECT_LT(std::hypot(cell.point[0], cell.point[2]), 1.5 * kContactRadius);
   }
-  // What the energy's books still take off the force: at most a tenth of a percent here.
+  // Less what the energy's books take off the force: regridding lends up to 0.2 %
+  // (patch/energy.cpp).
   const double carried = simulation.region(0).normal_force;
-  EXPECT_NEAR(force, carried, 1e-3 * carried);
+  EXPECT_NEAR(force, carried, 2e-3 * carried);
 }
 
 TEST(LibrarySimulationTest, ACopyGoesOnAlikeAndDisturbsNobody) {

@@ -126,7 +126,7 @@ def test_cells_carry_the_force():
     simulation.run(pressed_and_turned(turns=1, turn=0.0))
     cells = simulation.cells()
     force = (cells["pressure"] * cells["area"]).sum()
-    assert force == pytest.approx(simulation.regions()["normal_force"][0], rel=1e-3)
+    assert force == pytest.approx(simulation.regions()["normal_force"][0], rel=2e-3)  # as simulation_test.cpp
     assert cells["point"].shape == (len(cells), 3)
 
 

@@ -21,7 +21,7 @@ struct torsion_coupling {
 
 namespace {
 
-thread_local std::string last_error;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+thread_local std::string last_error;
 
 /// What `make` returns, or null with the reason in last_error: no exception gets into C.
 template <class Make>

@@ -40,6 +40,8 @@ class TORSION_API Model {
   explicit Model(std::unique_ptr<const Data> data) noexcept;  // for build()
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
+  Model(Model&&) = delete;
+  Model& operator=(Model&&) = delete;
   ~Model();
 
   [[nodiscard]] std::size_t body_count() const noexcept;

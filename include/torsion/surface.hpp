@@ -43,6 +43,8 @@ class TORSION_API Surface {
   /// @param body  a row of the model's bodies
   /// @param mesh  m, body frame: near the body's surface, as fine as dents are to be seen
   Surface(std::shared_ptr<const Model> model, std::size_t body, const Mesh& mesh);
+  Surface(const Surface&) = delete;
+  Surface& operator=(const Surface&) = delete;
   Surface(Surface&&) noexcept;
   Surface& operator=(Surface&&) noexcept;
   ~Surface();

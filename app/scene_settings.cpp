@@ -26,37 +26,32 @@ Setting split(const std::string& text) {
   return {text.substr(0, dot), text.substr(dot + 1, equals - dot - 1), text.substr(equals + 1)};
 }
 
+/// A number of an elastic node by its name; where it stands in several places, it is the same
+/// there.
 struct BodyNumber {
   std::string_view key;
-  double& (*of)(BodyDescription&);
+  std::string_view bounds_of;  // the file's key, without torsion_
+  std::vector<double*> (*places)(BodyDescription&);
 };
-constexpr BodyNumber kBodyNumbers[] = {{"youngs_modulus",
-                                        [](BodyDescription& body) -> double& {
-                                          return body.elasticity.youngs_modulus;
-                                        }},
-                                       {"poisson_ratio",
-                                        [](BodyDescription& body) -> double& {
-                                          return body.elasticity.poisson_ratio;
-                                        }},
-                                       {"density",
-                                        [](BodyDescription& body) -> double& {
-                                          return body.elasticity.density;
-                                        }},
-                                       {"static_friction",
-                                        [](BodyDescription& body) -> double& {
-                                          return body.friction.static_friction;
-                                        }},
-                                       {"dynamic_friction",
-                                        [](BodyDescription& body) -> double& {
-                                          return body.friction.dynamic_friction;
-                                        }},
-                                       {"tolerance",
-                                        [](BodyDescription& body) -> double& {
-                                          return body.models.tolerance;
-                                        }},
-                                       {"region_threshold", [](BodyDescription& body) -> double& {
-                                          return body.models.region_threshold;
-                                        }}};
+#define TORSION_NUMBER(key, place)              \
+  BodyNumber {                                  \
+    key, key, [](BodyDescription& body) {       \
+      return std::vector<double*>{&body.place}; \
+    }                                           \
+  }
+constexpr BodyNumber kBodyNumbers[] = {
+    TORSION_NUMBER("youngs_modulus", elasticity.youngs_modulus),
+    TORSION_NUMBER("poisson_ratio", elasticity.poisson_ratio),
+    TORSION_NUMBER("density", elasticity.density),
+    TORSION_NUMBER("static_friction", friction.static_friction),
+    TORSION_NUMBER("dynamic_friction", friction.dynamic_friction),
+    {"friction", "dynamic_friction",
+     [](BodyDescription& body) {
+       return std::vector<double*>{&body.friction.dynamic_friction, &body.friction.static_friction};
+     }},
+    TORSION_NUMBER("tolerance", models.tolerance),
+    TORSION_NUMBER("region_threshold", models.region_threshold)};
+#undef TORSION_NUMBER
 constexpr std::string_view kBodyTexts[] = {"contact_model", "body_model"};
 
 const SceneKey& scene_key(std::string_view key) {
@@ -64,9 +59,9 @@ const SceneKey& scene_key(std::string_view key) {
 }
 
 /// The number that the value is, within the bounds of the file's key.
-std::optional<double> number_of(const Setting& setting) {
+std::optional<double> number_of(const Setting& setting, std::string_view key) {
   const std::optional<double> number = read_number(setting.value);
-  return number && scene_key(setting.key).allows(*number) ? number : std::nullopt;
+  return number && scene_key(key).allows(*number) ? number : std::nullopt;
 }
 
 /// What a value should have been.
@@ -88,11 +83,13 @@ std::string unknown_key(const Setting& setting, std::span<const std::string_view
 std::string set_on_body(const Setting& setting, BodyDescription& body) {
   const auto* const number = std::ranges::find(kBodyNumbers, setting.key, &BodyNumber::key);
   if (number != std::end(kBodyNumbers)) {
-    const std::optional<double> value = number_of(setting);
+    const std::optional<double> value = number_of(setting, number->bounds_of);
     if (!value) {
-      return expected(setting.key);
+      return expected(number->bounds_of);
     }
-    number->of(body) = *value;
+    for (double* const place : number->places(body)) {
+      *place = *value;
+    }
     return "";
   }
   if (setting.key == "contact_model") {
@@ -116,13 +113,21 @@ std::string set_on_tool(const Setting& setting, ToolDescription& tool) {
     constexpr std::string_view kKeys[] = {"mass"};
     return unknown_key(setting, kKeys, "a tool");
   }
-  const std::optional<double> mass = number_of(setting);
+  const std::optional<double> mass = number_of(setting, setting.key);
   if (!mass) {
     return expected(setting.key);
   }
   tool.mass.inertia *= *mass / tool.mass.mass;
   tool.mass.mass = *mass;
   return "";
+}
+
+std::string unknown_node(const std::string& node, const SceneDescription& scene) {
+  std::vector<std::string_view> names;
+  std::ranges::transform(scene.bodies, std::back_inserter(names), &BodyDescription::node);
+  std::ranges::transform(scene.tools, std::back_inserter(names), &ToolDescription::node);
+  return fmt::format("the scene has no elastic node or tool \"{}\"; it has {}", node,
+                     fmt::join(names, ", "));
 }
 
 std::string set(const Setting& setting, SceneDescription& scene) {
@@ -134,11 +139,7 @@ std::string set(const Setting& setting, SceneDescription& scene) {
   if (tool != scene.tools.end()) {
     return set_on_tool(setting, *tool);
   }
-  std::vector<std::string_view> names;
-  std::ranges::transform(scene.bodies, std::back_inserter(names), &BodyDescription::node);
-  std::ranges::transform(scene.tools, std::back_inserter(names), &ToolDescription::node);
-  return fmt::format("the scene has no elastic node or tool \"{}\"; it has {}", setting.node,
-                     fmt::join(names, ", "));
+  return unknown_node(setting.node, scene);
 }
 
 }  // namespace
@@ -175,6 +176,37 @@ Result<Done> apply_settings(std::span<const std::string> settings, SceneDescript
     }
   }
   return Done{};
+}
+
+Result<SettableNumber> settable_number(const std::string& name, const SceneDescription& scene) {
+  const Setting wanted = split(name + "=");
+  const auto as_settable = [](std::string_view key, double value) {
+    const SceneKey& known = scene_key(key);
+    return SettableNumber{value, known.least, known.most, !known.least_is_allowed};
+  };
+  const auto body = std::ranges::find(scene.bodies, wanted.node, &BodyDescription::node);
+  if (body != scene.bodies.end()) {
+    const auto* const number = std::ranges::find(kBodyNumbers, wanted.key, &BodyNumber::key);
+    if (number == std::end(kBodyNumbers)) {
+      std::vector<std::string_view> keys;
+      std::ranges::transform(kBodyNumbers, std::back_inserter(keys), &BodyNumber::key);
+      return Error{unknown_key(wanted, keys, "an elastic node")};
+    }
+    BodyDescription copy;
+    copy.elasticity = body->elasticity;
+    copy.friction = body->friction;
+    copy.models = body->models;
+    return as_settable(number->bounds_of, *number->places(copy).front());
+  }
+  const auto tool = std::ranges::find(scene.tools, wanted.node, &ToolDescription::node);
+  if (tool == scene.tools.end()) {
+    return Error{unknown_node(wanted.node, scene)};
+  }
+  if (wanted.key != "mass") {
+    constexpr std::string_view kKeys[] = {"mass"};
+    return Error{unknown_key(wanted, kKeys, "a tool")};
+  }
+  return as_settable("mass", tool->mass.mass);
 }
 
 }  // namespace torsion::engine

@@ -48,28 +48,29 @@ Result<Study> read_study(const SweepOptions& options) {
   if (!opened) {
     return opened.error();
   }
-  study.scene = std::move(opened.value().scene);
-  study.options = options.scene.prepare_options();
-  study.options.threads = 1;  // runs are what is done at the same time
-  study.options.expected_poses = expected_poses(study.scene);
-  study.mdr_tables = make_mdr_tables();
-  study.seconds = options.seconds < 0.0 ? study.scene.duration : options.seconds;
+  const SceneDescription& scene = opened.value().scene;
+  study.seconds = options.seconds < 0.0 ? scene.duration : options.seconds;
   if (study.seconds <= 0.0) {
-    return Error{study.scene.path +
+    return Error{scene.path +
                  ": no animation moves a tool, so there is no end to run to; say --seconds"};
   }
+  PrepareOptions prepare_options = options.scene.prepare_options();
+  prepare_options.threads = 1;  // runs are what is done at the same time
+  prepare_options.expected_poses = expected_poses(scene);
+  study.variants =
+      std::make_unique<SceneVariants>(std::move(opened).value().scene, prepare_options);
   return study;
 }
 
-/// Of everything that a line of the table depends on: the scene's first run, prepared, and the
-/// study's own words.
+/// Of everything that a line of the table depends on: the program, the scene as the file has it,
+/// prepared, and the study's own words.
 Result<std::string> identity_of(const Study& study) {
-  const Result<Simulation> first = prepare(study.scene, study.options, &study.mdr_tables);
+  const Result<SceneVariant> first = study.variants->make({});
   if (!first) {
-    return Error{study.scene.path + ": " + first.error().text};
+    return first.error();
   }
-  std::string identity =
-      fmt::format("torsion sweep {:016x} {} s", hash(first.value().world), study.seconds);
+  std::string identity = fmt::format("torsion {} sweep {:016x} {} s", TORSION_VERSION,
+                                     hash(first.value().simulation.world), study.seconds);
   for (const Axis& axis : study.axes) {
     identity += " " + axis.name + "=";
     for (const std::string& value : axis.values) {

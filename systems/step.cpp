@@ -125,6 +125,17 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
   return simulation;
 }
 
+Simulation simulation_of_materials(const PreparedWorld& unit, const SceneDescription& scene,
+                                   const MdrTables& tables) {
+  Simulation simulation;
+  simulation.world = world_of_materials(unit.world, scene);
+  simulation.choices = unit.choices;
+  simulation.united_nodes = unit.united_nodes;
+  World& world = simulation.world;
+  simulation.scratch->reserve(world.model, world.state, &tables);
+  return simulation;
+}
+
 void step(const Model& model, State& state, std::span<const Pose> tool_poses, Scratch& scratch) {
   TORSION_ASSERT(tool_poses.size() == model.tools.size());
   StepContext context = scratch.context(model, state, tool_poses);

@@ -18,6 +18,7 @@ namespace torsion::engine {
 struct Scratch;         // systems/scratch.hpp: memory of the systems of one step
 struct MdrTables;       // systems/mdr/places.hpp
 struct SnapshotTables;  // systems/surface/take_snapshot.hpp
+struct PreparedWorld;   // systems/model/prepare.hpp
 
 /// The systems of one step in the order of the paper's Fig. 4.
 std::vector<System<StepContext>> step_systems();
@@ -33,8 +34,8 @@ struct Simulation {
 
   World world;
   std::unique_ptr<Scratch> scratch;
-  std::unique_ptr<const SnapshotTables> snapshot_tables;
-  std::vector<ModelChoice> choices;       // (bodies)
+  std::unique_ptr<const SnapshotTables> snapshot_tables;  // null: no snapshots
+  std::vector<ModelChoice> choices;                       // (bodies)
   std::vector<std::string> united_nodes;  // whose meshes overlap and count as one solid
 };
 
@@ -43,6 +44,11 @@ struct Simulation {
 /// @param tables  contact model mdr's, which are the same for all scenes; null: they are made
 Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options,
                            const MdrTables* tables = nullptr);
+
+/// A simulation of other materials than those prepared (world_of_materials), for runs that nobody
+/// draws: it has no snapshot tables.
+Simulation simulation_of_materials(const PreparedWorld& unit, const SceneDescription& scene,
+                                   const MdrTables& tables);
 
 /// One step of Model::dt: reads one pose a tool (that of the time Clock::step * dt). Never throws,
 /// never allocates; what went wrong is in Clock::faults. Different states, each with a scratch of

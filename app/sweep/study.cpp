@@ -140,17 +140,14 @@ std::string Study::header() const {
 
 Result<std::string> run_one(const Study& study, std::uint64_t run) {
   const std::vector<std::string> settings = study.settings_of(run);
+  Result<SceneVariant> variant = study.variants->make(settings);
+  if (!variant) {
+    return variant.error();
+  }
   Session session;
-  session.scene = study.scene;
+  session.scene = std::move(variant.value().scene);
+  session.simulation = std::move(variant.value().simulation);
   session.tool_poses.resize(session.scene.tools.size());
-  if (const Result<Done> done = apply_settings(settings, session.scene); !done) {
-    return done.error();
-  }
-  Result<Simulation> prepared = prepare(session.scene, study.options, &study.mdr_tables);
-  if (!prepared) {
-    return Error{session.scene.path + ": " + prepared.error().text};
-  }
-  session.simulation = std::move(prepared).value();
   const State& state = session.simulation.world.state;
   Outcome outcome;
   const std::uint64_t steps = steps_in(session, study.seconds);

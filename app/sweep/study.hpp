@@ -1,14 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "app/scene_variants.hpp"
 #include "ecs/result.hpp"
-#include "ecs/scene_description.hpp"
-#include "systems/mdr/places.hpp"
-#include "systems/model/options.hpp"
 
 namespace torsion::engine {
 
@@ -26,12 +24,9 @@ Result<Axis> read_axis(const std::string& setting);
 
 /// A scene with values over what it says, once for every combination of them.
 struct Study {
-  SceneDescription scene;
-  PrepareOptions options;
+  std::unique_ptr<const SceneVariants> variants;
   double seconds = 0.0;    // s, of each run
   std::vector<Axis> axes;  // the last one changes fastest
-  // Of contact model mdr, the same for every run: they take as long to make as many a run.
-  MdrTables mdr_tables;
 
   [[nodiscard]] std::uint64_t runs() const;
   /// The settings of a run, NODE.KEY=VALUE.

@@ -411,4 +411,33 @@ Result<PreparedWorld> prepare_world(const SceneDescription& scene, const Prepare
   return prepared;
 }
 
+Result<PreparedWorld> prepare_unit_world(const SceneDescription& scene,
+                                         const PrepareOptions& options) {
+  SceneDescription unit = scene;
+  for (BodyDescription& body : unit.bodies) {
+    body.elasticity.youngs_modulus = 1.0;
+  }
+  return prepare_world(unit, options);
+}
+
+World world_of_materials(const World& unit, const SceneDescription& scene) {
+  World world = unit;
+  Model& model = world.model;
+  for (std::uint32_t row = 0; row < model.bodies.size(); ++row) {
+    const BodyDescription& body = scene.bodies[row];
+    TORSION_ASSERT(body.elasticity.poisson_ratio == model.bodies.at<Elasticity>(row).poisson_ratio);
+    model.bodies.at<Elasticity>(row) = body.elasticity;
+    model.bodies.at<Friction>(row) = body.friction;
+    // A compliance is the only table that a modulus is in: as load_or_build_smooth_compliance does.
+    for (ComplianceValue& value :
+         model.compliance.rows<ComplianceValue>(model.bodies.at<OwnedRows>(row).compliance)) {
+      value.value /= body.elasticity.youngs_modulus;
+    }
+  }
+  for (std::uint32_t row = 0; row < model.tools.size(); ++row) {
+    model.tools.at<MassProperties>(row) = scene.tools[row].mass;
+  }
+  return world;
+}
+
 }  // namespace torsion::engine

@@ -65,4 +65,14 @@ struct PreparedWorld {
 /// the node.
 Result<PreparedWorld> prepare_world(const SceneDescription& scene, const PrepareOptions& options);
 
+/// The same for bodies of 1 Pa, whatever the scene says: what world_of_materials starts from.
+Result<PreparedWorld> prepare_unit_world(const SceneDescription& scene,
+                                         const PrepareOptions& options);
+
+/// A world that prepare_world would make, without preparing anything again: the same bits.
+/// @param unit   by prepare_unit_world, never stepped
+/// @param scene  the one that `unit` was made of but for the bodies' Young's modulus, density and
+///               friction and the tools' masses and inertias
+World world_of_materials(const World& unit, const SceneDescription& scene);
+
 }  // namespace torsion::engine

@@ -21,6 +21,7 @@ int run(int argc, char** argv) {
   torsion::engine::add_export(app, command);
   torsion::engine::add_check(app, command);
   torsion::engine::add_sweep(app, command);
+  torsion::engine::add_fit(app, command);
   torsion::engine::add_devices(app, command);
   torsion::engine::add_report(app, command);
   try {

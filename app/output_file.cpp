@@ -166,6 +166,13 @@ OutputFile::~OutputFile() {
   }
 }
 
+Result<std::filesystem::path> OutputFile::place() const {
+  if (temporary_.empty()) {
+    return cannot_write(path_, "it is no plain file");
+  }
+  return temporary_;
+}
+
 void OutputFile::write(std::string_view bytes) {
   if (failed_) {
     return;  // a hole in the middle would be worse than an end

@@ -27,6 +27,10 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
   ~OutputFile();  // takes the temporary file away unless it was committed
 
+  /// Where the bytes are until commit(), for a library that writes the file by itself. Fails where
+  /// the file is written to as it is: such a library goes to and fro in it.
+  [[nodiscard]] Result<std::filesystem::path> place() const;
+
   /// Remembers a failure for commit(), so that a loop need not check every line.
   void write(std::string_view bytes);
   /// Why the writing failed; empty as long as it has not.

@@ -8,6 +8,7 @@
 #include "app/live/scene_device.hpp"
 #include "app/simulate_loop.hpp"
 #include "app/summary.hpp"
+#include "app/trace_columns.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -15,6 +16,8 @@ namespace {
 struct SimulateOptions {
   SceneOptions scene;
   std::string trace;
+  std::string columns = "usual";  // of the trace
+  std::string regions;
   std::string record;
   std::string replay;
   double seconds = -1.0;  // s; negative: to the end of the longest animation
@@ -23,14 +26,6 @@ struct SimulateOptions {
   bool json = false;
   bool quiet = false;
 };
-
-std::vector<std::string> tool_names(const SceneDescription& scene) {
-  std::vector<std::string> names;
-  for (const ToolDescription& tool : scene.tools) {
-    names.push_back(tool.node);
-  }
-  return names;
-}
 
 /// What the command line can get wrong in ways that only the file behind it shows.
 Result<Session> open_for_run(const SimulateOptions& options, const Recording* replayed) {
@@ -96,6 +91,11 @@ Result<RunStatistics> run(const SimulateOptions& options, Session& session, std:
     }
     facts.trace = options.trace;
   }
+  if (files.regions != nullptr) {
+    if (const Result<Done> done = files.regions->finish(); !done) {
+      return done.error();
+    }
+  }
   if (files.record != nullptr) {
     const Result<Done> done = files.record->finish();
     (done ? facts.recording : facts.problem) = done ? options.record : done.error().text;
@@ -121,11 +121,24 @@ int simulate(const SimulateOptions& options) {
   Session& session = opened.value();
   std::optional<TraceWriter> trace;
   if (!options.trace.empty()) {
-    Result<TraceWriter> created = TraceWriter::create(options.trace, tool_names(session.scene));
+    Result<std::vector<TraceColumn>> columns = read_trace_columns(options.columns);
+    if (!columns) {
+      return fail("--columns: " + columns.error().text);
+    }
+    Result<TraceWriter> created =
+        TraceWriter::create(options.trace, tool_names(session.scene), std::move(columns).value());
     if (!created) {
       return fail(created.error().text);
     }
     trace = std::move(created).value();
+  }
+  std::optional<RegionTrace> regions;
+  if (!options.regions.empty()) {
+    Result<RegionTrace> created = RegionTrace::create(options.regions);
+    if (!created) {
+      return fail(created.error().text);
+    }
+    regions = std::move(created).value();
   }
   std::optional<RecordingWriter> record;
   if (!options.record.empty()) {
@@ -137,8 +150,12 @@ int simulate(const SimulateOptions& options) {
     record = std::move(created).value();
   }
   Replay replay{replayed ? &*replayed : nullptr, 0};
-  const RunFiles files{&interrupt, trace ? &*trace : nullptr, record ? &*record : nullptr,
-                       replayed ? &replay : nullptr, options.quiet || options.json};
+  const RunFiles files{&interrupt,
+                       trace ? &*trace : nullptr,
+                       regions ? &*regions : nullptr,
+                       record ? &*record : nullptr,
+                       replayed ? &replay : nullptr,
+                       options.quiet || options.json};
   RunFacts facts;
   const std::uint64_t steps = steps_of_run(options, session, replay.recording);
   const Result<RunStatistics> ran = run(options, session, steps, files, facts);
@@ -164,11 +181,20 @@ void add_simulate(CLI::App& app, Command& command) {
       "simulate", "Run a scene without a window; write force and torque at every step");
   auto options = std::make_shared<SimulateOptions>();
   options->scene.add_to(*subcommand);
-  subcommand->add_option("--trace", options->trace, "CSV file to write, one row a step");
+  CLI::Option* trace = subcommand->add_option("--trace", options->trace,
+                                              "CSV or HDF5 (.h5) file to write, one row a step");
+  subcommand
+      ->add_option("--columns", options->columns,
+                   "The trace's columns of each tool, with commas between; usual, all, or names")
+      ->needs(trace);
+  CLI::Option* regions = subcommand->add_option(
+      "--regions", options->regions,
+      "CSV or HDF5 (.h5) file to write, one row for each contact region in each step");
   subcommand->add_option("--seconds", options->seconds, "How long; else the animation's length")
       ->check(CLI::Range(0.0, 1e6));
   CLI::Option* realtime = subcommand->add_flag("--realtime", options->realtime,
                                                "Run on the clock, not as fast as it goes");
+  regions->excludes(realtime);  // as many rows as there are regions: record, then replay
   CLI::Option* record = subcommand->add_option(
       "--record", options->record, "File to write with everything that goes into the run");
   CLI::Option* replay =

@@ -108,6 +108,9 @@ Result<RunStatistics> run_fast(Session& session, std::uint64_t steps, const RunF
     if (files.trace != nullptr) {
       write_trace(session, step_us, rows, *files.trace);
     }
+    if (files.regions != nullptr) {
+      files.regions->append(session.simulation.world);
+    }
     if (i % 256 == 0) {
       progress.show(static_cast<double>(i) / static_cast<double>(steps));
       if (files.interrupt != nullptr && files.interrupt->within(0)) {

@@ -5,6 +5,7 @@
 #include "app/live/realtime_mode.hpp"
 #include "app/live/recording_file.hpp"
 #include "app/progress.hpp"
+#include "app/region_trace.hpp"
 #include "app/run_statistics.hpp"
 #include "app/session.hpp"
 #include "app/trace.hpp"
@@ -15,6 +16,7 @@ namespace torsion::engine {
 struct RunFiles {
   const Interrupt* interrupt = nullptr;  // ends the run early; what was written so far stays
   TraceWriter* trace = nullptr;
+  RegionTrace* regions = nullptr;  // not on the clock
   RecordingWriter* record = nullptr;
   Replay* replay = nullptr;  // where poses come from instead of the scene's animations
   bool quiet = false;

@@ -14,6 +14,7 @@
 #include "app/session.hpp"
 #include "app/sweep/partial_table.hpp"
 #include "app/sweep/study.hpp"
+#include "app/sweep/study_table.hpp"
 #include "device/scripted_motion.hpp"
 #include "ecs/hash.hpp"
 
@@ -23,6 +24,7 @@ namespace {
 struct SweepOptions {
   SceneOptions scene;
   std::string out;
+  std::string columns;
   double seconds = -1.0;   // s; negative: to the end of the longest animation
   std::uint32_t jobs = 0;  // 0: as many as there are cores
   bool quiet = false;
@@ -41,6 +43,11 @@ Result<Study> read_study(const SweepOptions& options) {
     }
     study.axes.push_back(std::move(axis).value());
   }
+  Result<std::vector<WantedColumn>> wanted = read_wanted_columns(options.columns);
+  if (!wanted) {
+    return wanted.error();
+  }
+  study.wanted = std::move(wanted).value();
   if (study.runs() > kMostRuns) {
     return Error{fmt::format("--set: these are more than {} runs; take fewer values", kMostRuns)};
   }
@@ -76,6 +83,9 @@ Result<std::string> identity_of(const Study& study) {
     for (const std::string& value : axis.values) {
       identity += value + ",";
     }
+  }
+  for (const WantedColumn& column : study.wanted) {
+    identity += " " + column.name;
   }
   return identity;
 }
@@ -153,9 +163,8 @@ int sweep(const SweepOptions& options) {
   if (!folder) {
     return fail(folder.error().text);
   }
-  Result<OutputFile> file = OutputFile::create(options.out);
-  if (!file) {
-    return fail(file.error().text);
+  if (const Result<OutputFile> tried = OutputFile::create(options.out); !tried) {
+    return fail(tried.error().text);
   }
   const Result<std::string> identity = identity_of(study.value());
   if (!identity) {
@@ -171,11 +180,9 @@ int sweep(const SweepOptions& options) {
   if (!stopped.empty()) {
     return fail(stopped);
   }
-  file.value().write(study.value().header() + "\n");
-  for (const auto& [run, line] : table.value().lines()) {
-    file.value().write(line + "\n");
-  }
-  if (const Result<Done> done = file.value().commit(); !done) {
+  if (const Result<Done> done =
+          write_study_table(options.out, study.value().header(), table.value().lines());
+      !done) {
     return fail(done.error().text);
   }
   table.value().remove();
@@ -198,7 +205,11 @@ void add_sweep(CLI::App& app, Command& command) {
   options->scene.add_settings_to(*subcommand)
       ->required()
       ->description("NODE.KEY=VALUES, several: a,b,c or FIRST:LAST:COUNT or FIRST:LAST:COUNTlog");
-  subcommand->add_option("--out", options->out, "CSV file to write, one row a run")->required();
+  subcommand->add_option("--out", options->out, "CSV or HDF5 (.h5) file to write, one row a run")
+      ->required();
+  subcommand->add_option("--columns", options->columns,
+                         "More of each run: first, last, min, max or mean of a trace's column, as "
+                         "max:couple_y_Nm, with commas between");
   subcommand->add_option("--seconds", options->seconds, "How long; else the animation's length")
       ->check(CLI::Range(0.0, 1e6));
   subcommand->add_option("--jobs", options->jobs, "Runs at the same time; else one a core")

@@ -1,18 +1,12 @@
 #include "app/trace.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 
-#include <fmt/format.h>
+#include "app/trace_columns.hpp"
 
 namespace torsion::engine {
 namespace {
-
-constexpr std::array kToolColumns = {
-    "tool_x_m",    "tool_y_m",    "tool_z_m",    "tool_qx",        "tool_qy",   "tool_qz",
-    "tool_qw",     "regions",     "cells",       "force_x_N",      "force_y_N", "force_z_N",
-    "torque_x_Nm", "torque_y_Nm", "torque_z_Nm", "stick_fraction", "energy_J"};
 
 /// A name without what would break a CSV header.
 std::string plain(std::string name) {
@@ -23,19 +17,42 @@ std::string plain(std::string name) {
 
 }  // namespace
 
+std::vector<std::string> tool_names(const SceneDescription& scene) {
+  std::vector<std::string> names;
+  for (const ToolDescription& tool : scene.tools) {
+    names.push_back(tool.node);
+  }
+  return names;
+}
+
+std::string trace_prefix(const std::vector<std::string>& tool_names, std::size_t tool) {
+  return tool_names.size() > 1 ? plain(tool_names[tool]) + "_" : "";
+}
+
 TraceRow trace_row(const World& world, std::uint32_t tool, double step_us) {
+  const State& state = world.state;
+  const ToolMotion& motion = state.tools.at<ToolMotion>(tool);
   TraceRow row;
-  row.time = world.state.clock.time;
-  row.pose = world.state.tools.at<ToolPose>(tool).now;
-  row.wrench = world.state.tools.at<ToolWrench>(tool).total;
-  row.work = world.state.tools.at<ToolWrench>(tool).work;
+  row.time = state.clock.time;
+  row.pose = state.tools.at<ToolPose>(tool).now;
+  row.wrench = state.tools.at<ToolWrench>(tool).total;
+  row.work = state.tools.at<ToolWrench>(tool).work;
   row.step_us = step_us;
-  for (const RegionIdentity& region : world.state.regions.column<RegionIdentity>()) {
+  row.faults = state.clock.faults;
+  row.velocity = motion.velocity;
+  row.angular_velocity = motion.angular_velocity;
+  row.load = tool_load(world.model, state, tool, motion.mass_center);
+  if (row.load.regions > 0) {
+    const std::uint32_t region = row.load.main_region;
+    row.depth = state.regions.at<Contact>(region).depth;
+    row.turn = state.regions.at<RegionMotion>(region).turn;
+    row.twist = state.regions.at<RegionFriction>(region).stick_turn;
+  }
+  for (const RegionIdentity& region : state.regions.column<RegionIdentity>()) {
     if (region.tool != tool) {
       continue;
     }
-    row.regions += 1;
-    for (const CellTraction& cell : world.state.cells.rows<CellTraction>(region.cells)) {
+    for (const CellTraction& cell : state.cells.rows<CellTraction>(region.cells)) {
       row.cells += cell.pressure > 0.0 ? 1U : 0U;
       row.stuck_cells += cell.pressure > 0.0 ? cell.sticks : 0U;
     }
@@ -43,52 +60,47 @@ TraceRow trace_row(const World& world, std::uint32_t tool, double step_us) {
   return row;
 }
 
+TraceWriter::TraceWriter(TableFile file, std::vector<TraceColumn> columns, std::size_t tools)
+    : file_(std::move(file)), columns_(std::move(columns)), work_(tools) {}
+TraceWriter::TraceWriter(TraceWriter&&) noexcept = default;
+TraceWriter& TraceWriter::operator=(TraceWriter&&) noexcept = default;
+TraceWriter::~TraceWriter() = default;
+
 Result<TraceWriter> TraceWriter::create(const std::filesystem::path& path,
-                                        const std::vector<std::string>& tool_names) {
-  Result<OutputFile> file = OutputFile::create(path);
+                                        const std::vector<std::string>& tool_names,
+                                        std::vector<TraceColumn> columns) {
+  std::vector<std::string> names = {"time_s"};
+  for (std::size_t tool = 0; tool < tool_names.size(); ++tool) {
+    const std::string prefix = trace_prefix(tool_names, tool);
+    for (const TraceColumn& column : columns) {
+      names.push_back(prefix + std::string(column.name));
+    }
+  }
+  names.emplace_back("step_us");
+  Result<TableFile> file = TableFile::create(path, "trace", names);
   if (!file) {
     return file.error();
   }
-  TraceWriter writer(std::move(file).value());
-  std::string header = "time_s";
-  for (const std::string& name : tool_names) {
-    const std::string prefix = tool_names.size() > 1 ? plain(name) + "_" : "";
-    for (const char* column : kToolColumns) {
-      header += "," + prefix + column;
-    }
-  }
-  writer.file_.write(header + ",step_us\n");
-  return writer;
+  return TraceWriter(std::move(file).value(), std::move(columns), tool_names.size());
 }
 
 void TraceWriter::append(std::span<const TraceRow> rows) {
-  fmt::memory_buffer line;
-  const auto add = [&line](double number) {
-    fmt::format_to(fmt::appender(line), ",{:.9g}", number);
-  };
-  fmt::format_to(fmt::appender(line), "{:.9g}", rows[0].time);
-  for (const TraceRow& row : rows) {
-    const glm::dquat& q = row.pose.rotation;
-    for (const double number :
-         {row.pose.position.x, row.pose.position.y, row.pose.position.z, q.x, q.y, q.z, q.w}) {
-      add(number);
+  numbers_.assign(1, rows[0].time);
+  for (std::size_t tool = 0; tool < rows.size(); ++tool) {
+    if (!before_.empty()) {
+      work_[tool].add(before_[tool], rows[tool]);
     }
-    fmt::format_to(fmt::appender(line), ",{},{}", row.regions, row.cells);
-    for (const double number : {row.wrench.force.x, row.wrench.force.y, row.wrench.force.z,
-                                row.wrench.torque.x, row.wrench.torque.y, row.wrench.torque.z}) {
-      add(number);
+    for (const TraceColumn& column : columns_) {
+      numbers_.push_back(column.of(rows[tool], work_[tool]));
     }
-    add(row.cells == 0 ? 0.0
-                       : static_cast<double>(row.stuck_cells) / static_cast<double>(row.cells));
-    add(row.work);
   }
-  add(rows[0].step_us);
-  line.push_back('\n');
-  file_.write({line.data(), line.size()});
+  numbers_.push_back(rows[0].step_us);
+  file_.append(numbers_);
+  before_.assign(rows.begin(), rows.end());
 }
 
 Result<Done> TraceWriter::finish() {
-  return file_.commit();
+  return file_.finish();
 }
 
 }  // namespace torsion::engine

@@ -7,6 +7,7 @@
 #include "library/convert.hpp"
 #include "library/model_data.hpp"
 #include "library/simulation_data.hpp"
+#include "systems/contact/tool_load.hpp"
 #include "systems/contact/world_region.hpp"
 #include "systems/hold/tool_hold.hpp"
 #include "systems/math/frames.hpp"
@@ -114,29 +115,10 @@ Wrench Simulation::wrench(std::size_t tool, const Vector3& point) const noexcept
 
 LoadParts Simulation::load_parts(std::size_t tool, const Vector3& point) const noexcept {
   TORSION_ASSERT(tool < model_->tool_count());
-  glm::dvec3 normal_force(0.0);
-  glm::dvec3 friction(0.0);
-  glm::dvec3 couple(0.0);
-  glm::dvec3 lever(0.0);
-  const engine::State& state = data_->state;
-  for (std::uint32_t row = 0; row < state.regions.size(); ++row) {
-    if (state.regions.at<engine::RegionIdentity>(row).tool != tool) {
-      continue;
-    }
-    const engine::WorldRegion region = world_region(model_->data().model(), state, row);
-    const engine::RegionFrame& frame = state.regions.at<engine::RegionFrame>(row);
-    const glm::dvec3 normal = region.direction(frame.normal);
-    const engine::RegionFriction& tangential = state.regions.at<engine::RegionFriction>(row);
-    const glm::dvec3 pressed = state.regions.at<engine::RegionNormal>(row).force * normal;
-    const glm::dvec3 rubbed = region.direction(engine::tangent_to_body(frame, tangential.force));
-    const glm::dvec3 place = region.place(state.regions.at<engine::Contact>(row).equivalent_point);
-    normal_force += pressed;
-    friction += rubbed;
-    couple += tangential.couple * normal;
-    lever += glm::cross(place - to_engine(point), pressed + rubbed);
-  }
-  return {from_engine(normal_force), from_engine(friction), from_engine(couple),
-          from_engine(lever)};
+  const engine::ToolLoad load =
+      engine::tool_load(model_->data().model(), data_->state, row_of(tool), to_engine(point));
+  return {from_engine(load.normal.force), from_engine(load.friction.force),
+          from_engine(load.couple), from_engine(load.normal.torque + load.friction.torque)};
 }
 
 Matrix6 Simulation::stiffness(std::size_t tool) const noexcept {

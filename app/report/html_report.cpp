@@ -9,32 +9,13 @@
 
 #include "app/report/gnuplot.hpp"
 #include "app/report/html_style.hpp"
+#include "app/report/html_text.hpp"
 #include "app/report/report_plots.hpp"
 #include "ecs/model_names.hpp"
 #include "systems/contact/region_wrenches.hpp"
 
 namespace torsion::engine {
 namespace {
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 std::string base64(std::string_view bytes) {
   constexpr std::string_view kDigits =
@@ -64,7 +45,8 @@ std::string percent(const std::optional<double>& error) {
 }
 
 std::string figure(const std::string& svg, const std::string& caption) {
-  return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", svg, escaped(caption));
+  return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", svg,
+                     html_escaped(caption));
 }
 
 std::string machine_html(const Machine& machine) {
@@ -72,8 +54,8 @@ std::string machine_html(const Machine& machine) {
       "<p>Measured on {} ({} cores, load {:.2g} at the end), {}, compiled by {} ({}), {}. One "
       "process, one thread; every time is that of a whole step, detection of the contact "
       "included.</p>\n",
-      escaped(machine.processor), machine.cores, machine.load, escaped(machine.system),
-      escaped(machine.compiler), machine.build, machine.date);
+      html_escaped(machine.processor), machine.cores, machine.load, html_escaped(machine.system),
+      html_escaped(machine.compiler), machine.build, machine.date);
 }
 
 constexpr const char* kDefinitions = R"html(<h2>How the errors are defined</h2>
@@ -118,7 +100,7 @@ std::string overview_table(std::span<const MeasuredCase> cases) {
       "(%)</caption>\n<tr><th>models</th>";
   for (const MeasuredCase& measured : cases) {
     // Long names may break after an underscore.
-    std::string heading = escaped(measured.reference_case.name);
+    std::string heading = html_escaped(measured.reference_case.name);
     for (std::size_t at = heading.find('_'); at != std::string::npos;
          at = heading.find('_', at + 6)) {
       heading.insert(at + 1, "<wbr>");
@@ -127,7 +109,7 @@ std::string overview_table(std::span<const MeasuredCase> cases) {
   }
   html += "</tr>\n";
   for (const std::string& label : labels) {
-    html += fmt::format("<tr><td>{}</td>", escaped(label));
+    html += fmt::format("<tr><td>{}</td>", html_escaped(label));
     for (std::size_t c = 0; c < cases.size(); ++c) {
       const auto one = std::ranges::find_if(
           cases[c].runs, [&](const MeasuredRun& run) { return label_of(run.run.models) == label; });
@@ -173,8 +155,9 @@ std::string faults_html(const MeasuredCase& measured) {
   for (const MeasuredRun& one : measured.runs) {
     for (const Fault fault : kAllFaults) {
       if (raised(one.run.faults_ever, fault)) {
-        html += fmt::format("<p><strong>Fault with {}:</strong> {}</p>\n",
-                            escaped(label_of(one.run.models)), escaped(fault_text(fault)));
+        html +=
+            fmt::format("<p><strong>Fault with {}:</strong> {}</p>\n",
+                        html_escaped(label_of(one.run.models)), html_escaped(fault_text(fault)));
       }
     }
   }
@@ -199,9 +182,9 @@ std::string case_html(const MeasuredCase& measured, const std::string& picture,
       "<section class=\"case\" id=\"{}\">\n<h2>{}</h2>\n<div class=\"intro\"><div>\n<p>{}</p>\n"
       "<p><strong>Reference.</strong> {}</p>\n<p><strong>Compared.</strong> F: {}.{}</p>\n"
       "<p>The path takes {} steps of 1 ms.</p>\n</div>\n",
-      one.name, escaped(one.title), escaped(one.description), escaped(one.reference),
-      escaped(one.force_meaning),
-      one.torque_meaning.empty() ? "" : fmt::format(" T: {}.", escaped(one.torque_meaning)),
+      one.name, html_escaped(one.title), html_escaped(one.description), html_escaped(one.reference),
+      html_escaped(one.force_meaning),
+      one.torque_meaning.empty() ? "" : fmt::format(" T: {}.", html_escaped(one.torque_meaning)),
       std::transform_reduce(one.path.begin(), one.path.end(), 0, std::plus<>{},
                             [](const PathPoint& point) { return point.steps; }));
   if (!picture.empty()) {

@@ -135,7 +135,11 @@ std::string Study::header() const {
   for (const Axis& axis : axes) {
     header += "," + axis.name;
   }
-  return header + "," + kResults;
+  header += "," + std::string(kResults);
+  for (const std::string& name : wanted_names(wanted, tool_names(variants->scene()))) {
+    header += "," + name;
+  }
+  return header;
 }
 
 Result<std::string> run_one(const Study& study, std::uint64_t run) {
@@ -150,10 +154,12 @@ Result<std::string> run_one(const Study& study, std::uint64_t run) {
   session.tool_poses.resize(session.scene.tools.size());
   const State& state = session.simulation.world.state;
   Outcome outcome;
+  WantedValues wanted(study.wanted, state.tools.size());
   const std::uint64_t steps = steps_in(session, study.seconds);
   for (std::uint64_t step = 0; step < steps; ++step) {
     step_scripted(session);
     outcome.add(state);
+    wanted.add(session.simulation.world);
   }
   Wrench last;
   double work = 0.0;
@@ -165,13 +171,17 @@ Result<std::string> run_one(const Study& study, std::uint64_t run) {
   for (const std::string& setting : settings) {
     line += "," + setting.substr(setting.find('=') + 1);
   }
-  return line + fmt::format(",{},{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{:016x}",
-                            models_of(session.simulation, &BodyModels::contact),
-                            models_of(session.simulation, &BodyModels::body), steps,
-                            outcome.contact_steps, outcome.most_regions, outcome.peak_force,
-                            outcome.peak_torque, outcome.peak_couple, glm::length(last.force),
-                            glm::length(last.torque), work, state.clock.faults_ever,
-                            hash(session.simulation.world));
+  line +=
+      fmt::format(",{},{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{:016x}",
+                  models_of(session.simulation, &BodyModels::contact),
+                  models_of(session.simulation, &BodyModels::body), steps, outcome.contact_steps,
+                  outcome.most_regions, outcome.peak_force, outcome.peak_torque,
+                  outcome.peak_couple, glm::length(last.force), glm::length(last.torque), work,
+                  state.clock.faults_ever, hash(session.simulation.world));
+  for (const double value : wanted.values()) {
+    line += fmt::format(",{:.9g}", value);
+  }
+  return line;
 }
 
 }  // namespace torsion::engine

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/scene_variants.hpp"
+#include "app/sweep/wanted_columns.hpp"
 #include "ecs/result.hpp"
 
 namespace torsion::engine {
@@ -25,8 +26,9 @@ Result<Axis> read_axis(const std::string& setting);
 /// A scene with values over what it says, once for every combination of them.
 struct Study {
   std::unique_ptr<const SceneVariants> variants;
-  double seconds = 0.0;    // s, of each run
-  std::vector<Axis> axes;  // the last one changes fastest
+  double seconds = 0.0;              // s, of each run
+  std::vector<Axis> axes;            // the last one changes fastest
+  std::vector<WantedColumn> wanted;  // of each run besides
 
   [[nodiscard]] std::uint64_t runs() const;
   /// The settings of a run, NODE.KEY=VALUE.

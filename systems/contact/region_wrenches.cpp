@@ -16,6 +16,7 @@
 #include "systems/geometry/distance.hpp"
 #include "systems/math/finite.hpp"
 #include "systems/math/frames.hpp"
+#include "systems/math/wrenches.hpp"
 
 namespace torsion::engine {
 std::string_view fault_text(Fault fault) {
@@ -216,16 +217,6 @@ constexpr double kMostByGrid = 0.05;  // of a force: what regridding may change 
 constexpr double kFaultFall = 0.01;   // s: from the last good wrench to zero
 constexpr double kFaultRise =
     0.05;  // s: back again; slower, so that a flickering fault does not rattle the hand
-
-Wrench operator+(const Wrench& a, const Wrench& b) {
-  return {a.force + b.force, a.torque + b.torque};
-}
-Wrench operator-(const Wrench& a, const Wrench& b) {
-  return {a.force - b.force, a.torque - b.torque};
-}
-Wrench operator*(const Wrench& a, double share) {
-  return {a.force * share, a.torque * share};
-}
 
 /// Where the region's material is now, by the motion of the body as a whole.
 RegionSupport support_now(const StepContext& context, std::uint32_t region) {

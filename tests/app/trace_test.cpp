@@ -1,5 +1,3 @@
-#include "app/trace.hpp"
-
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -7,13 +5,15 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "app/trace_columns.hpp"
+
 namespace torsion::engine {
 namespace {
 
 std::string written(const std::vector<std::string>& tools, const std::vector<TraceRow>& rows) {
   const std::filesystem::path path = std::filesystem::temp_directory_path() /
                                      ("torsion_trace_" + std::to_string(::getpid()) + ".csv");
-  Result<TraceWriter> writer = TraceWriter::create(path, tools);
+  Result<TraceWriter> writer = TraceWriter::create(path, tools, usual_trace_columns());
   EXPECT_TRUE(writer.ok());
   writer.value().append(rows);
   EXPECT_TRUE(writer.value().finish().ok());
@@ -28,7 +28,7 @@ TEST(TraceTest, WritesNineDigitsAndTheShareThatSticks) {
   row.time = 0.123;
   row.pose.position = {1.0 / 3.0, -2e-7, 0.0};
   row.wrench.force.y = 12.5;
-  row.regions = 1;
+  row.load.regions = 1;
   row.cells = 200;
   row.stuck_cells = 50;
   row.work = -1.5;

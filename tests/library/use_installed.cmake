@@ -10,6 +10,7 @@ run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${place}/usr)
 run(${CMAKE_COMMAND} -S ${SOURCE} -B ${place}/by_cmake -D CMAKE_PREFIX_PATH=${place}/usr)
 run(${CMAKE_COMMAND} --build ${place}/by_cmake)
 run(${place}/by_cmake/press_and_twist ${SCENE})
+run(${place}/by_cmake/press_and_twist_static ${SCENE})
 
 file(GLOB_RECURSE pc ${place}/usr/torsion.pc)
 cmake_path(GET pc PARENT_PATH pc_folder)

@@ -1,11 +1,14 @@
 #include "torsion/coupling.hpp"
 
+#include <cmath>
+
 #include "ecs/assert.hpp"
 #include "library/convert.hpp"
 #include "library/model_data.hpp"
 #include "library/simulation_data.hpp"
 #include "systems/hold/handle_side.hpp"
 #include "systems/hold/tool_hold.hpp"
+#include "systems/math/finite.hpp"
 #include "systems/math/frames.hpp"
 
 namespace torsion {
@@ -74,9 +77,13 @@ Coupling& Coupling::operator=(Coupling&&) noexcept = default;
 Coupling::~Coupling() = default;
 
 Pose Coupling::next(const Simulation& simulation, const Pose& handle) noexcept {
-  const engine::Pose now = to_engine(handle);
+  TORSION_ASSERT(data_->tool < simulation.model().tool_count());
+  const engine::Pose now = engine::usable(to_engine(handle)) ? to_engine(handle) : data_->handle;
   data_->handle = now;
   if (!data_->begun) {
+    if (!engine::usable(to_engine(handle))) {
+      return handle;  // a fault of the step, as without a coupling
+    }
     data_->begun = true;
     data_->counted = now;
     data_->felt_at = now;
@@ -92,6 +99,10 @@ Pose Coupling::next(const Simulation& simulation, const Pose& handle) noexcept {
 }
 
 Wrench Coupling::felt(const Simulation& simulation) noexcept {
+  TORSION_ASSERT(data_->tool < simulation.model().tool_count());
+  if (!data_->begun) {
+    return {};
+  }
   const engine::State& state = simulation.data().state;
   const engine::Pose& tool = state.tools.at<engine::ToolPose>(data_->tool).now;
   const engine::Wrench wanted =
@@ -100,6 +111,10 @@ Wrench Coupling::felt(const Simulation& simulation) noexcept {
   const glm::dvec3 shift = data_->handle.position - data_->felt_at.position;
   const glm::dvec3 turn = engine::turn_between(data_->felt_at.rotation, data_->handle.rotation);
   data_->felt_at = data_->handle;
+  // Poses as far apart as no workspace is: their books are not kept.
+  if (!engine::finite(wanted) || !std::isfinite(glm::length(shift) + glm::length(turn))) {
+    return {};
+  }
   return from_engine(
       engine::keep_passive(data_->books, data_->limits, wanted, shift, turn, data_->traits.period));
 }

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <atomic>
+#include <stdexcept>
+#include <utility>
+
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -32,6 +36,41 @@ T value_or_raise(Result<T> result) {
     throw py::value_error(result.error().message);
   }
   return std::move(result).value();
+}
+
+/// An object for the length of one call. Raises RuntimeError where another thread's call has it:
+/// step, run and update go on without the interpreter's lock.
+class Exclusive {
+ public:
+  explicit Exclusive(std::atomic<bool>& in_use) : in_use_(in_use) {
+    if (in_use_.exchange(true, std::memory_order_acquire)) {
+      throw std::runtime_error("another thread is using this object; give each thread a copy");
+    }
+  }
+  ~Exclusive() { in_use_.store(false, std::memory_order_release); }
+  Exclusive(const Exclusive&) = delete;
+  Exclusive& operator=(const Exclusive&) = delete;
+  Exclusive(Exclusive&&) = delete;
+  Exclusive& operator=(Exclusive&&) = delete;
+
+ private:
+  std::atomic<bool>& in_use_;
+};
+
+/// A simulation as Python has it.
+struct OwnedSimulation {
+  explicit OwnedSimulation(Simulation owned) : simulation(std::move(owned)) {}
+  Simulation simulation;
+  std::atomic<bool> in_use{false};
+};
+
+/// The function with a whole call's hold on the simulation.
+template <class Result, class Self, class... Arguments>
+auto exclusive(Result (*function)(Self&, Arguments...)) {
+  return [function](OwnedSimulation& self, Arguments... arguments) {
+    const Exclusive use(self.in_use);
+    return function(self.simulation, static_cast<Arguments>(arguments)...);
+  };
 }
 
 void add_scene(py::module_& module);

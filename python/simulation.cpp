@@ -101,6 +101,16 @@ py::array_t<TraceRow> run(Simulation& simulation, const Doubles& poses) {
   return trace;
 }
 
+std::unique_ptr<OwnedSimulation> copy_of(const Simulation& simulation) {
+  return std::make_unique<OwnedSimulation>(simulation);
+}
+
+void step_once(Simulation& simulation, const Doubles& poses) {
+  const std::vector<Pose> at = poses_of(poses, simulation.model().tool_count());
+  const py::gil_scoped_release without_interpreter;
+  simulation.step(at);
+}
+
 RegionRow row_of(const Region& region) {
   RegionRow row{};
   row.id = region.id;
@@ -237,48 +247,47 @@ void add_simulation(py::module_& module) {
   add_model(module);
   const auto tool = py::arg("tool") = 0;
   const auto about = py::arg("about") = py::none();
-  py::class_<Simulation>(module, "Simulation", "What steps change. A copy goes on by itself.")
-      .def(py::init([](std::shared_ptr<Model> model) { return Simulation(std::move(model)); }),
-           py::arg("model"))
-      .def("copy", [](const Simulation& simulation) { return simulation; })
-      .def("__copy__", [](const Simulation& simulation) { return simulation; })
-      .def(
-          "step",
-          [](Simulation& simulation, const Doubles& poses) {
-            const std::vector<Pose> at = poses_of(poses, simulation.model().tool_count());
-            const py::gil_scoped_release without_interpreter;
-            simulation.step(at);
-          },
-          "One step with the tools at these poses: (tools, 7), or (7) for one tool.",
-          py::arg("poses"))
-      .def("run", run,
+  py::class_<OwnedSimulation>(module, "Simulation", "What steps change. A copy goes on by itself.")
+      .def(py::init([](std::shared_ptr<Model> model) {
+             return std::make_unique<OwnedSimulation>(Simulation(std::move(model)));
+           }),
+           py::arg("model").none(false))
+      .def("copy", exclusive(copy_of))
+      .def("__copy__", exclusive(copy_of))
+      .def("step", exclusive(step_once),
+           "One step with the tools at these poses: (tools, 7), or (7) for one tool.",
+           py::arg("poses"))
+      .def("run", exclusive(run),
            "Steps through poses of (steps, tools, 7); gives a structured array of (steps, tools).",
            py::arg("poses"))
-      .def("reset", &Simulation::reset, "Goes back to before the first step.")
-      .def_property_readonly("time", &Simulation::time, "s, of the next step.")
-      .def_property_readonly("faults", &Simulation::faults, "Bits, of the last step.")
-      .def_property_readonly("hash", &Simulation::hash)
-      .def(
-          "pose",
-          [](const Simulation& simulation, std::size_t row) {
-            return array_of(simulation.pose(tool_of(simulation, row)));
-          },
-          "x, y, z, qw, qx, qy, qz.", tool)
-      .def("wrench", wrench_of,
+      .def("reset", exclusive(+[](Simulation& simulation) { simulation.reset(); }),
+           "Goes back to before the first step.")
+      .def_property_readonly(
+          "time", exclusive(+[](const Simulation& simulation) { return simulation.time(); }),
+          "s, of the next step.")
+      .def_property_readonly(
+          "faults", exclusive(+[](const Simulation& simulation) { return simulation.faults(); }),
+          "Bits, of the last step.")
+      .def_property_readonly(
+          "hash", exclusive(+[](const Simulation& simulation) { return simulation.hash(); }))
+      .def("pose", exclusive(+[](const Simulation& simulation, std::size_t row) {
+             return array_of(simulation.pose(tool_of(simulation, row)));
+           }),
+           "x, y, z, qw, qx, qy, qz.", tool)
+      .def("wrench", exclusive(wrench_of),
            "Force [N] and torque [N m] on the tool, about its frame or a point: (6).", tool, about)
-      .def("load_parts", load_parts_of,
+      .def("load_parts", exclusive(load_parts_of),
            "The load in parts: the contact couple apart from r x F, about the tool's frame or a "
            "point.",
            tool, about)
-      .def("stiffness", stiffness_of, "6 x 6, about the mass centre: shifts, then turns.", tool)
-      .def(
-          "work",
-          [](const Simulation& simulation, std::size_t row) {
-            return simulation.work(tool_of(simulation, row));
-          },
-          "J, done by the tool's holder.", tool)
-      .def("regions", regions_of, "A structured array, one row a contact.")
-      .def("cells", cells_of, "A structured array, one row a cell with pressure.",
+      .def("stiffness", exclusive(stiffness_of),
+           "6 x 6, about the mass centre: shifts, then turns.", tool)
+      .def("work", exclusive(+[](const Simulation& simulation, std::size_t row) {
+             return simulation.work(tool_of(simulation, row));
+           }),
+           "J, done by the tool's holder.", tool)
+      .def("regions", exclusive(regions_of), "A structured array, one row a contact.")
+      .def("cells", exclusive(cells_of), "A structured array, one row a cell with pressure.",
            py::arg("region") = 0);
   module.def("describe_faults", describe_faults, "The faults in words, one a line.",
              py::arg("faults"));

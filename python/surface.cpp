@@ -9,8 +9,12 @@ class DeformedMesh {
   DeformedMesh(const Simulation& simulation, std::size_t body, const Mesh& mesh)
       : snapshot_(simulation), surface_(simulation.shared_model(), body, mesh) {}
 
-  void update(const Simulation& simulation) {
-    snapshot_.take(simulation);
+  void update(OwnedSimulation& simulation) {
+    const Exclusive use(in_use_);
+    {
+      const Exclusive use_of_simulation(simulation.in_use);
+      snapshot_.take(simulation.simulation);
+    }
     const py::gil_scoped_release without_interpreter;
     surface_.update(snapshot_);
   }
@@ -19,6 +23,7 @@ class DeformedMesh {
  private:
   Snapshot snapshot_;
   Surface surface_;
+  std::atomic<bool> in_use_{false};
 };
 
 py::array_t<float> view_of(std::span<const std::array<float, 3>> rows, const py::object& owner) {
@@ -32,12 +37,14 @@ py::array_t<float> view_of(std::span<const std::array<float, 3>> rows, const py:
 
 void add_surface(py::module_& module) {
   py::class_<DeformedMesh>(module, "Surface", "A mesh that deforms with a body.")
-      .def(py::init([](const Simulation& simulation, const Doubles& vertices,
+      .def(py::init([](OwnedSimulation& owned, const Doubles& vertices,
                        const py::array_t<std::uint32_t>& triangles, std::size_t body) {
+             const Exclusive use(owned.in_use);
+             const Simulation& simulation = owned.simulation;
              if (body >= simulation.model().body_count()) {
                throw py::index_error("there is no body " + std::to_string(body));
              }
-             return DeformedMesh(simulation, body, mesh_of(vertices, triangles));
+             return std::make_unique<DeformedMesh>(simulation, body, mesh_of(vertices, triangles));
            }),
            "vertices: (n, 3) [m, body frame]; triangles: (m, 3).", py::arg("simulation"),
            py::arg("vertices"), py::arg("triangles"), py::arg("body") = 0)

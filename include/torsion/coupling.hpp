@@ -49,7 +49,8 @@ class TORSION_API Coupling {
 
   /// The tool's pose for the next step. Before a simulation's first step the tool is put where the
   /// handle is; later it is drawn there.
-  /// @param handle  the pose that the hand asks of the tool's frame
+  /// @param handle  the pose that the hand asks of the tool's frame; numbers that are no pose count
+  ///                as the one before
   Pose next(const Simulation& simulation, const Pose& handle) noexcept;
 
   /// What the hand is to feel after that step, about the handle's origin: N, N m.

@@ -1,12 +1,15 @@
 /* The C interface of the library, for programs in C and for every language that calls C.
 
    Units are SI; vectors, poses and wrenches are in the world frame; a quaternion is w, x, y, z.
-   Rows of bodies, tools and regions count from 0; a row that is not there, and an array of another
-   length than is said, end in the assertion handler (torsion_set_assertion_handler).
+   Rows of bodies, tools and regions count from 0.
 
-   Functions that can fail return null or a value below 0; torsion_last_error then says why, for
-   the calling thread. Different objects may be used in different threads at the same time; models
-   are constant, and one may be used by all of them. */
+   Functions return 0, or -1 where they fail, or null where they make something; results go to the
+   last argument. torsion_last_error then says why, for the calling thread. A null or freed handle,
+   a null pointer, a row that is not there, an array of another length, and a handle that another
+   thread's call is using are such failures; nothing is written then.
+
+   Different objects may be used in different threads at the same time; models are constant, and one
+   may be used by all of them. */
 #ifndef TORSION_H
 #define TORSION_H
 
@@ -100,20 +103,22 @@ TORSION_C_API uint32_t torsion_interface_version(void);
 TORSION_C_API const char* torsion_version(void);
 /* Why the last call in this thread failed; valid until the next one fails. */
 TORSION_C_API const char* torsion_last_error(void);
-/* Is called when a precondition is broken; if it returns, the process aborts. Null: none. */
+/* Is called when the library finds a mistake of its own; if it returns, the process aborts. Null:
+   none. */
 TORSION_C_API void torsion_set_assertion_handler(void (*handler)(const char* condition,
                                                                  const char* file, int line));
 
 /* A .gltf or .glb by the conventions of docs/scenes.md, or null. */
 TORSION_C_API torsion_scene* torsion_load_scene(const char* path);
-TORSION_C_API void torsion_free_scene(torsion_scene* scene);
+/* Null is left alone, here and below. */
+TORSION_C_API int torsion_free_scene(torsion_scene* scene);
 /* s: the end of the file's animations. */
-TORSION_C_API double torsion_scene_duration(const torsion_scene* scene);
+TORSION_C_API int torsion_scene_duration(const torsion_scene* scene, double* seconds);
 /* Where the file's animation holds a tool at a time [s]. */
-TORSION_C_API torsion_pose torsion_animated_pose(const torsion_scene* scene, size_t tool,
-                                                 double time);
+TORSION_C_API int torsion_animated_pose(const torsion_scene* scene, size_t tool, double time,
+                                        torsion_pose* pose);
 /* Sets youngs_modulus [Pa], poisson_ratio, density [kg/m^3], static_friction, dynamic_friction or
-   tolerance of the body of that name. 0, or -1 where there is no such body or key. */
+   tolerance of the body of that name. torsion_build says what a number cannot be. */
 TORSION_C_API int torsion_set_number(torsion_scene* scene, const char* body, const char* key,
                                      double value);
 
@@ -121,44 +126,51 @@ TORSION_C_API torsion_options torsion_default_options(void);
 /* Prepares a scene, or null. Null options: the default ones. */
 TORSION_C_API torsion_model* torsion_build(const torsion_scene* scene,
                                            const torsion_options* options);
-TORSION_C_API void torsion_free_model(torsion_model* model);
-TORSION_C_API size_t torsion_body_count(const torsion_model* model);
-TORSION_C_API size_t torsion_tool_count(const torsion_model* model);
-/* The row of the tool of that name; torsion_tool_count where there is none. */
-TORSION_C_API size_t torsion_find_tool(const torsion_model* model, const char* name);
-TORSION_C_API double torsion_step_time(const torsion_model* model); /* s */
+/* Simulations of the model keep what they need of it. */
+TORSION_C_API int torsion_free_model(torsion_model* model);
+TORSION_C_API int torsion_body_count(const torsion_model* model, size_t* count);
+TORSION_C_API int torsion_tool_count(const torsion_model* model, size_t* count);
+/* The row of the tool of that name. */
+TORSION_C_API int torsion_find_tool(const torsion_model* model, const char* name, size_t* tool);
+TORSION_C_API int torsion_step_time(const torsion_model* model, double* seconds);
 
 TORSION_C_API torsion_simulation* torsion_new_simulation(const torsion_model* model);
 TORSION_C_API torsion_simulation* torsion_copy_simulation(const torsion_simulation* simulation);
-TORSION_C_API void torsion_free_simulation(torsion_simulation* simulation);
-/* One step; poses: one for each tool. Allocates nothing. Returns the step's fault bits. */
-TORSION_C_API uint32_t torsion_step(torsion_simulation* simulation, const torsion_pose* poses,
-                                    size_t count);
-/* Writes the faults in words, one a line, with a zero at the end, and returns their length. */
+TORSION_C_API int torsion_free_simulation(torsion_simulation* simulation);
+/* One step; poses: one for each tool. Allocates nothing. Returns the step's fault bits: 0 where it
+   was sound, above 0 where the forces fade (torsion_describe_faults), or -1. */
+TORSION_C_API int torsion_step(torsion_simulation* simulation, const torsion_pose* poses,
+                               size_t count);
+/* Writes the faults in words, one a line, as many as fit with a zero at the end, and returns the
+   length of all of them. */
 TORSION_C_API size_t torsion_describe_faults(uint32_t faults, char* text, size_t size);
-TORSION_C_API double torsion_time(const torsion_simulation* simulation); /* s, of the next step */
+/* s, of the next step. */
+TORSION_C_API int torsion_time(const torsion_simulation* simulation, double* seconds);
 /* About the origin of the tool's frame. */
-TORSION_C_API torsion_wrench torsion_tool_wrench(const torsion_simulation* simulation, size_t tool);
-TORSION_C_API torsion_load_parts torsion_tool_load_parts(const torsion_simulation* simulation,
-                                                         size_t tool, const double point[3]);
+TORSION_C_API int torsion_tool_wrench(const torsion_simulation* simulation, size_t tool,
+                                      torsion_wrench* wrench);
+/* About a point, m. */
+TORSION_C_API int torsion_tool_load_parts(const torsion_simulation* simulation, size_t tool,
+                                          const double point[3], torsion_load_parts* parts);
 /* 6 x 6, row by row, about the tool's mass centre: shifts, then turns. */
-TORSION_C_API void torsion_tool_stiffness(const torsion_simulation* simulation, size_t tool,
-                                          double stiffness[36]);
-TORSION_C_API size_t torsion_region_count(const torsion_simulation* simulation);
-TORSION_C_API torsion_region torsion_get_region(const torsion_simulation* simulation,
-                                                size_t region);
+TORSION_C_API int torsion_tool_stiffness(const torsion_simulation* simulation, size_t tool,
+                                         double stiffness[36]);
+TORSION_C_API int torsion_region_count(const torsion_simulation* simulation, size_t* count);
+TORSION_C_API int torsion_get_region(const torsion_simulation* simulation, size_t region,
+                                     torsion_region* made);
 
 TORSION_C_API torsion_coupling* torsion_new_coupling(const torsion_model* model, size_t tool,
                                                      const torsion_device_traits* traits,
                                                      torsion_hold hold);
-TORSION_C_API void torsion_free_coupling(torsion_coupling* coupling);
+TORSION_C_API int torsion_free_coupling(torsion_coupling* coupling);
 /* The tool's pose for the next step, for a handle's pose. */
-TORSION_C_API torsion_pose torsion_coupling_next(torsion_coupling* coupling,
-                                                 const torsion_simulation* simulation,
-                                                 const torsion_pose* handle);
+TORSION_C_API int torsion_coupling_next(torsion_coupling* coupling,
+                                        const torsion_simulation* simulation,
+                                        const torsion_pose* handle, torsion_pose* pose);
 /* What the hand is to feel after that step, about the handle's origin. */
-TORSION_C_API torsion_wrench torsion_coupling_felt(torsion_coupling* coupling,
-                                                   const torsion_simulation* simulation);
+TORSION_C_API int torsion_coupling_felt(torsion_coupling* coupling,
+                                        const torsion_simulation* simulation,
+                                        torsion_wrench* wrench);
 
 #ifdef __cplusplus
 }

@@ -165,6 +165,40 @@ def test_runs_in_threads_do_not_wait_for_the_interpreter():
     assert hashes[0] == hashes[1] is not None
 
 
+def test_two_threads_on_one_simulation_are_told_so():
+    simulation = torsion.Simulation(torsion.build(ball_on_pad("patch")))
+    poses = pressed_and_turned(turns=3000)
+    thread = threading.Thread(target=simulation.run, args=(poses,))
+    refused = 0
+    thread.start()
+    while thread.is_alive():
+        try:
+            simulation.wrench()
+        except RuntimeError as error:
+            assert "another thread" in str(error)
+            refused += 1
+    thread.join()
+    assert refused > 0
+    alone = torsion.Simulation(torsion.build(ball_on_pad("patch")))
+    alone.run(poses)
+    assert alone.hash == simulation.hash
+
+
+def test_numbers_that_are_none_end_in_faults_or_exceptions():
+    simulation = torsion.Simulation(torsion.build(ball_on_pad()))
+    simulation.step([0.0, np.nan, 0.0, 1.0, 0.0, 0.0, 0.0])
+    assert simulation.faults
+    assert np.isfinite(simulation.wrench()).all()
+    for poses in (np.zeros((0, 1, 7)), np.full((3, 1, 7), np.inf)):
+        assert len(simulation.run(poses)) == len(poses)
+    with pytest.raises((TypeError, ValueError)):
+        simulation.step(None)
+    with pytest.raises((TypeError, ValueError)):
+        simulation.run("poses")
+    with pytest.raises(TypeError):
+        torsion.Simulation(None)
+
+
 def test_the_page_of_the_library_runs(capsys, monkeypatch):
     page = (SCENES.parent / "docs" / "library.md").read_text(encoding="utf-8")
     block = re.search(r"```python\n(.*?)```", page, re.DOTALL)

@@ -199,11 +199,11 @@ def test_numbers_that_are_none_end_in_faults_or_exceptions():
         torsion.Simulation(None)
 
 
-def test_the_page_of_the_library_runs(capsys, monkeypatch):
-    page = (SCENES.parent / "docs" / "library.md").read_text(encoding="utf-8")
+def test_the_page_of_the_module_runs(capsys, monkeypatch):
+    page = (SCENES.parent / "docs" / "python.md").read_text(encoding="utf-8")
     block = re.search(r"```python\n(.*?)```", page, re.DOTALL)
     monkeypatch.chdir(SCENES.parent)
-    exec(compile(block.group(1), "docs/library.md", "exec"), {})
+    exec(compile(block.group(1), "docs/python.md", "exec"), {})
     assert "largest couple" in capsys.readouterr().out
 
 

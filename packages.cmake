@@ -24,6 +24,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libtorsion1 (= ${PROJECT_VERSION})
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-torsion)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "libtorsion1 (= ${PROJECT_VERSION}), python3-numpy, python3 (>= 3.11), python3 (<< 3.12)")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "torsion, python3-pil")  # for pictures
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 # The library is in the same build, so its own dependency is written here and not looked for in the system.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/library)

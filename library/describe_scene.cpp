@@ -331,6 +331,7 @@ Scene scene_of(engine::SceneDescription description) {
     tool.mass = from.mass.mass;
     tool.mass_center = from_engine(from.mass.center);
   }
+  scene.path = file->scene.path;
   scene.duration = file->scene.duration;
   scene.file = std::move(file);
   return scene;

@@ -174,6 +174,7 @@ void add_scene(py::module_& module) {
           "The tools' names.")
       .def("__getitem__", body_named, py::return_value_policy::reference_internal,
            "The body of that name.")
+      .def_readonly("path", &Scene::path, "Of the file; empty for a scene made by code.")
       .def_readonly("duration", &Scene::duration, "s: the end of the file's animations.")
       .def("animation", animation, "Poses of the file's animations, one a step: (steps, tools, 7).",
            py::arg("rate") = 1000.0, py::arg("seconds") = py::none())

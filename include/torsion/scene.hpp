@@ -88,6 +88,7 @@ struct SceneFile;  // what a glTF file holds besides; not for users
 struct Scene {
   std::vector<Body> bodies;
   std::vector<Tool> tools;
+  std::string path;                       // of the file; empty for a scene that was made by code
   double duration = 0.0;                  // s: the end of the file's animations
   std::shared_ptr<const SceneFile> file;  // null for a scene that was made by code
 

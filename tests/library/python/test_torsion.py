@@ -199,6 +199,36 @@ def test_numbers_that_are_none_end_in_faults_or_exceptions():
         torsion.Simulation(None)
 
 
+def test_a_picture_shows_what_was_changed():
+    scene = torsion.load(str(SCENES / "ball_on_cube_soft.gltf"))
+    pictures = [torsion.render(scene, at=2.0, size=(320, 240))]
+    assert pictures[0].shape == (240, 320, 3) and pictures[0].dtype == np.uint8
+    assert pictures[0].std() > 10.0  # something is in it
+    scene["cube"].static_friction = scene["cube"].dynamic_friction = 0.05
+    pictures.append(torsion.render(scene, at=2.0, size=(320, 240)))
+    assert np.abs(pictures[0].astype(int) - pictures[1]).max() > 50  # hardly twisted any more
+    with pytest.raises(ValueError, match="made by code"):
+        torsion.picture(ball_on_pad(), at=0.0)
+    scene["cube"].poisson_ratio = 0.7
+    with pytest.raises(ValueError, match="0 to 0.5"):
+        torsion.picture(scene, at=0.0)
+
+
+def test_a_notebook_shows_pictures_and_curves():
+    scene = torsion.load(str(SCENES / "ball_on_cube.gltf"))
+    assert "data:image/png;base64," in scene._repr_html_()
+    model = torsion.build(scene, contact_model="mdr", body_model="none")
+    summary = torsion.Summary(scene, torsion.Simulation(model).run(scene.animation()))
+    assert "data:image/png;base64," in summary._repr_html_()
+    curves = summary.curves()
+    assert len(curves) == 3 and not any("nan" in curve for curve in curves)
+    assert summary._repr_html_().count("<svg") == 3
+    made = ball_on_pad()
+    trace = torsion.Simulation(torsion.build(made)).run(pressed_and_turned(turns=100))
+    assert "<img" not in torsion.Summary(made, trace)._repr_html_()
+    assert "<p>pad; tools ball" in made._repr_html_()
+
+
 def test_the_page_of_the_module_runs(capsys, monkeypatch):
     page = (SCENES.parent / "docs" / "python.md").read_text(encoding="utf-8")
     block = re.search(r"```python\n(.*?)```", page, re.DOTALL)

@@ -62,7 +62,7 @@ std::shared_ptr<SceneVariants::Prepared> SceneVariants::prepared_for(
     entry = std::make_shared<Prepared>();
   }
   entry->last_use = ++uses_;
-  const std::shared_ptr<Prepared> found = entry;
+  std::shared_ptr<Prepared> found = entry;
   if (prepared_.size() > kMostPrepared) {
     prepared_.erase(std::ranges::min_element(
         prepared_, {}, [](const auto& each) { return each.second->last_use; }));

@@ -120,7 +120,7 @@ Result<std::vector<TraceColumn>> read_trace_columns(const std::string& names) {
     }
   }
   if (columns.empty()) {
-    return Error{"expected names of columns with commas between, \"all\" or \"usual\""};
+    return Error{R"(expected names of columns with commas between, "all" or "usual")"};
   }
   return columns;
 }

@@ -1,8 +1,9 @@
 // A rigid-body engine beside Torsion: MuJoCo carries a free ball with gravity and inertia; Torsion
 // gives the wrench of its contact with a soft pad. The ball lies on the pad and spins about the
-// vertical. What stops it is the contact couple: the friction of a point has no arm about that axis.
+// vertical. What stops it is the contact couple: the friction of a point has no arm about that
+// axis.
 //
-//   c++ -std=c++20 beside_mujoco.cpp $(pkg-config --cflags --libs torsion) -lmujoco -o beside_mujoco
+//   c++ -std=c++20 beside_mujoco.cpp $(pkg-config --cflags --libs torsion) -lmujoco
 
 #include <cmath>
 #include <cstdio>
@@ -38,12 +39,11 @@ torsion::Scene make_scene() {
 
 /// MuJoCo's y is up here, too. It finds no contacts: they are Torsion's.
 mjModel* make_ball() {
-  const std::string text = "<mujoco><option timestep='" + std::to_string(kStep) +
-                           "' gravity='0 -9.81 0'/><worldbody><body pos='0 " +
-                           std::to_string(kHeight + kRadius) +
-                           " 0'><freejoint/><geom type='sphere' size='" + std::to_string(kRadius) +
-                           "' mass='" + std::to_string(kMass) +
-                           "' contype='0' conaffinity='0'/></body></worldbody></mujoco>";
+  const std::string text =
+      "<mujoco><option timestep='" + std::to_string(kStep) +
+      "' gravity='0 -9.81 0'/><worldbody><body pos='0 " + std::to_string(kHeight + kRadius) +
+      " 0'><freejoint/><geom type='sphere' size='" + std::to_string(kRadius) + "' mass='" +
+      std::to_string(kMass) + "' contype='0' conaffinity='0'/></body></worldbody></mujoco>";
   mjVFS files;
   mj_defaultVFS(&files);
   mj_makeEmptyFileVFS(&files, "ball.xml", static_cast<int>(text.size()) + 1);
@@ -86,7 +86,8 @@ int main() {
     simulation.step({&pose, 1});
     const torsion::Wrench wrench = simulation.wrench(0, pose.position);
     for (int axis = 0; axis < 3; ++axis) {
-      const double damping = axis == 1 ? 2.0 : 0.0;  // N s/m: the pad's own loss, which has no model
+      const double damping =
+          axis == 1 ? 2.0 : 0.0;  // N s/m: the pad's own loss, which has no model
       force[axis] = wrench.force[axis] - damping * data->qvel[axis];
       force[3 + axis] = wrench.torque[axis];
     }

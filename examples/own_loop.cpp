@@ -54,7 +54,7 @@ int main() {
 
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
-  double busy = 0.0;    // s, of all steps
+  double busy = 0.0;     // s, of all steps
   double largest = 0.0;  // N m
   const int steps = 1000;
   for (int step = 0; step < steps; ++step) {

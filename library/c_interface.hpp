@@ -16,12 +16,14 @@
 struct torsion_scene : torsion::Handle<torsion::Scene> {};
 struct torsion_model : torsion::Handle<std::shared_ptr<const torsion::Model>> {};
 struct torsion_simulation : torsion::Handle<torsion::Simulation> {};
-/// A coupling and the number of its tool.
-struct torsion_held_tool {
-  torsion::Coupling coupling;
+namespace torsion::c_interface {
+/// A coupling and the row of its tool.
+struct HeldTool {
+  Coupling coupling;
   std::size_t tool;
 };
-struct torsion_coupling : torsion::Handle<torsion_held_tool> {};
+}  // namespace torsion::c_interface
+struct torsion_coupling : torsion::Handle<torsion::c_interface::HeldTool> {};
 
 namespace torsion::c_interface {
 

@@ -11,6 +11,7 @@ namespace {
 using torsion::c_interface::failed;
 using torsion::c_interface::free_handle;
 using torsion::c_interface::guarded;
+using torsion::c_interface::HeldTool;
 using torsion::c_interface::kFailed;
 using torsion::c_interface::kNoSuchTool;
 using torsion::c_interface::kNullPointer;
@@ -241,7 +242,7 @@ torsion_coupling* torsion_new_coupling(const torsion_model* model, size_t tool,
       failed(problem.c_str());
       return nullptr;
     }
-    return pool<torsion_coupling>().make(torsion_held_tool{
+    return pool<torsion_coupling>().make(HeldTool{
         torsion::Coupling(*found, tool, traits_of(*traits), static_cast<torsion::Hold>(hold)),
         tool});
   });
@@ -253,7 +254,7 @@ int torsion_free_coupling(torsion_coupling* coupling) {
 
 int torsion_coupling_next(torsion_coupling* coupling, const torsion_simulation* simulation,
                           const torsion_pose* handle, torsion_pose* pose) {
-  return with(coupling, [=](torsion_held_tool& held) {
+  return with(coupling, [=](HeldTool& held) {
     return with(simulation, [&](const torsion::Simulation& from) {
       if (handle == nullptr || pose == nullptr) {
         return failed(kNullPointer);
@@ -269,7 +270,7 @@ int torsion_coupling_next(torsion_coupling* coupling, const torsion_simulation* 
 
 int torsion_coupling_felt(torsion_coupling* coupling, const torsion_simulation* simulation,
                           torsion_wrench* wrench) {
-  return with(coupling, [=](torsion_held_tool& held) {
+  return with(coupling, [=](HeldTool& held) {
     return with(simulation, [&](const torsion::Simulation& from) {
       if (wrench == nullptr || held.tool >= from.model().tool_count()) {
         return failed(wrench == nullptr ? kNullPointer

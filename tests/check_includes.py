@@ -19,6 +19,7 @@ ALLOWED = {
     "include": set(),
     "library": {"ecs", "systems", "scenes", "device", "include"},
     "python": {"include"},
+    "examples": set(),  # programs of users: <torsion/...>, as installed
     "app": {"ecs", "systems", "scenes", "device", "render"},
     "tests": {"ecs", "systems", "scenes", "device", "render", "shaders", "app", "include"},
 }
@@ -45,6 +46,8 @@ OWNED_LIBRARIES = {
     "tiny_gltf": "scenes",
     "libusb": "device",
     "CLI/": "app",
+    "ceres/": "app",
+    "hdf5": "app",
 }
 # What a part of a folder may include besides: the report compares with the references of the tests.
 ALLOWED_BESIDES = {"app/report/": "tests/reference/"}

@@ -4,8 +4,8 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <memory>
+#include <system_error>
 
 #include <csv.h>
 #include <fmt/format.h>
@@ -83,7 +83,8 @@ Result<MeasuredTable> read_measured_table(const std::filesystem::path& path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                              std::fclose);
   if (file == nullptr) {
-    return Error{fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno))};
+    return Error{fmt::format("{}: cannot be read: {}", path.string(),
+                             std::generic_category().message(errno))};
   }
   TableReader reader;
   reader.table.path = path;
@@ -100,7 +101,8 @@ Result<MeasuredTable> read_measured_table(const std::filesystem::path& path) {
     parsed = csv_parse(&parser, bytes.data(), size, take_field, take_end_of_row, &reader) == size;
   }
   if (std::ferror(file.get()) != 0) {
-    return Error{fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno))};
+    return Error{fmt::format("{}: cannot be read: {}", path.string(),
+                             std::generic_category().message(errno))};
   }
   if (reader.problem.empty() &&
       (!parsed || csv_fini(&parser, take_field, take_end_of_row, &reader) != 0)) {

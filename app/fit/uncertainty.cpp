@@ -17,7 +17,7 @@ constexpr double kWindow = 5.0;            // autocorrelation times that Sokal's
 
 /// 97.5 % quantile of Student's distribution.
 double student_quantile(double freedom) {
-  constexpr double z = 1.959963984540054;
+  const double z = 1.959963984540054;
   const double z3 = z * z * z;
   const double z5 = z3 * z * z;
   return z + (z3 + z) / (4.0 * freedom) +

@@ -222,6 +222,25 @@ std::vector<Estimate> estimates_of(const FitProblem& problem, const LeastSquares
   return estimates;
 }
 
+/// Where one of a body's two coefficients of friction is searched for and the other stays: what was
+/// meant may be both.
+void warn_of_lone_friction(const FitProblem& problem, std::vector<std::string>& warnings) {
+  const auto is_free = [&](const std::string& name) {
+    return std::ranges::find(problem.parameters, name, &FreeParameter::name) !=
+           problem.parameters.end();
+  };
+  for (const BodyDescription& body : problem.scene().bodies) {
+    const bool dynamic = is_free(body.node + ".dynamic_friction");
+    if (dynamic != is_free(body.node + ".static_friction")) {
+      warnings.push_back(fmt::format(
+          "{}'s {} stayed at {:.6g}; where both are one, as most surfaces have it, free "
+          "{}.friction",
+          body.node, dynamic ? "static_friction" : "dynamic_friction",
+          dynamic ? body.friction.static_friction : body.friction.dynamic_friction, body.node));
+    }
+  }
+}
+
 /// What the data leave open.
 void warn_of_open_parameters(const FitProblem& problem, const Uncertainty& uncertainty,
                              std::vector<std::string>& warnings) {
@@ -263,6 +282,7 @@ void warn(const FitProblem& problem, const LeastSquares& found, const Uncertaint
                     "nearer, by --set",
                     found.iterations));
   }
+  warn_of_lone_friction(problem, warnings);
   warn_of_open_parameters(problem, uncertainty, warnings);
   for (std::size_t k = 0; k < problem.parameters.size(); ++k) {
     if (result.estimates[k].at_bound) {

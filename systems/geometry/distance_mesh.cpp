@@ -8,7 +8,11 @@
 #include <utility>
 #include <vector>
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 #include <glm/geometric.hpp>
 
 #include "ecs/assert.hpp"

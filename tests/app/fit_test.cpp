@@ -251,6 +251,19 @@ TEST(FitTest, WhatTheDataLeaveOpenIsSaid) {
   EXPECT_NEAR(result.estimates[0].value / (1.0 - ratio * ratio), 8e5 / 0.91, 0.01 * 8e5 / 0.91);
 }
 
+TEST(FitTest, OneOfTwoCoefficientsOfFrictionIsPointedOut) {
+  const ElementScene scene = scene_named("half_space");
+  const std::string node = scene.scene.bodies[0].node;
+  const double radius = scene.scene.tools[0].parts[0].shape.half_extent.x;
+  SceneDescription start = scene.scene;
+  start.bodies[0].friction = {0.9, 0.9};
+  const Measurement measurement = exact_measurement(scene.touching, radius, 2e6, 0.4999, 0.6);
+  const FitResult result = fitted(problem_of(start, measurement, {node + ".dynamic_friction"},
+                                             ContactModel::kMdr, BodyModel::kNone));
+  EXPECT_TRUE(warns_of(result, "static_friction stayed at 0.9"));
+  EXPECT_TRUE(warns_of(result, "free " + node + ".friction"));
+}
+
 TEST(FitTest, PositionsThatAreOffAreFound) {
   const ElementScene scene = scene_named("half_space");
   const std::string node = scene.scene.bodies[0].node;

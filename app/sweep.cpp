@@ -189,8 +189,11 @@ int sweep(const SweepOptions& options) {
   if (!options.quiet) {
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    fmt::print("{}: {} runs of {:.4g} s, {} of them found done, in {:.1f} s\n", options.out,
-               study.value().runs(), study.value().seconds, before, seconds);
+    const double steps = static_cast<double>(study.value().runs() - before) *
+                         study.value().seconds * options.scene.rate;
+    fmt::print("{}: {} runs of {:.4g} s, {} of them found done, in {:.1f} s; {:.3g} steps/s\n",
+               options.out, study.value().runs(), study.value().seconds, before, seconds,
+               steps / seconds);
   }
   return kDone;
 }

@@ -103,7 +103,7 @@ Measurement element_measurement(const ElementScene& scene, double noise, unsigne
   PressAndTurn made(scene.touching);
   made.add(0.0, -2e-5, 0.0, 0.0, 0.0);
   for (const ElementCurve::Row& row : finest_curve(scene.name).rows) {
-    made.add(10 * kStep, row.depth, row.turn, row.force, -row.torque);
+    made.add(6 * kStep, row.depth, row.turn, row.force, -row.torque);
   }
   Measurement measurement = made.measurement();
   add_noise(measurement, noise, seed);
@@ -203,7 +203,7 @@ TEST(FitTest, IntervalsHoldTheTruthAsOftenAsTheySay) {
                         0.4999, 0.6),
       {node + ".youngs_modulus", node + ".friction"}, ContactModel::kMdr, BodyModel::kNone);
   measure_model(problem, truth);
-  const unsigned seeds = test::all_cases() ? 200 : 30;
+  const unsigned seeds = test::all_cases() ? 200 : 10;
   for (const double memory : {0.0, 0.7}) {
     SCOPED_TRACE(memory);
     int held = 0;

@@ -24,18 +24,16 @@ std::vector<const char*> device_extensions(const GpuOptions& options) {
   return extensions;
 }
 
-VKAPI_ATTR VkBool32 VKAPI_CALL keep_message(VkDebugUtilsMessageSeverityFlagBitsEXT /*severity*/,
-                                            VkDebugUtilsMessageTypeFlagsEXT types,
-                                            const VkDebugUtilsMessengerCallbackDataEXT* data,
-                                            void* log) {
-  // Mesa sends warnings of its own about SPIR-V through the same messenger, without this bit.
-  if ((types & VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT) != 0) {
-    static_cast<ValidationLog*>(log)->messages.emplace_back(data->pMessage);
-  }
-  return VK_FALSE;
-}
-
 vk::DebugUtilsMessengerCreateInfoEXT messenger_info(ValidationLog* log) {
+  // Vulkan-Hpp 1.4 has the callback with types of its own, older ones with those of C.
+  using Callback = decltype(vk::DebugUtilsMessengerCreateInfoEXT::pfnUserCallback);
+  const Callback keep_message = [](auto /*severity*/, auto types, const auto* data, void* kept) {
+    // Mesa sends warnings of its own about SPIR-V through the same messenger, without this bit.
+    if ((static_cast<std::uint32_t>(types) & VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT) != 0) {
+      static_cast<ValidationLog*>(kept)->messages.emplace_back(data->pMessage);
+    }
+    return VkBool32{VK_FALSE};
+  };
   return {
       .messageSeverity = vk::DebugUtilsMessageSeverityFlagBitsEXT::eWarning |
                          vk::DebugUtilsMessageSeverityFlagBitsEXT::eError,

@@ -66,8 +66,7 @@ bool fits_vector(const tinygltf::Value& value) {
   if (!value.IsArray() || value.ArrayLen() != 3) {
     return false;
   }
-  for (int i = 0; i < 3; ++i) {
-    const tinygltf::Value& number = value.Get(i);
+  for (const tinygltf::Value& number : value.Get<tinygltf::Value::Array>()) {
     if (!number.IsNumber() || !(std::abs(number.GetNumberAsDouble()) < 1e6)) {
       return false;
     }

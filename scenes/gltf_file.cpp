@@ -183,9 +183,35 @@ bool read_file(Bytes* out, std::string* error, const std::string& name, void* us
   return true;
 }
 
+/// tinygltf asks for it from version 2.9 on.
+[[maybe_unused]] bool file_size(std::size_t* size, std::string* error, const std::string& name,
+                                void* user_data) {
+  Bytes bytes;
+  if (!read_file(&bytes, error, name, user_data)) {
+    return false;
+  }
+  *size = bytes.size();
+  return true;
+}
+
 bool write_nothing(std::string* error, const std::string&, const Bytes&, void*) {
   *error = "a scene is not written to";
   return false;
+}
+
+tinygltf::FsCallbacks callbacks_for(std::filesystem::path& folder) {
+  tinygltf::FsCallbacks callbacks{};
+  callbacks.FileExists = file_exists;
+  callbacks.ExpandFilePath = same_path;
+  callbacks.ReadWholeFile = read_file;
+  callbacks.WriteWholeFile = write_nothing;
+  callbacks.user_data = &folder;
+  [](auto& of_this_version) {
+    if constexpr (requires { of_this_version.GetFileSizeInBytes; }) {
+      of_this_version.GetFileSizeInBytes = file_size;
+    }
+  }(callbacks);
+  return callbacks;
 }
 
 /// Textures are not drawn, and image decoders are where hostile files aim.
@@ -198,7 +224,7 @@ std::optional<tinygltf::Model> parse_gltf(const Bytes& bytes, bool binary, std::
                                           std::filesystem::path folder,
                                           const ProblemList& problems) {
   tinygltf::TinyGLTF loader;
-  loader.SetFsCallbacks({file_exists, same_path, read_file, write_nothing, &folder});
+  loader.SetFsCallbacks(callbacks_for(folder));
   loader.SetImageLoader(pass_over_image, nullptr);
   tinygltf::Model model;
   std::string errors;

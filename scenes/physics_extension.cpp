@@ -33,8 +33,9 @@ void read_motion_part(const tinygltf::Value* motion, PhysicsExtension& physics) 
   if (center != nullptr && center->IsArray() && center->ArrayLen() == 3) {
     glm::dvec3 read(0.0);
     bool good = true;
-    for (int i = 0; i < 3; ++i) {
-      const auto component = number(&center->Get(i), -1e6);
+    const auto& components = center->Get<tinygltf::Value::Array>();
+    for (glm::length_t i = 0; i < 3; ++i) {
+      const auto component = number(&components[static_cast<std::size_t>(i)], -1e6);
       good = good && component;
       read[i] = component.value_or(0.0);
     }
@@ -50,7 +51,8 @@ void read_material(const tinygltf::Model& model, const tinygltf::Value* collider
       row->Get<int>() < 0 || static_cast<std::size_t>(row->Get<int>()) >= materials->ArrayLen()) {
     return;
   }
-  const tinygltf::Value* material = &materials->Get(row->Get<int>());
+  const tinygltf::Value* material =
+      &materials->Get<tinygltf::Value::Array>()[static_cast<std::size_t>(row->Get<int>())];
   physics.dynamic_friction = number(member(material, "dynamicFriction"), 0.0);
   physics.static_friction = number(member(material, "staticFriction"), 0.0);
   if (physics.static_friction && physics.dynamic_friction) {

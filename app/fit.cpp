@@ -105,52 +105,38 @@ class FitTeller {
   bool on_;
 };
 
-/// The files that are asked for, tried before the work and written behind it.
-Result<Done> write_files(const FitOptions& options, const FitProblem& problem,
-                         const FitResult& result, const FitFacts& facts) {
-  std::vector<OutputFile> files;
-  const auto add = [&files](const std::string& path, const std::string& text) -> Result<Done> {
-    Result<OutputFile> file = OutputFile::create(path);
-    if (!file) {
-      return file.error();
-    }
-    file.value().write(text);
-    files.push_back(std::move(file).value());
-    return Done{};
-  };
+/// What is asked for, but for the words to the terminal.
+Result<Done> write_results(const FitOptions& options, const FitProblem& problem,
+                           const FitResult& result, const FitFacts& facts) {
+  std::vector<FileText> files;
   if (!options.table.empty()) {
-    if (const Result<Done> done = add(options.table, fit_table(problem, result)); !done) {
-      return done.error();
-    }
+    files.push_back({options.table, fit_table(problem, result)});
   }
   if (!options.page.empty()) {
     const Result<std::string> page = fit_page(problem, result, facts);
     if (!page) {
       return page.error();
     }
-    if (const Result<Done> done = add(options.page, page.value()); !done) {
-      return done.error();
-    }
+    files.push_back({options.page, page.value()});
   }
-  return OutputFile::commit_all(files);
+  return write_files(files);
 }
 
-Result<Done> try_files(const FitOptions& options) {
+/// A fit takes minutes: what would fail after it is tried before.
+Result<Done> try_results(const FitOptions& options) {
+  std::vector<std::filesystem::path> paths;
   for (const std::string& path : {options.table, options.page}) {
-    if (path.empty()) {
-      continue;
-    }
-    const Result<OutputFile> file = OutputFile::create(path);
-    if (!file) {
-      return file.error();
+    if (!path.empty()) {
+      paths.emplace_back(path);
     }
   }
-  return options.page.empty() ? Result<Done>(Done{}) : try_gnuplot();
+  const Result<Done> plots = options.page.empty() ? Result<Done>(Done{}) : try_gnuplot();
+  return plots ? try_files(paths) : plots;
 }
 
 int fit(const FitOptions& options) {
   const Interrupt interrupt;
-  if (const Result<Done> tried = try_files(options); !tried) {
+  if (const Result<Done> tried = try_results(options); !tried) {
     return fail(tried.error().text);
   }
   const auto start = std::chrono::steady_clock::now();
@@ -171,7 +157,7 @@ int fit(const FitOptions& options) {
   const FitFacts facts{
       options.measured,
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
-  if (const Result<Done> written = write_files(options, problem.value(), result.value(), facts);
+  if (const Result<Done> written = write_results(options, problem.value(), result.value(), facts);
       !written) {
     return fail(written.error().text);
   }

@@ -248,4 +248,27 @@ Result<Done> OutputFile::commit_all(std::span<OutputFile> files) {
   return Done{};
 }
 
+Result<Done> try_files(std::span<const std::filesystem::path> paths) {
+  for (const std::filesystem::path& path : paths) {
+    const Result<OutputFile> file = OutputFile::create(path);
+    if (!file) {
+      return file.error();
+    }
+  }
+  return Done{};
+}
+
+Result<Done> write_files(std::span<const FileText> files) {
+  std::vector<OutputFile> outputs;
+  for (const FileText& each : files) {
+    Result<OutputFile> output = OutputFile::create(each.path);
+    if (!output) {
+      return output.error();
+    }
+    output.value().write(each.text);
+    outputs.push_back(std::move(output).value());
+  }
+  return OutputFile::commit_all(outputs);
+}
+
 }  // namespace torsion::engine

@@ -59,6 +59,19 @@ class OutputFile {
   int why_ = 0;  // of errno, when it failed
 };
 
+/// A text and the file that it is to be.
+struct FileText {
+  std::filesystem::path path;
+  std::string text;
+};
+
+/// Whether all of them can be written, before the work whose results they are. Leaves nothing but
+/// folders.
+Result<Done> try_files(std::span<const std::filesystem::path> paths);
+
+/// All of them or none.
+Result<Done> write_files(std::span<const FileText> files);
+
 /// The folder in which `path` will lie, made if it is not there.
 Result<Done> make_parent_folder(const std::filesystem::path& path);
 

@@ -1,5 +1,6 @@
 #include "app/report.hpp"
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -71,53 +72,18 @@ std::vector<std::string> draw_pictures(std::span<const MeasuredCase> cases, bool
   return pictures;
 }
 
-struct ReportPaths {
-  std::filesystem::path csv;
-  std::filesystem::path page;
-};
-
-/// What can fail without a measurement: whether there is gnuplot, and whether both files can be
-/// written. Leaves nothing but the folder.
-Result<Done> try_outputs(const ReportPaths& paths) {
-  const Result<Done> plots = try_gnuplot();
-  if (!plots) {
-    return plots.error();
-  }
-  for (const std::filesystem::path& path : {paths.csv, paths.page}) {
-    const Result<OutputFile> file = OutputFile::create(path);
-    if (!file) {
-      return file.error();
-    }
-  }
-  return Done{};
-}
-
-/// Both files or none.
-Result<Done> write_outputs(const ReportPaths& paths, const std::string& csv,
-                           const std::string& page) {
-  std::vector<OutputFile> files;
-  for (const std::filesystem::path& path : {paths.csv, paths.page}) {
-    Result<OutputFile> file = OutputFile::create(path);
-    if (!file) {
-      return file.error();
-    }
-    files.push_back(std::move(file).value());
-  }
-  files[0].write(csv);
-  files[1].write(page);
-  return OutputFile::commit_all(files);
-}
-
 int report(const ReportOptions& options) {
   if (options.out.empty()) {
     fmt::print(stderr, "--out \"\": expected a folder; . is the one that you are in\n");
     return kUsage;
   }
   const std::filesystem::path folder(options.out);
-  const ReportPaths paths{folder / "report.csv", folder / "report.html"};
+  const std::array paths = {folder / "report.csv", folder / "report.html"};
   // Measuring takes minutes: what would fail after it is tried before.
-  const Result<Done> tried = try_outputs(paths);
-  if (!tried) {
+  if (const Result<Done> plots = try_gnuplot(); !plots) {
+    return fail(plots.error().text);
+  }
+  if (const Result<Done> tried = try_files(paths); !tried) {
     return fail(tried.error().text);
   }
   const Result<std::vector<MeasuredCase>> cases = run_all(options);
@@ -130,12 +96,13 @@ int report(const ReportOptions& options) {
   if (!html) {
     return fail(html.error().text);
   }
-  const Result<Done> written = write_outputs(paths, csv_text(cases.value()), html.value());
+  const Result<Done> written = write_files(
+      std::array{FileText{paths[0], csv_text(cases.value())}, FileText{paths[1], html.value()}});
   if (!written) {
     return fail(written.error().text);
   }
   if (!options.quiet) {
-    fmt::print("{}\n{}\n", paths.csv.string(), paths.page.string());
+    fmt::print("{}\n{}\n", paths[0].string(), paths[1].string());
   }
   return kDone;
 }

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <iterator>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/split_text.hpp"
 #include "scenes/extras.hpp"
 #include "systems/math/wrenches.hpp"
 
@@ -93,8 +93,7 @@ std::vector<TraceColumn> usual_trace_columns() {
 
 Result<std::vector<TraceColumn>> read_trace_columns(const std::string& names) {
   std::vector<TraceColumn> columns;
-  std::istringstream words(names);
-  for (std::string name; std::getline(words, name, ',');) {
+  for (const std::string& name : split_text(names, ',')) {
     const auto* const found = std::ranges::find(kTraceColumns, name, &TraceColumn::name);
     if (name == "all") {
       columns.assign(std::begin(kTraceColumns), std::end(kTraceColumns));
@@ -118,9 +117,6 @@ Result<std::vector<TraceColumn>> read_trace_columns(const std::string& names) {
         }) != end) {
       return Error{fmt::format("column \"{}\" is named twice", columns[k].name)};
     }
-  }
-  if (columns.empty()) {
-    return Error{R"(expected names of columns with commas between, "all" or "usual")"};
   }
   return columns;
 }

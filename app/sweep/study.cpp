@@ -7,27 +7,16 @@
 
 #include "app/scene_settings.hpp"
 #include "app/session.hpp"
+#include "app/split_text.hpp"
 #include "ecs/hash.hpp"
 #include "ecs/model_names.hpp"
 
 namespace torsion::engine {
 namespace {
 
-std::vector<std::string> parts_of(const std::string& text, char between) {
-  std::vector<std::string> parts{""};
-  for (const char letter : text) {
-    if (letter == between) {
-      parts.emplace_back();
-    } else {
-      parts.back() += letter;
-    }
-  }
-  return parts;
-}
-
 /// The values of FIRST:LAST:COUNT or FIRST:LAST:COUNTlog; none where it is no such text.
 std::vector<std::string> range_of(const std::string& text) {
-  std::vector<std::string> parts = parts_of(text, ':');
+  std::vector<std::string> parts = split_text(text, ':');
   if (parts.size() != 3) {
     return {};
   }
@@ -98,7 +87,7 @@ Result<Axis> read_axis(const std::string& setting) {
   const std::size_t equals = setting.find('=');
   const std::string values = setting.substr(equals + 1);
   Axis axis{setting.substr(0, equals), {}};
-  axis.values = values.find(':') != std::string::npos ? range_of(values) : parts_of(values, ',');
+  axis.values = values.find(':') != std::string::npos ? range_of(values) : split_text(values, ',');
   for (const std::string& value : axis.values) {
     if (value.empty()) {
       axis.values.clear();

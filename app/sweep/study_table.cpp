@@ -1,41 +1,32 @@
 #include "app/sweep/study_table.hpp"
 
 #include <algorithm>
-#include <sstream>
 
 #include "app/scene_settings.hpp"
+#include "app/split_text.hpp"
 #include "app/table_file.hpp"
 
 namespace torsion::engine {
 namespace {
-
-std::vector<std::string> fields_in(const std::string& line) {
-  std::vector<std::string> fields;
-  std::istringstream words(line);
-  for (std::string field; std::getline(words, field, ',');) {
-    fields.push_back(field);
-  }
-  return fields;
-}
 
 /// The hash's digits may be those of a number and are none.
 constexpr std::string_view kAlwaysText = "world_hash";
 
 std::vector<TableColumn> columns_of(const std::string& header,
                                     const std::map<std::uint64_t, std::string>& lines) {
-  std::vector<TableColumn> columns;
-  for (const std::string& name : fields_in(header)) {
-    columns.push_back({name, 0});
-  }
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    bool numbers = columns[k].name != kAlwaysText;
-    std::size_t longest = 1;
-    for (const auto& [run, line] : lines) {
-      const std::string field = fields_in(line)[k];
-      numbers = numbers && read_number(field).has_value();
-      longest = std::max(longest, field.size());
+  const std::vector<std::string> names = split_text(header, ',');
+  std::vector<bool> numbers(names.size(), true);
+  std::vector<std::size_t> longest(names.size(), 1);
+  for (const auto& [run, line] : lines) {
+    const std::vector<std::string> fields = split_text(line, ',');
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      numbers[k] = numbers[k] && names[k] != kAlwaysText && read_number(fields[k]).has_value();
+      longest[k] = std::max(longest[k], fields[k].size());
     }
-    columns[k].text_size = numbers ? 0 : longest;
+  }
+  std::vector<TableColumn> columns;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    columns.push_back({names[k], numbers[k] ? 0 : longest[k]});
   }
   return columns;
 }
@@ -65,7 +56,7 @@ Result<Done> write_study_table(const std::filesystem::path& path, const std::str
     return table.error();
   }
   for (const auto& [run, line] : lines) {
-    const std::vector<std::string> fields = fields_in(line);
+    const std::vector<std::string> fields = split_text(line, ',');
     std::vector<double> numbers;
     std::vector<std::string> texts;
     for (std::size_t k = 0; k < columns.size(); ++k) {

@@ -1,9 +1,10 @@
 #include "app/sweep/wanted_columns.hpp"
 
 #include <algorithm>
-#include <sstream>
 
 #include <fmt/format.h>
+
+#include "app/split_text.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -38,8 +39,10 @@ double gathered(Statistic statistic, double before, double now, bool first) {
 
 Result<std::vector<WantedColumn>> read_wanted_columns(const std::string& text) {
   std::vector<WantedColumn> wanted;
-  std::istringstream words(text);
-  for (std::string word; std::getline(words, word, ',');) {
+  if (text.empty()) {
+    return wanted;
+  }
+  for (const std::string& word : split_text(text, ',')) {
     const std::size_t colon = word.find(':');
     const auto* const statistic =
         std::ranges::find(kStatistics, word.substr(0, colon), &NamedStatistic::name);

@@ -78,10 +78,15 @@ Coupling::~Coupling() = default;
 
 Pose Coupling::next(const Simulation& simulation, const Pose& handle) noexcept {
   TORSION_ASSERT(data_->tool < simulation.model().tool_count());
-  const engine::Pose now = engine::usable(to_engine(handle)) ? to_engine(handle) : data_->handle;
+  engine::Pose now = to_engine(handle);
+  const bool is_pose = engine::finite(now);
+  now.rotation = glm::normalize(now.rotation);
+  if (!is_pose) {
+    now = data_->handle;
+  }
   data_->handle = now;
   if (!data_->begun) {
-    if (!engine::usable(to_engine(handle))) {
+    if (!is_pose) {
       return handle;  // a fault of the step, as without a coupling
     }
     data_->begun = true;

@@ -108,8 +108,7 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
-Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options,
-                           const MdrTables* tables) {
+Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options) {
   Result<PreparedWorld> prepared = prepare_world(scene, options);
   if (!prepared) {
     return prepared.error();
@@ -119,7 +118,7 @@ Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& 
   simulation.choices = std::move(prepared.value().choices);
   simulation.united_nodes = std::move(prepared.value().united_nodes);
   World& world = simulation.world;
-  simulation.scratch->reserve(world.model, world.state, tables);
+  simulation.scratch->reserve(world.model, world.state);
   simulation.snapshot_tables = std::make_unique<const SnapshotTables>(
       make_snapshot_tables(world.state, simulation.scratch->mdr));
   return simulation;

@@ -41,12 +41,11 @@ struct Simulation {
 
 /// What prepare_world (systems/model/prepare.hpp) makes of a scene, ready to step. Fails as that
 /// does.
-/// @param tables  contact model mdr's, which are the same for all scenes; null: they are made
-Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options,
-                           const MdrTables* tables = nullptr);
+Result<Simulation> prepare(const SceneDescription& scene, const PrepareOptions& options);
 
 /// A simulation of other materials than those prepared (world_of_materials), for runs that nobody
 /// draws: it has no snapshot tables.
+/// @param tables  contact model mdr's, which are the same for all scenes
 Simulation simulation_of_materials(const PreparedWorld& unit, const SceneDescription& scene,
                                    const MdrTables& tables);
 

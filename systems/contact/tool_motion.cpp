@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "systems/contact/region_wrenches.hpp"
+#include "systems/math/finite.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/smooth_step.hpp"
 
@@ -16,13 +17,6 @@ constexpr double kLargestAngularSpeed = 500.0;  // rad/s
 // The axis is averaged over about this angle, so that noise on a nearly still tool does not turn
 // it.
 constexpr double kAxisMemory = 0.02;  // rad
-
-bool finite(const Pose& pose) {
-  const glm::dquat& q = pose.rotation;
-  const double norm = glm::dot(q, q);
-  return std::isfinite(pose.position.x + pose.position.y + pose.position.z) &&
-         std::isfinite(norm) && norm > 0.25 && norm < 4.0;
-}
 
 /// Adds the turn to the axis vector and fades the older turns by the angle, not by time: so the
 /// axis depends on the path alone.

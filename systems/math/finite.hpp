@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <glm/gtc/quaternion.hpp>
+
 #include "ecs/components.hpp"
 
 namespace torsion::engine {
@@ -12,12 +14,12 @@ inline bool finite(const Wrench& wrench) {
   return std::isfinite(sum.x + sum.y + sum.z);
 }
 
-/// True for a pose whose numbers are finite and whose quaternion has a length near 1.
-inline bool usable(const Pose& pose) {
-  const glm::dvec3& p = pose.position;
+/// True where the pose's numbers are finite and its quaternion is one that can be made a unit.
+inline bool finite(const Pose& pose) {
   const glm::dquat& q = pose.rotation;
-  return std::isfinite(p.x + p.y + p.z) &&
-         std::abs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1.0) < 0.01;
+  const double norm = glm::dot(q, q);
+  return std::isfinite(pose.position.x + pose.position.y + pose.position.z) &&
+         std::isfinite(norm) && norm > 0.25 && norm < 4.0;
 }
 
 }  // namespace torsion::engine

@@ -301,7 +301,9 @@ void warn(const FitProblem& problem, const LeastSquares& found, const Uncertaint
   check_kind("forces", result.force.deviation, search.signal().force);
   check_kind("torques", result.torque.deviation, search.signal().torque);
   if (result.prediction.faults != 0) {
-    warnings.push_back("in the run with these values: " + faults_text(result.prediction.faults));
+    std::string faults = faults_text(result.prediction.faults);
+    faults.pop_back();  // the last one's end of line
+    warnings.push_back("in the run with these values: " + faults);
   }
 }
 

@@ -146,7 +146,7 @@ std::optional<LeastSquares> least_squares(const ResidualsAt& residuals_at,
   options.callbacks.push_back(&teller);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  result.iterations = static_cast<int>(summary.iterations.size());
+  result.iterations = static_cast<int>(summary.iterations.size()) - 1;  // the first is the start
   result.converged = summary.termination_type == ceres::CONVERGENCE;
   result.stopped = summary.termination_type == ceres::USER_FAILURE;
   result.residuals = cost.residuals(result.at);

@@ -17,9 +17,8 @@ constexpr std::string_view kOffset = "offset_";
 // Steps of numerical derivatives: large beside what an iteration's residual leaves open in a force
 // (a thousandth), small beside what bends the curves of forces over a parameter.
 constexpr double kRelativeStep = 0.01;
-constexpr double kRatioStep = 0.005;     // of Poisson's ratio
-constexpr double kOffsetStep = 2e-4;     // of the tool's size
-constexpr double kLeastFriction = 0.01;  // below it friction's share of a force is hard to see
+constexpr double kRatioStep = 0.005;  // of Poisson's ratio
+constexpr double kOffsetStep = 2e-4;  // of the tool's size
 
 struct Offset {
   std::size_t tool = 0;
@@ -94,8 +93,6 @@ Result<FreeParameter> read_parameter(const std::string& name, const SceneDescrip
     }
   } else if (key.ends_with("friction")) {
     parameter.step = kRelativeStep * std::max(parameter.start, 0.1);
-    parameter.least = kLeastFriction;
-    parameter.start = std::max(parameter.start, kLeastFriction);
     parameter.other_starts = {0.1, 0.2, 0.4, 0.8, 1.6};
   } else {
     parameter.step = kRatioStep;

@@ -67,7 +67,7 @@ std::optional<double> number_of(const Setting& setting, std::string_view key) {
 /// What a value should have been.
 std::string expected(std::string_view key) {
   const SceneKey& known = scene_key(key);
-  return known.kind == KeyKind::kText ? "expected one of " + std::string(known.allowed)
+  return known.kind == KeyKind::kWord ? "expected one of " + std::string(known.allowed)
                                       : "expected " + std::string(known.allowed);
 }
 

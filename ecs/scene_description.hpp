@@ -63,8 +63,19 @@ struct CameraDescription {
   double far_plane = 100.0;             // m; 0: infinite
 };
 
+/// How a window shows a scene at first.
+struct SceneView {
+  std::string title;                // empty: the file's name
+  std::string caption;              // what to look at; may be empty
+  bool loop = true;                 // begins again after its animation
+  double speed = 1.0;               // of real time, up to 1
+  std::string colors = "material";  // material, twist or pressure
+  bool stick_slip = false;          // marks where the contact sticks and where it slips
+};
+
 struct SceneDescription {
   std::string path;
+  SceneView view;
   std::vector<BodyDescription> bodies;  // in the order of the file
   std::vector<ToolDescription> tools;   // in the order of the file
   std::vector<CameraDescription> cameras;

@@ -127,8 +127,12 @@ void append_part(const std::string& owner, const Part& part,
   made.surface = part.shape == Shape::kMesh ? surface_of(where, part, problems)
                                             : engine::tessellate(made.shape);
   engine::MeshTriangles drawn;
-  drawn.positions = made.surface.positions;
-  drawn.triangles = made.surface.triangles;
+  if (part.shape == Shape::kMesh) {
+    drawn.positions = made.surface.positions;
+    drawn.triangles = made.surface.triangles;
+  } else {
+    drawn = engine::drawn_mesh(made.surface);
+  }
   engine::append_draw_mesh(drawn, draw);
 }
 

@@ -19,7 +19,8 @@ enum class Role : std::uint32_t {
   kFixedPoint = 4,
   kFixedBox = 8,
   kFixedSphere = 16,
-  kPart = 32,  // a mesh below an elastic node or a tool; has no torsion_role
+  kPart = 32,   // a mesh below an elastic node or a tool; has no torsion_role
+  kScene = 64,  // not a node: the scene itself, and how a window shows it
 };
 
 struct RoleName {
@@ -32,14 +33,20 @@ inline constexpr std::array kRoleNames = {
     RoleName{"fixed_point", Role::kFixedPoint}, RoleName{"fixed_box", Role::kFixedBox},
     RoleName{"fixed_sphere", Role::kFixedSphere}};
 
-enum class KeyKind : std::uint32_t { kNumber, kText, kVector };
+enum class KeyKind : std::uint32_t {
+  kNumber,
+  kWord,    // one of a few
+  kText,    // any
+  kVector,  // three numbers
+  kFlag,    // true or false; 1 or 0 as Blender writes them
+};
 
 /// One key of the extras.
 struct SceneKey {
   std::string_view name;
   std::uint32_t roles;  // Role bits of the nodes that it may be on
   KeyKind kind;
-  std::string_view allowed;  // in words, with the unit; for a text its values, with spaces between
+  std::string_view allowed;  // in words, with the unit; for a word its values, with spaces between
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
   bool least_is_allowed = true;
@@ -64,7 +71,7 @@ inline constexpr std::string_view kContactModelWords = "auto" TORSION_CONTACT_MO
 #undef TORSION_WORD
 
 inline constexpr std::array kSceneKeys = {
-    SceneKey{"torsion_role", ~0U, KeyKind::kText,
+    SceneKey{"torsion_role", ~bits(Role::kScene), KeyKind::kWord,
              "elastic tool fixed_point fixed_box fixed_sphere"},
     SceneKey{"torsion_youngs_modulus", bits(Role::kElastic), KeyKind::kNumber,
              "a number above 0 (Pa)", 0.0, 1e15, false},
@@ -76,22 +83,31 @@ inline constexpr std::array kSceneKeys = {
              "a number of at least 0 and of at least torsion_dynamic_friction", 0.0, 100.0},
     SceneKey{"torsion_dynamic_friction", bits(Role::kElastic), KeyKind::kNumber,
              "a number of at least 0", 0.0, 100.0},
-    SceneKey{"torsion_contact_model", bits(Role::kElastic), KeyKind::kText, kContactModelWords},
-    SceneKey{"torsion_body_model", bits(Role::kElastic), KeyKind::kText,
+    SceneKey{"torsion_contact_model", bits(Role::kElastic), KeyKind::kWord, kContactModelWords},
+    SceneKey{"torsion_body_model", bits(Role::kElastic), KeyKind::kWord,
              "auto none skeleton compliance"},
     SceneKey{"torsion_tolerance", bits(Role::kElastic), KeyKind::kNumber,
              "a number above 0 and up to 1", 0.0, 1.0, false},
-    SceneKey{"torsion_fixed", bits(Role::kElastic), KeyKind::kText,
+    SceneKey{"torsion_fixed", bits(Role::kElastic), KeyKind::kWord,
              "bottom_center bottom_face attribute children"},
     SceneKey{"torsion_region_threshold", bits(Role::kElastic), KeyKind::kNumber,
              "a number above 0 (m)", 0.0, 1e3, false},
-    SceneKey{"torsion_shape", (Role::kElastic | Role::kTool) | bits(Role::kPart), KeyKind::kText,
+    SceneKey{"torsion_shape", (Role::kElastic | Role::kTool) | bits(Role::kPart), KeyKind::kWord,
              "mesh box sphere ellipsoid cylinder capsule"},
+    SceneKey{"torsion_size", (Role::kElastic | Role::kTool) | bits(Role::kPart), KeyKind::kVector,
+             "3 numbers above 0 (m, along the node's x, y, z)", 1e-6, 1e6},
     SceneKey{"torsion_mass", bits(Role::kTool), KeyKind::kNumber, "a number above 0 (kg)", 0.0, 1e6,
              false},
     SceneKey{"torsion_center_of_mass", bits(Role::kTool), KeyKind::kVector,
-             "3 numbers (m, in the node's frame)"},
-    SceneKey{"torsion_device", bits(Role::kTool), KeyKind::kText, "animation mouse usb"},
+             "3 numbers (m, in the node's frame)", -1e6, 1e6},
+    SceneKey{"torsion_device", bits(Role::kTool), KeyKind::kWord, "animation mouse usb"},
+    SceneKey{"torsion_title", bits(Role::kScene), KeyKind::kText, "a text"},
+    SceneKey{"torsion_caption", bits(Role::kScene), KeyKind::kText, "a text"},
+    SceneKey{"torsion_loop", bits(Role::kScene), KeyKind::kFlag, "true or false"},
+    SceneKey{"torsion_speed", bits(Role::kScene), KeyKind::kNumber, "a number from 0.01 to 1", 0.01,
+             1.0},
+    SceneKey{"torsion_colors", bits(Role::kScene), KeyKind::kWord, "material twist pressure"},
+    SceneKey{"torsion_stick_slip", bits(Role::kScene), KeyKind::kFlag, "true or false"},
 };
 
 }  // namespace torsion::engine

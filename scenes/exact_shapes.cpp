@@ -130,4 +130,44 @@ SurfaceMesh tessellate(const ShapePart& shape) {
   return mesh;
 }
 
+MeshTriangles drawn_mesh(const SurfaceMesh& surface) {
+  constexpr double kCrease = 0.766;  // cosine of 40 degrees
+  std::vector<glm::dvec3> faces;     // area vectors
+  std::vector<std::vector<std::uint32_t>> faces_at(surface.positions.size());
+  for (const glm::uvec3& corners : surface.triangles) {
+    const glm::dvec3& a = surface.positions[corners.x];
+    faces.push_back(glm::cross(surface.positions[corners.y] - a, surface.positions[corners.z] - a));
+    for (int corner = 0; corner < 3; ++corner) {
+      faces_at[corners[corner]].push_back(static_cast<std::uint32_t>(faces.size() - 1));
+    }
+  }
+  MeshTriangles mesh;
+  // (vertices of the surface) those of the mesh that are made of it
+  std::vector<std::vector<std::uint32_t>> made(surface.positions.size());
+  const auto vertex = [&](std::uint32_t at, const glm::dvec3& face) {
+    glm::dvec3 sum(0.0);
+    for (const std::uint32_t other : faces_at[at]) {
+      const double cosine = glm::dot(glm::normalize(faces[other]), glm::normalize(face));
+      sum += cosine > kCrease ? faces[other] : glm::dvec3(0.0);
+    }
+    const glm::dvec3 normal = glm::normalize(sum);
+    for (const std::uint32_t row : made[at]) {
+      if (glm::dot(mesh.normals[row], normal) > 1.0 - 1e-9) {
+        return row;
+      }
+    }
+    made[at].push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+    mesh.positions.push_back(surface.positions[at]);
+    mesh.normals.push_back(normal);
+    return made[at].back();
+  };
+  for (std::size_t triangle = 0; triangle < surface.triangles.size(); ++triangle) {
+    const glm::uvec3& corners = surface.triangles[triangle];
+    const glm::dvec3& face = faces[triangle];
+    mesh.triangles.emplace_back(vertex(corners.x, face), vertex(corners.y, face),
+                                vertex(corners.z, face));
+  }
+  return mesh;
+}
+
 }  // namespace torsion::engine

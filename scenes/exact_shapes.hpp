@@ -5,6 +5,7 @@
 
 #include "ecs/components.hpp"
 #include "ecs/surface.hpp"
+#include "scenes/mesh_parts.hpp"
 #include "scenes/node_tree.hpp"
 #include "scenes/problem.hpp"
 
@@ -22,5 +23,9 @@ std::optional<ShapePart> fit_shape(ShapeKind kind, const glm::dvec3& lowest,
 
 /// A closed mesh of the surface of an exact shape, in its owner's frame; extremes lie on it.
 SurfaceMesh tessellate(const ShapePart& shape);
+
+/// The same for drawing: where faces meet at more than 40 degrees, as at the sides of a box, each
+/// has vertices of its own, so that the edge looks sharp.
+MeshTriangles drawn_mesh(const SurfaceMesh& surface);
 
 }  // namespace torsion::engine

@@ -62,12 +62,12 @@ bool fits_number(const SceneKey& key, const tinygltf::Value& value) {
   return value.IsNumber() && key.allows(value.GetNumberAsDouble());
 }
 
-bool fits_vector(const tinygltf::Value& value) {
+bool fits_vector(const SceneKey& key, const tinygltf::Value& value) {
   if (!value.IsArray() || value.ArrayLen() != 3) {
     return false;
   }
   for (const tinygltf::Value& number : value.Get<tinygltf::Value::Array>()) {
-    if (!number.IsNumber() || !(std::abs(number.GetNumberAsDouble()) < 1e6)) {
+    if (!number.IsNumber() || !key.allows(number.GetNumberAsDouble())) {
       return false;
     }
   }
@@ -79,8 +79,13 @@ bool fits(const SceneKey& key, const tinygltf::Value& value) {
     case KeyKind::kNumber:
       return fits_number(key, value);
     case KeyKind::kVector:
-      return fits_vector(value);
-    case KeyKind::kText: {
+      return fits_vector(key, value);
+    case KeyKind::kFlag:
+      return value.IsBool() || (value.IsNumber() && (value.GetNumberAsDouble() == 0.0 ||
+                                                     value.GetNumberAsDouble() == 1.0));
+    case KeyKind::kText:
+      return value.IsString();
+    case KeyKind::kWord: {
       const auto words = words_of(key.allowed);
       return value.IsString() && std::ranges::find(words, value.Get<std::string>()) != words.end();
     }
@@ -89,7 +94,7 @@ bool fits(const SceneKey& key, const tinygltf::Value& value) {
 }
 
 std::string expected_of(const SceneKey& key, const tinygltf::Value& value) {
-  if (key.kind != KeyKind::kText) {
+  if (key.kind != KeyKind::kWord) {
     return "expected " + std::string(key.allowed);
   }
   const auto words = words_of(key.allowed);
@@ -139,6 +144,9 @@ std::string_view name_of(Role role) {
   if (role == Role::kPart) {
     return "a mesh below an elastic node or a tool";
   }
+  if (role == Role::kScene) {
+    return "the scene";
+  }
   const auto* const found = std::ranges::find(kRoleNames, role, &RoleName::role);
   return found == kRoleNames.end() ? "a node without a torsion_role" : found->name;
 }
@@ -150,7 +158,7 @@ std::string roles_text(std::uint32_t roles) {
       text += (text.empty() ? "" : " or ") + std::string(name.name);
     }
   }
-  return text;
+  return text.empty() ? std::string(name_of(Role::kScene)) : text;
 }
 
 }  // namespace
@@ -203,7 +211,9 @@ void NodeKeys::check_role(Role role, const ProblemList& problems) const {
       problems.add(
           entry.where, name, value_text(entry.value),
           "belongs to " + roles_text(key->roles) + ", but this is " + std::string(name_of(role)),
-          "move it to such a node, or set this node's torsion_role");
+          key->roles == bits(Role::kScene) ? "move it to the extras of the scene"
+          : role == Role::kScene           ? "move it to such a node"
+                                 : "move it to such a node, or set this node's torsion_role");
     }
   }
 }
@@ -218,6 +228,15 @@ std::optional<std::string> NodeKeys::text(const std::string& key) const {
   const auto found = entries_.find(key);
   return found == entries_.end() ? std::nullopt
                                  : std::optional(found->second.value.Get<std::string>());
+}
+
+std::optional<bool> NodeKeys::flag(const std::string& key) const {
+  const auto found = entries_.find(key);
+  if (found == entries_.end()) {
+    return std::nullopt;
+  }
+  const tinygltf::Value& value = found->second.value;
+  return value.IsBool() ? value.Get<bool>() : value.GetNumberAsDouble() != 0.0;
 }
 
 std::optional<glm::dvec3> NodeKeys::vector(const std::string& key) const {

@@ -17,8 +17,8 @@ namespace torsion::engine {
 std::string called(std::string_view kind, std::string_view array, std::size_t row,
                    const std::string& name);
 
-/// The torsion_ keys that hold for one node: the material's, then the mesh's over them, then the
-/// node's.
+/// The torsion_ keys that hold for one node (the material's, then the mesh's over them, then the
+/// node's) or for the scene.
 class NodeKeys {
  public:
   /// Adds the keys of `extras`, which win over those that are there. Unknown torsion_ keys and
@@ -30,6 +30,7 @@ class NodeKeys {
 
   [[nodiscard]] std::optional<double> number(const std::string& key) const;
   [[nodiscard]] std::optional<std::string> text(const std::string& key) const;
+  [[nodiscard]] std::optional<bool> flag(const std::string& key) const;
   [[nodiscard]] std::optional<glm::dvec3> vector(const std::string& key) const;
   /// Where the key was found; empty when it was not.
   [[nodiscard]] std::string where(const std::string& key) const;

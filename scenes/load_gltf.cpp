@@ -169,6 +169,17 @@ std::vector<CameraDescription> read_cameras(const SceneReader& reader) {
   return cameras;
 }
 
+SceneView read_view(const NodeKeys& keys) {
+  SceneView view;
+  view.title = keys.text("torsion_title").value_or("");
+  view.caption = keys.text("torsion_caption").value_or("");
+  view.loop = keys.flag("torsion_loop").value_or(view.loop);
+  view.speed = keys.number("torsion_speed").value_or(view.speed);
+  view.colors = keys.text("torsion_colors").value_or(view.colors);
+  view.stick_slip = keys.flag("torsion_stick_slip").value_or(view.stick_slip);
+  return view;
+}
+
 SceneDescription read_scene(const SceneReader& reader, const std::string& path) {
   SceneDescription scene;
   scene.path = path;
@@ -181,6 +192,7 @@ SceneDescription read_scene(const SceneReader& reader, const std::string& path) 
     }
   }
   scene.cameras = read_cameras(reader);
+  scene.view = read_view(reader.scene_keys);
   return scene;
 }
 

@@ -18,8 +18,7 @@ glm::dquat quaternion_of(const std::vector<double>& xyzw) {
 std::vector<std::size_t> roots_of(const tinygltf::Model& model) {
   std::vector<std::size_t> roots;
   if (!model.scenes.empty()) {
-    const int shown = model.defaultScene >= 0 ? model.defaultScene : 0;
-    for (const int node : model.scenes[static_cast<std::size_t>(shown)].nodes) {
+    for (const int node : model.scenes[shown_scene(model)].nodes) {
       roots.push_back(static_cast<std::size_t>(node));
     }
     return roots;
@@ -39,6 +38,10 @@ std::vector<std::size_t> roots_of(const tinygltf::Model& model) {
 }
 
 }  // namespace
+
+std::size_t shown_scene(const tinygltf::Model& model) {
+  return static_cast<std::size_t>(std::max(model.defaultScene, 0));
+}
 
 std::optional<NodeTransform> split_transform(const glm::dmat4& matrix) {
   glm::dmat3 axes(matrix);

@@ -35,6 +35,9 @@ std::optional<NodeTransform> split_transform(const glm::dmat4& matrix);
 /// `node`'s own transform. @pre its members have the right number of finite numbers
 glm::dmat4 local_matrix(const tinygltf::Node& node);
 
+/// Which scene is shown. @pre the file has one
+std::size_t shown_scene(const tinygltf::Model& model);
+
 /// The nodes of the scene that is shown, parents before children, in the order of the file's trees.
 std::vector<SceneNode> list_scene_nodes(const tinygltf::Model& model);
 

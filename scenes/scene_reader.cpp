@@ -29,25 +29,44 @@ NodeKeys keys_of(const SceneReader& reader, std::size_t node) {
   return keys;
 }
 
+/// Whether something to be felt is at the node itself: its mesh, or a shape of the size that its
+/// keys say.
+bool is_solid(const SceneReader& reader, std::size_t node) {
+  return reader.mesh(node) != nullptr || reader.keys[node].vector("torsion_size");
+}
+
 /// The role for whose keys a node is checked.
 Role checked_role(const SceneReader& reader, std::size_t node) {
   const SceneNode& listed = reader.nodes[node];
   const bool part =
-      listed.role == Role::kNone && listed.owner != SIZE_MAX && reader.mesh(node) != nullptr;
+      listed.role == Role::kNone && listed.owner != SIZE_MAX && is_solid(reader, node);
   return part ? Role::kPart : listed.role;
 }
 
-/// @param triangles  the node's mesh in the owner's frame
-void add_exact_part(const SceneReader& reader, std::size_t node, ShapeKind kind,
-                    const MeshTriangles& triangles, const glm::dmat4& to_owner,
-                    std::vector<PartDescription>& parts) {
+/// The exact shape that fills a box along the node's axes; nothing where it cannot, which is a
+/// problem.
+/// @param low, high  m: of the box, node
+std::optional<PartDescription> exact_part(const SceneReader& reader, std::size_t node,
+                                          ShapeKind kind, const glm::dvec3& low,
+                                          const glm::dvec3& high, const glm::dmat4& to_owner) {
   const std::string where = reader.name(node);
   const std::optional<NodeTransform> transform = split_transform(to_owner);
   if (!transform) {
     reader.problems.add(where, "torsion_shape", "", "is sheared by the scales of its parents",
                         "apply the scale of the parents, or use \"mesh\"");
-    return;
+    return std::nullopt;
   }
+  const auto shape = fit_shape(kind, low, high, *transform, where, reader.problems);
+  return shape ? std::optional<PartDescription>(
+                     {reader.file_node(node).name, *shape, tessellate(*shape), nullptr})
+               : std::nullopt;
+}
+
+/// The exact shape that fills a mesh's bounding box.
+/// @param triangles  the node's mesh in the owner's frame
+std::optional<PartDescription> part_of_box(const SceneReader& reader, std::size_t node,
+                                           ShapeKind kind, const MeshTriangles& triangles,
+                                           const glm::dmat4& to_owner) {
   glm::dvec3 low(1e300);
   glm::dvec3 high(-1e300);
   const glm::dmat4 to_mesh = glm::inverse(to_owner);
@@ -56,9 +75,26 @@ void add_exact_part(const SceneReader& reader, std::size_t node, ShapeKind kind,
     low = glm::min(low, in_mesh);
     high = glm::max(high, in_mesh);
   }
-  const auto shape = fit_shape(kind, low, high, *transform, where, reader.problems);
-  if (shape) {
-    parts.push_back({reader.file_node(node).name, *shape, tessellate(*shape), nullptr});
+  return exact_part(reader, node, kind, low, high, to_owner);
+}
+
+/// A part without a mesh: a shape of the size that the node's keys say, which draws itself.
+void add_meshless_part(const SceneReader& reader, std::size_t node, const glm::dmat4& to_owner,
+                       OwnerShape& owner) {
+  const ShapeKind kind = shape_kind(reader.keys[node].text("torsion_shape").value_or("mesh"));
+  if (kind == ShapeKind::kMesh) {
+    reader.problems.add(reader.name(node), "torsion_size", "",
+                        "is the size of a shape, but there is neither a torsion_shape nor a mesh",
+                        "set torsion_shape to box, sphere, ellipsoid, cylinder or capsule");
+    return;
+  }
+  const glm::dvec3 half = 0.5 * *reader.keys[node].vector("torsion_size");
+  std::optional<PartDescription> part = exact_part(reader, node, kind, -half, half, to_owner);
+  if (part) {
+    MeshTriangles drawn = drawn_mesh(part->surface);
+    drawn.color = owner.color;
+    append_draw_mesh(drawn, owner.draw);
+    owner.parts.push_back(std::move(*part));
   }
 }
 
@@ -66,6 +102,14 @@ void add_exact_part(const SceneReader& reader, std::size_t node, ShapeKind kind,
 void add_part(const SceneReader& reader, std::size_t node, OwnerShape& owner) {
   const std::string where = reader.name(node);
   const glm::dmat4 to_owner = owner.from_world * reader.nodes[node].to_world;
+  if (reader.mesh(node) == nullptr) {
+    add_meshless_part(reader, node, to_owner, owner);
+    return;
+  }
+  if (reader.keys[node].vector("torsion_size")) {
+    reader.problems.add(where, "torsion_size", "", "is for a node without a mesh",
+                        "take it out: the mesh's bounding box says the size; or take out the mesh");
+  }
   const MeshTriangles triangles =
       read_mesh(reader.model, *reader.mesh(node), to_owner, where, reader.problems);
   if (triangles.triangles.empty()) {
@@ -75,7 +119,9 @@ void add_part(const SceneReader& reader, std::size_t node, OwnerShape& owner) {
   append_draw_mesh(triangles, owner.draw);
   const ShapeKind kind = shape_kind(reader.keys[node].text("torsion_shape").value_or("mesh"));
   if (kind != ShapeKind::kMesh) {
-    add_exact_part(reader, node, kind, triangles, to_owner, owner.parts);
+    if (auto part = part_of_box(reader, node, kind, triangles, to_owner)) {
+      owner.parts.push_back(std::move(*part));
+    }
     return;
   }
   PartDescription part;
@@ -88,7 +134,13 @@ void add_part(const SceneReader& reader, std::size_t node, OwnerShape& owner) {
 }  // namespace
 
 SceneReader make_reader(const tinygltf::Model& model, const ProblemList& problems) {
-  SceneReader reader{model, problems, list_scene_nodes(model), {}};
+  SceneReader reader{model, problems, list_scene_nodes(model), {}, {}};
+  if (!model.scenes.empty()) {
+    const std::size_t shown = shown_scene(model);
+    const tinygltf::Scene& scene = model.scenes[shown];
+    reader.scene_keys.add(scene.extras, called("scene", "scenes", shown, scene.name), problems);
+    reader.scene_keys.check_role(Role::kScene, problems);
+  }
   for (std::size_t node = 0; node < reader.nodes.size(); ++node) {
     reader.keys.push_back(keys_of(reader, node));
     const Role role = checked_role(reader, node);
@@ -121,19 +173,25 @@ OwnerShape read_owner_shape(const SceneReader& reader, std::size_t owner) {
                         "apply the scales (Blender: Object > Apply > Scale)");
     return shape;
   }
+  // Without a material, bodies and tools must be told apart.
+  constexpr glm::vec4 kBodyColor(0.80F, 0.42F, 0.22F, 1.0F);
+  constexpr glm::vec4 kToolColor(0.25F, 0.38F, 0.55F, 1.0F);
+  shape.color = reader.nodes[owner].role == Role::kTool ? kToolColor : kBodyColor;
   shape.pose = {transform->translation, transform->rotation};
   shape.from_world = glm::inverse(glm::translate(glm::dmat4(1.0), shape.pose.position) *
                                   glm::mat4_cast(shape.pose.rotation));
+  bool any = false;
   for (std::size_t node = owner; node < reader.nodes.size(); ++node) {
     const SceneNode& listed = reader.nodes[node];
     const bool holds = listed.role != Role::kNone && node != owner;
-    if (listed.owner == owner && !holds && reader.mesh(node) != nullptr) {
+    if (listed.owner == owner && !holds && is_solid(reader, node)) {
       add_part(reader, node, shape);
+      any = true;
     }
   }
-  if (shape.draw.positions.empty()) {
+  if (!any) {
     reader.problems.add(reader.name(owner), "mesh", "", "is missing, here and below",
-                        "give the node a mesh");
+                        "give the node a mesh, or a torsion_shape with a torsion_size");
   }
   return shape;
 }

@@ -15,6 +15,7 @@ struct SceneReader {
   const ProblemList& problems;
   std::vector<SceneNode> nodes;
   std::vector<NodeKeys> keys;  // one for each of `nodes`
+  NodeKeys scene_keys;         // of the scene that is shown
 
   [[nodiscard]] const tinygltf::Node& file_node(std::size_t node) const {
     return model.nodes[nodes[node].row];
@@ -37,6 +38,7 @@ SceneReader make_reader(const tinygltf::Model& model, const ProblemList& problem
 struct OwnerShape {
   Pose pose;  // owner's frame in the world
   glm::dmat4 from_world{1.0};
+  glm::vec4 color{1.0F};  // linear: of what has no mesh and so no material
   std::vector<PartDescription> parts;
   DrawMesh draw;
 };

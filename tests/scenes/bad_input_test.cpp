@@ -147,6 +147,33 @@ const std::vector<BadInput>& bad_scenes() {
       {"ToolBelowABody",
        [](GltfBuilder& s) { s.put_below(1, 0); },
        {"node \"block\"", "below node \"cube\"", "move it out"}},
+      {"SizeBesideAMesh",
+       [](GltfBuilder& s) {
+         extras(s, "cube")["torsion_size"] = {0.1, 0.1, 0.1};
+       },
+       {"node \"cube\"", "torsion_size", "without a mesh"}},
+      {"SizeWithoutAShape",
+       [](GltfBuilder& s) {
+         s.node("cube").erase("mesh");
+         extras(s, "cube")["torsion_size"] = {0.1, 0.1, 0.1};
+       },
+       {"node \"cube\"", "torsion_size", "set torsion_shape"}},
+      {"SizeOfNothing",
+       [](GltfBuilder& s) {
+         s.node("cube").erase("mesh");
+         extras(s, "cube")["torsion_shape"] = "box";
+         extras(s, "cube")["torsion_size"] = {0.1, 0.0, 0.1};
+       },
+       {"node \"cube\"", "torsion_size", "3 numbers above 0"}},
+      {"KeyOfTheSceneOnANode",
+       [](GltfBuilder& s) { extras(s, "cube")["torsion_loop"] = true; },
+       {"node \"cube\"", "torsion_loop", "belongs to the scene", "extras of the scene"}},
+      {"KeyOfANodeOnTheScene",
+       [](GltfBuilder& s) { s.document["scenes"][0]["extras"]["torsion_mass"] = 1.0; },
+       {"torsion_mass", "belongs to tool", "this is the scene"}},
+      {"SpeedBeyondRealTime",
+       [](GltfBuilder& s) { s.document["scenes"][0]["extras"]["torsion_speed"] = 2.0; },
+       {"torsion_speed", "2", "0.01 to 1"}},
       {"ToolWithoutMesh",
        [](GltfBuilder& s) { s.node("block").erase("mesh"); },
        {"node \"block\"", "mesh", "missing"}},

@@ -78,17 +78,20 @@ TEST(ExtrasTest, VectorHasThreeNumbers) {
 }
 
 TEST(ExtrasTest, EveryKeyIsRefusedOnEveryRoleThatItDoesNotBelongTo) {
-  const tinygltf::Value::Array three = {tinygltf::Value(0), tinygltf::Value(0), tinygltf::Value(0)};
+  const tinygltf::Value::Array three = {tinygltf::Value(1), tinygltf::Value(2), tinygltf::Value(3)};
   const auto good_value = [&](const SceneKey& key) {
     if (key.kind == KeyKind::kNumber) {
       return tinygltf::Value(0.5);
     }
+    if (key.kind == KeyKind::kFlag) {
+      return tinygltf::Value(true);
+    }
     const std::string first(key.allowed.substr(0, key.allowed.find(' ')));
-    return key.kind == KeyKind::kText ? tinygltf::Value(first) : tinygltf::Value(three);
+    return key.kind == KeyKind::kVector ? tinygltf::Value(three) : tinygltf::Value(first);
   };
   for (const SceneKey& key : kSceneKeys) {
     for (const Role role : {Role::kElastic, Role::kTool, Role::kFixedPoint, Role::kFixedBox,
-                            Role::kFixedSphere, Role::kPart}) {
+                            Role::kFixedSphere, Role::kPart, Role::kScene}) {
       Keys read;
       read.keys.add(one(std::string(key.name), good_value(key)), "n", read.problems);
       ASSERT_TRUE(read.found.empty()) << key.name;

@@ -85,6 +85,83 @@ TEST(LoadGltfTest, KeysOfABodyReachTheDescription) {
   EXPECT_EQ(body.fixed.kind, FixedKind::kFace);
 }
 
+TEST(LoadGltfTest, KeysOfTheSceneSayHowAWindowShowsIt) {
+  GltfBuilder builder = good_scene();
+  const SceneView usual = scene_of(load_text(builder.text())).view;
+  EXPECT_TRUE(usual.loop);
+  EXPECT_EQ(usual.speed, 1.0);
+  EXPECT_EQ(usual.colors, "material");
+  builder.document["scenes"][0]["extras"] = {
+      {"torsion_title", "A title"}, {"torsion_caption", "Look here."},
+      {"torsion_loop", 0},          {"torsion_speed", 0.2},
+      {"torsion_colors", "twist"},  {"torsion_stick_slip", true}};
+  const SceneView view = scene_of(load_text(builder.text())).view;
+  EXPECT_EQ(view.title, "A title");
+  EXPECT_EQ(view.caption, "Look here.");
+  EXPECT_FALSE(view.loop);
+  EXPECT_EQ(view.speed, 0.2);
+  EXPECT_EQ(view.colors, "twist");
+  EXPECT_TRUE(view.stick_slip);
+}
+
+// A cube and a ball that are nodes with two keys each.
+GltfBuilder meshless_scene() {
+  GltfBuilder builder = good_scene();
+  builder.node("cube").erase("mesh");
+  builder.node("cube")["scale"] = {2.0, 1.0, 1.0};
+  builder.node("cube")["extras"] = {
+      {"torsion_role", "elastic"}, {"torsion_shape", "box"}, {"torsion_size", {0.1, 0.1, 0.12}}};
+  builder.node("block").erase("mesh");
+  builder.node("block")["extras"] = {
+      {"torsion_role", "tool"}, {"torsion_shape", "sphere"}, {"torsion_size", {0.02, 0.02, 0.02}}};
+  return builder;
+}
+
+TEST(LoadGltfTest, ShapesOfASizeNeedNoMesh) {
+  const LoadedScene loaded = load_text(meshless_scene().text());
+  ASSERT_EQ(scene_of(loaded).bodies.size(), 1U);
+  const BodyDescription& body = scene_of(loaded).bodies[0];
+  ASSERT_EQ(body.parts.size(), 1U);
+  EXPECT_EQ(body.parts[0].shape.kind, ShapeKind::kBox);
+  expect_near(body.parts[0].shape.half_extent, {0.1, 0.05, 0.06}, 1e-12);
+  const ToolDescription& tool = scene_of(loaded).tools[0];
+  EXPECT_EQ(tool.parts[0].shape.kind, ShapeKind::kSphere);
+  EXPECT_EQ(tool.parts[0].shape.half_extent.x, 0.01);
+  EXPECT_NE(body.draw.color, tool.draw.color);
+}
+
+TEST(LoadGltfTest, AShapeWithoutAMeshDrawsWhatIsFelt) {
+  const LoadedScene loaded = load_text(meshless_scene().text());
+  const DrawMesh& box = scene_of(loaded).bodies[0].draw;
+  ASSERT_FALSE(box.triangles.empty());
+  ASSERT_EQ(box.normals.size(), box.positions.size());
+  for (std::size_t i = 0; i < box.positions.size(); ++i) {
+    // On the face that its normal says: edges are sharp.
+    const glm::vec3 on_face = box.positions[i] / glm::vec3(0.1F, 0.05F, 0.06F);
+    EXPECT_NEAR(glm::dot(on_face, box.normals[i]), 1.0, 1e-6);
+    const glm::vec3 size = glm::abs(box.normals[i]);
+    EXPECT_NEAR(std::max({size.x, size.y, size.z}), 1.0, 1e-6);
+  }
+  const DrawMesh& ball = scene_of(loaded).tools[0].draw;
+  for (std::size_t i = 0; i < ball.positions.size(); ++i) {
+    EXPECT_NEAR(glm::length(ball.positions[i]), 0.01, 1e-8);
+    EXPECT_GT(glm::dot(ball.normals[i], glm::normalize(ball.positions[i])), 0.999F);
+  }
+}
+
+TEST(LoadGltfTest, PartsBelowAToolNeedNoMeshEither) {
+  GltfBuilder builder = meshless_scene();
+  const int handle = builder.add_node(
+      {{"name", "handle"},
+       {"translation", {0.0, 0.03, 0.0}},
+       {"extras", {{"torsion_shape", "cylinder"}, {"torsion_size", {0.01, 0.05, 0.01}}}}});
+  builder.put_below(handle, 1);
+  const ToolDescription& tool = scene_of(load_text(builder.text())).tools[0];
+  ASSERT_EQ(tool.parts.size(), 2U);
+  EXPECT_EQ(tool.parts[1].shape.kind, ShapeKind::kCylinder);
+  expect_near(tool.parts[1].shape.pose.position, {0.0, 0.03, 0.0}, 1e-12);
+}
+
 TEST(LoadGltfTest, StiffnessAsAWholeNumberAbove32BitsIsReadInFull) {
   GltfBuilder builder = good_scene();
   builder.node("cube")["extras"]["torsion_youngs_modulus"] = 200'000'000'000;

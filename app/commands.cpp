@@ -38,9 +38,9 @@ std::uint32_t grid_side_for(std::uint32_t cells) {
 
 }  // namespace
 
-void SceneOptions::add_to(CLI::App& subcommand) {
+void SceneOptions::add_to(CLI::App& subcommand, bool scene_required) {
   subcommand.add_option("SCENE", scene, "A .gltf or .glb by the conventions of docs/scenes.md")
-      ->required();
+      ->required(scene_required);
   subcommand.add_option("--contact-model", contact_model, "How a contact gives force and torque")
       ->check(model_among(kContactModelNames));
   subcommand.add_option("--body-model", body_model, "How a body deforms away from the contact")

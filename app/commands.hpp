@@ -39,7 +39,8 @@ struct SceneOptions {
 
   std::vector<std::string> settings;  // of --set, in their order
 
-  void add_to(CLI::App& subcommand);
+  /// @param scene_required  else an empty `scene` stands for none
+  void add_to(CLI::App& subcommand, bool scene_required = true);
   /// --set, for commands that prepare a scene once.
   CLI::Option* add_settings_to(CLI::App& subcommand);
   [[nodiscard]] PrepareOptions prepare_options() const;

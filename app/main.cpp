@@ -4,10 +4,20 @@
 
 #include "app/commands.hpp"
 #include "app/report.hpp"
+#ifdef TORSION_WITH_RENDER
+#include "render/window.hpp"
+#endif
 
 namespace {
 
-int run(int argc, char** argv) {
+int run(int argc, const char* const* argv) {
+#ifdef TORSION_WITH_RENDER
+  // Without a word, where there is a display: the gallery.
+  const char* const view[] = {"torsion", "view"};
+  if (argc == 1 && torsion::engine::has_display()) {
+    return run(2, view);
+  }
+#endif
   CLI::App app{"Torsion: a rigid tool that presses on and twists a deformable body"};
   app.require_subcommand(1);
   app.set_version_flag("--version", TORSION_VERSION);

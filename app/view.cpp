@@ -32,6 +32,7 @@ nlohmann::ordered_json to_json(const ViewerOutcome& outcome) {
   nlohmann::ordered_json json = {{"seconds", outcome.seconds},
                                  {"opened_after_s", outcome.opened_after},
                                  {"pictures", outcome.frames},
+                                 {"loops", outcome.loops},
                                  {"pictures_a_second", pictures_a_second(outcome)},
                                  {"inner_resolution", outcome.share},
                                  {"steps", statistics.steps},
@@ -51,7 +52,16 @@ nlohmann::ordered_json to_json(const ViewerOutcome& outcome) {
 
 int view(const ViewOptions& options) {
   ViewerOptions viewer_options = options.viewer;
+  viewer_options.gallery = read_gallery();
   viewer_options.scene = options.scene.scene;
+  if (viewer_options.scene.empty()) {
+    if (viewer_options.gallery.empty()) {
+      return fail(
+          "the scenes that ship with torsion are not beside it: give the path of a scene, as in "
+          "torsion view my_scene.glb");
+    }
+    viewer_options.scene = viewer_options.gallery.front().file.string();
+  }
   viewer_options.prepare = options.scene.prepare_options();
   Viewer viewer(std::move(viewer_options));
   const Result<ViewerOutcome> outcome = viewer.run();
@@ -75,10 +85,11 @@ int view(const ViewOptions& options) {
 }  // namespace
 
 void add_view(CLI::App& app, Command& command) {
-  CLI::App* subcommand =
-      app.add_subcommand("view", "Open a scene in a window: press, twist, and see what is felt");
+  CLI::App* subcommand = app.add_subcommand(
+      "view", "Open a scene in a window, or the gallery: press, twist, and see what is felt");
   auto options = std::make_shared<ViewOptions>();
-  options->scene.add_to(*subcommand);
+  constexpr bool kSceneRequired = false;
+  options->scene.add_to(*subcommand, kSceneRequired);
   subcommand->add_option("--seconds", options->viewer.seconds, "Close after that long")
       ->check(CLI::Range(0.0, 1e6));
   subcommand->add_option("--record", options->viewer.record,

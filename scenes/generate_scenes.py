@@ -21,6 +21,7 @@ def main():
                 print(f"{path} is not what generate_scenes.py writes: run it", file=sys.stderr)
                 stale = 1
         else:
+            path.parent.mkdir(exist_ok=True)
             path.write_bytes(content)
             print(f"{len(content):8d} bytes  {path}")
     return stale

@@ -51,6 +51,9 @@ void draw_banners(const ViewState& state, const LiveSession& session, double now
                state.scene_error,
            top, kRed);
   }
+  if (state.opening) {
+    banner("##opening", "opening ...", top, IM_COL32(40, 100, 60, 255));
+  }
   if (state.missed_lately > 10) {
     banner("##late",
            fmt::format("The physics thread was over 1 ms late {} times in the last second.",

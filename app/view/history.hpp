@@ -10,14 +10,18 @@ namespace torsion::engine {
 
 /// A row of a session, thinned for plots.
 struct PlotPoint {
-  double time = 0.0;       // s
-  Wrench world;            // on the tool
-  Wrench contact;          // the same along the oldest region's tangents (x, y) and normal (z)
-  double turn = 0.0;       // rad: of the tool
-  double couple = 0.0;     // N m
-  double step_us = 0.0;    // the longest of the rows that the point stands for
-  double late_us = 0.0;    // likewise
-  double device_hz = 0.0;  // of a device that holds the tool
+  double time = 0.0;            // s
+  Wrench world;                 // on the tool
+  Wrench contact;               // the same along the oldest region's tangents (x, y) and normal (z)
+  double turn = 0.0;            // rad: of the tool
+  double couple = 0.0;          // N m
+  double normal_force = 0.0;    // N: summed over the tool's regions
+  double friction_force = 0.0;  // N: the size of their sum
+  double arm_torque = 0.0;      // N m: the size of r x F about the mass centre
+  double couples = 0.0;         // N m: the size of the sum of the contact couples
+  double step_us = 0.0;         // the longest of the rows that the point stands for
+  double late_us = 0.0;         // likewise
+  double device_hz = 0.0;       // of a device that holds the tool
   std::uint64_t generation = 0;
 };
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -12,17 +11,14 @@
 
 #include "app/live/device_words.hpp"
 #include "app/view/banners.hpp"
+#include "app/view/felt_panel.hpp"
 #include "app/view/panel_style.hpp"
-#include "app/view/plots.hpp"
 #include "ecs/model_names.hpp"
 
 namespace torsion::engine {
 namespace {
 
-constexpr ImU32 kGreen = IM_COL32(30, 140, 60, 255);
 constexpr ImU32 kBlue = IM_COL32(39, 111, 196, 255);
-constexpr ImU32 kGrey = IM_COL32(165, 168, 175, 255);
-constexpr double kPlotSeconds = 10.0;
 
 void dim(const std::string& line) {
   ImGui::TextDisabled("%s", line.c_str());
@@ -70,6 +66,7 @@ void controls(ViewState& state) {
   if (ImGui::Button("Recording (O)")) {
     state.wants_saved_recording = true;
   }
+  ImGui::Checkbox("Loop (L)", &state.loop);
   text("Speed (S)");
   for (const std::uint32_t slowness : {1U, 5U, 20U, 100U}) {
     ImGui::SameLine();
@@ -94,9 +91,24 @@ void device_part(const DeviceView& device) {
   }
 }
 
+/// The scenes that ship, one click or key each.
+void gallery_list(ViewState& state) {
+  for (std::size_t i = 0; i < state.gallery.size(); ++i) {
+    const std::string line = i < 9 ? fmt::format("{}  {}", i + 1, state.gallery[i].title)
+                                   : fmt::format("    {}", state.gallery[i].title);
+    if (ImGui::Selectable(line.c_str(), state.entry == i)) {
+      state.wants_entry = i;
+    }
+  }
+}
+
+/// N or N m: below a billionth there is nothing but rounding.
+std::string shown(double value) {
+  return value < 1e-9 ? "0" : fmt::format("{:.3g}", value);
+}
+
 void state_lines(const ViewState& state, const LiveSession& session) {
   const LiveFrame& frame = session.frame();
-  const RunStatistics& statistics = frame.statistics;
   const Clock& clock = frame.snapshot.clock;
   const Wrench& wrench = frame.snapshot.tools.at<ToolWrench>(state.tool).total;
   ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kBlue), "force %.3g N",
@@ -104,6 +116,13 @@ void state_lines(const ViewState& state, const LiveSession& session) {
   ImGui::SameLine();
   ImGui::TextColored(ImVec4(0.80F, 0.45F, 0.0F, 1.0F), "  torque %.3g N m",
                      glm::length(wrench.torque));
+  const History& history = state.histories[state.tool];
+  if (history.size() > 0) {
+    const PlotPoint& last = history[history.size() - 1];
+    text(fmt::format("normal {} N, friction {} N", shown(last.normal_force),
+                     shown(last.friction_force)));
+    text(fmt::format("couple {} N m, r x F {} N m", shown(last.couples), shown(last.arm_torque)));
+  }
   const VirtualCoupling& coupling = session.coupling(state.tool);
   if (session.on_device(state.tool)) {
     device_part(*session.device());
@@ -120,6 +139,11 @@ void state_lines(const ViewState& state, const LiveSession& session) {
   }
   dim(fmt::format("time {:.3f} s, {} contact region{}", clock.time, frame.snapshot.regions.size(),
                   frame.snapshot.regions.size() == 1 ? "" : "s"));
+}
+
+/// How the physics thread and the pictures keep up.
+void timing_lines(const ViewState& state, const LiveSession& session) {
+  const RunStatistics& statistics = session.frame().statistics;
   dim(fmt::format("step {:.0f} us, 99 % {:.0f} us; late 99 % {:.0f} us",
                   statistics.step_times.quantile(0.5), statistics.step_times.quantile(0.99),
                   statistics.lateness.quantile(0.99)));
@@ -196,7 +220,7 @@ void shown_things(ViewState& state) {
 
 void keys() {
   dim("G let go of the tool    H hide panels");
-  dim("Space pause   N step   R restart");
+  dim("Space pause   N step   R restart   L loop");
   dim("S speed   M switch models   Esc close");
   dim("P screenshot   V video   O recording");
 }
@@ -208,11 +232,18 @@ void left_panel(ViewState& state, LiveSession& session) {
   const std::string title =
       std::filesystem::path(session.scene().path).filename().string() + "###session";
   if (ImGui::Begin(title.c_str(), nullptr, kFixed)) {
+    const auto open_if = [](bool open) {
+      return open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None;
+    };
+    if (!state.gallery.empty() &&
+        ImGui::CollapsingHeader("Gallery", open_if(state.entry.has_value()))) {
+      gallery_list(state);
+    }
     state_lines(state, session);
     ImGui::Separator();
     controls(state);
     ImGui::PushItemWidth(170.0F);
-    if (ImGui::CollapsingHeader("Model and material", ImGuiTreeNodeFlags_DefaultOpen)) {
+    if (ImGui::CollapsingHeader("Model and material", open_if(!state.entry))) {
       material(state, session);
     }
     if (ImGui::CollapsingHeader("Shown", ImGuiTreeNodeFlags_DefaultOpen)) {
@@ -221,129 +252,34 @@ void left_panel(ViewState& state, LiveSession& session) {
     if (ImGui::CollapsingHeader("Keys", ImGuiTreeNodeFlags_DefaultOpen)) {
       keys();
     }
+    if (ImGui::CollapsingHeader("Timing")) {
+      timing_lines(state, session);
+    }
     ImGui::PopItemWidth();
   }
   ImGui::End();
 }
 
-/// Curves of what `value` takes from a point, over the last seconds.
-template <class F>
-Curve over_time(const History& history, const char* name, ImU32 color, F&& value) {
-  Curve curve{name, color, {}, {}};
-  const double end = history.size() == 0 ? 0.0 : history[history.size() - 1].time;
-  for (std::size_t i = 0; i < history.size(); ++i) {
-    if (history[i].time > end - kPlotSeconds) {
-      curve.x.push_back(history[i].time - end);
-      curve.y.push_back(value(history[i]));
-    }
-  }
-  return curve;
-}
-
-void wrench_plots(const ViewState& state, const History& history) {
-  const auto part = [&](int axis, bool torque) {
-    return [&state, axis, torque](const PlotPoint& point) {
-      const Wrench& wrench = state.contact_axes ? point.contact : point.world;
-      return (torque ? wrench.torque : wrench.force)[axis];
-    };
-  };
-  const std::array<const char*, 3> names =
-      state.contact_axes ? std::array{"x", "y", "normal"} : std::array{"x", "y", "z"};
-  const std::array<ImU32, 3> colors = {kRed, kGreen, kBlue};
-  for (const bool torque : {false, true}) {
-    std::array<Curve, 3> curves;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto i = static_cast<std::size_t>(axis);
-      curves[i] = over_time(history, names[i], colors[i], part(axis, torque));
-    }
-    draw_plot(
-        {torque ? "Torque (N m)" : "Force (N)", "s", -kPlotSeconds, 0.0, torque ? 1e-4 : 1e-3},
-        curves, 78.0F);
-  }
-}
-
-/// Torque against the tool's turn: what runs now, and in grey what ran before the last switch.
-void turn_plot(const History& history) {
-  if (history.size() == 0) {
-    return;
-  }
-  const std::uint64_t now = history[history.size() - 1].generation;
-  Curve before{"before the switch", kGrey, {}, {}};
-  Curve current{"", kBlue, {}, {}};
-  for (std::size_t i = 0; i < history.size(); ++i) {
-    const PlotPoint& point = history[i];
-    if (point.generation + 1 < now || (point.turn == 0.0 && point.couple == 0.0)) {
-      continue;
-    }
-    Curve& curve = point.generation == now ? current : before;
-    curve.x.push_back(point.turn * 180.0 / std::numbers::pi);
-    curve.y.push_back(point.couple);
-  }
-  if (before.x.empty()) {
-    before.name = "";
-  }
-  const std::array<Curve, 2> curves = {before, current};
-  draw_plot({"Torque about the normal (N m) by turn of the tool", "deg", 0.0, 0.0, 1e-4}, curves,
-            110.0F);
-}
-
-void timing_plot(const History& history) {
-  const std::array<Curve, 2> curves = {
-      over_time(history, "late", kRed, [](const PlotPoint& point) { return point.late_us; }),
-      over_time(history, "step", kBlue, [](const PlotPoint& point) { return point.step_us; })};
-  draw_plot({"Physics thread (us)", "s", -kPlotSeconds, 0.0, 50.0, true}, curves, 60.0F);
-}
-
-void device_plot(const History& history) {
-  const std::array<Curve, 1> curve = {
-      over_time(history, "samples", kBlue, [](const PlotPoint& point) { return point.device_hz; })};
-  draw_plot({"Device (Hz)", "s", -kPlotSeconds, 0.0, 100.0, true}, curve, 40.0F);
-}
-
-void right_panel(ViewState& state, LiveSession& session) {
-  const float width = 330.0F;
-  const ImVec2 display = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(display.x - width, 0.0F));
-  ImGui::SetNextWindowSize(ImVec2(width, display.y));
-  if (ImGui::Begin("What is felt", nullptr, kFixed)) {
-    const std::vector<ToolDescription>& tools = session.scene().tools;
-    if (tools.size() > 1 && ImGui::BeginCombo("tool", tools[state.tool].node.c_str())) {
-      for (std::uint32_t i = 0; i < tools.size(); ++i) {
-        if (ImGui::Selectable(tools[i].node.c_str(), i == state.tool)) {
-          state.tool = i;
-        }
-      }
-      ImGui::EndCombo();
-    }
-    int axes = state.contact_axes ? 0 : 1;
-    ImGui::RadioButton("contact axes", &axes, 0);
-    ImGui::SameLine();
-    ImGui::RadioButton("world axes", &axes, 1);
-    state.contact_axes = axes == 0;
-    const History& history = state.histories[state.tool];
-    wrench_plots(state, history);
-    turn_plot(history);
-    timing_plot(history);
-    if (session.on_device(state.tool)) {
-      device_plot(history);
-    }
-  }
-  ImGui::End();
-}
-
-/// What the mouse does now, below the scene.
-void mouse_line(const ViewState& state, bool on_device) {
+/// What to look at, and what the mouse does now, below the scene.
+void mouse_line(const ViewState& state, const LiveSession& session) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos(ImVec2(size.x / 2.0F, size.y), ImGuiCond_Always, ImVec2(0.5F, 1.0F));
   if (ImGui::Begin("##mouse", nullptr,
                    kFixed | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize |
                        ImGuiWindowFlags_NoInputs)) {
+    if (const std::string& caption = session.scene().view.caption; !caption.empty()) {
+      ImGui::PushTextWrapPos(590.0F);
+      text(caption);
+      ImGui::PopTextWrapPos();
+      ImGui::Separator();
+    }
     if (state.grabbed) {
       text("You hold the tool: move = across   Shift = push along the view");
       text("Alt or wheel = turn it about the contact's normal");
     } else {
-      text(on_device ? "The device holds the tool."
-                     : "Take the tool with the left mouse button and press it on the body.");
+      text(session.on_device(state.tool)
+               ? "The device holds the tool."
+               : "Take the tool with the left mouse button and press it on the body.");
       dim("Elsewhere: left = orbit, right = pan, wheel = zoom");
     }
   }
@@ -364,8 +300,8 @@ void draw_panels(ViewState& state, LiveSession& session, double now) {
     return;
   }
   left_panel(state, session);
-  right_panel(state, session);
-  mouse_line(state, session.on_device(state.tool));
+  draw_felt_panel(state, session);
+  mouse_line(state, session);
 }
 
 }  // namespace torsion::engine

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/live/live_session.hpp"
+#include "app/view/gallery.hpp"
 #include "app/view/history.hpp"
 #include "app/view/orbit_camera.hpp"
 #include "render/draw_options.hpp"
@@ -33,7 +35,13 @@ struct ViewState {
   bool wants_screenshot = false;
   bool wants_saved_recording = false;
   bool wants_release = false;
-  bool wants_video = false;  // begins one, or ends the one under way
+  bool wants_video = false;                // begins one, or ends the one under way
+  std::optional<std::size_t> wants_entry;  // of the gallery: another scene
+
+  bool loop = true;                   // the scene begins again after its animation
+  std::vector<GalleryEntry> gallery;  // scenes to choose from
+  std::optional<std::size_t> entry;   // which of them is shown; none: a scene of one's own
+  bool opening = false;               // another scene is being read and prepared
 
   OrbitCamera camera;
   std::vector<History> histories;  // (tools)

@@ -45,11 +45,17 @@ void widen_scales(const Snapshot& snapshot, DrawOptions& draw, double& twist, do
 
 }  // namespace
 
-Viewer::Viewer(ViewerOptions options) : options_(std::move(options)) {}
+std::string window_title(const std::string& scene) {
+  return "Torsion: " + std::filesystem::path(scene).filename().string();
+}
+
+Viewer::Viewer(ViewerOptions options) : options_(std::move(options)) {
+  state_.gallery = options_.gallery;
+}
 
 Viewer::~Viewer() {
-  if (reloader_.joinable()) {
-    reloader_.join();
+  if (opener_.joinable()) {
+    opener_.join();
   }
   renderer_.reset();  // before the window that it draws into
 }
@@ -86,8 +92,27 @@ Result<Done> Viewer::make_renderer() {
   return Done{};
 }
 
-/// Takes over a prepared scene: at the start, and after its file has changed.
-Result<Done> Viewer::begin(Session session) {
+/// The camera and what is drawn, as the scene says.
+void Viewer::look_at_scene() {
+  FrameWorld& frame = session_->shown().frame;
+  const double aspect = static_cast<double>(kWidth) / kHeight;
+  const std::vector<CameraDescription>& cameras = session_->scene().cameras;
+  state_.camera = orbit_of(
+      cameras.empty() ? auto_camera(frame, aspect) : camera_of(cameras.front()), glm::dvec3(0.0));
+  const SceneView& view = session_->scene().view;
+  state_.draw.heat_map = view.colors == "twist"      ? HeatMap::kTwist
+                         : view.colors == "pressure" ? HeatMap::kPressure
+                                                     : HeatMap::kNone;
+  state_.show_cells = view.stick_slip;
+  state_.slowness = static_cast<std::uint32_t>(std::lround(1.0 / view.speed));
+  state_.loop = view.loop;
+  state_.entry = entry_of(state_.gallery, options_.scene);
+  twist_scale_ = 0.0;
+  pressure_scale_ = 0.0;
+}
+
+/// Takes over a prepared scene: at the start, after its file has changed, or another one.
+Result<Done> Viewer::begin(Session session, Keep keep) {
   const bool again = session_ != nullptr;
   renderer_.reset();
   session_.reset();
@@ -124,17 +149,31 @@ Result<Done> Viewer::begin(Session session) {
   state_.picks = session_->shown().picks;
   handles_.assign(tools, Pose{});
   grab_ = Grab{};
-  if (!again) {
-    FrameWorld& frame = session_->shown().frame;
-    const double aspect = static_cast<double>(kWidth) / kHeight;
-    const std::vector<CameraDescription>& cameras = session_->scene().cameras;
-    state_.camera = orbit_of(
-        cameras.empty() ? auto_camera(frame, aspect) : camera_of(cameras.front()), glm::dvec3(0.0));
+  if (keep == Keep::kNothing) {
+    look_at_scene();
   }
   while (!session_->refresh()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return make_renderer();
+}
+
+/// Begins the scene again after its animation, as long as nobody has taken a tool.
+void Viewer::loop_scene() {
+  constexpr double kRest = 0.5;  // s, of the scene: at its end
+  const double duration = session_->scene().duration;
+  const LiveFrame& frame = session_->frame();
+  // A recording to a file is of one run.
+  if (!state_.loop || duration <= 0.0 || frame.snapshot.clock.time < duration + kRest ||
+      frame.paused || session_->preparing() || !options_.record.empty()) {
+    return;
+  }
+  for (std::uint32_t tool = 0; tool < handles_.size(); ++tool) {
+    if (session_->held(tool) || session_->on_device(tool)) {
+      return;
+    }
+  }
+  outcome_.loops += session_->choose(session_->shown().picks, true) ? 1U : 0U;
 }
 
 /// Does what panels and keys asked for.
@@ -177,6 +216,7 @@ void Viewer::take_wishes() {
   if (state_.wants_video) {
     begin_or_end_film();
   }
+  open_chosen_scene();
   state_.filming = film_.writer.has_value();
   state_.wants_video = false;
   state_.wants_step = false;
@@ -293,8 +333,9 @@ Result<Done> Viewer::frame() {
   }
   session_->refresh();
   take_history();
+  loop_scene();
   watch_scene();
-  if (Result<Done> taken = take_reloaded(); !taken) {
+  if (Result<Done> taken = take_opened(); !taken) {
     return taken;
   }
   gui_->begin(input, now() - last_frame_);
@@ -325,15 +366,14 @@ Result<ViewerOutcome> Viewer::run() {
   interrupt_.emplace();  // before any thread, but not while a scene is prepared for long
   start_ = std::chrono::steady_clock::now();
   starter_.emplace();
-  Result<Window> window = Window::open(
-      "Torsion: " + std::filesystem::path(options_.scene).filename().string(), kWidth, kHeight);
+  Result<Window> window = Window::open(window_title(options_.scene), kWidth, kHeight);
   if (!window) {
     return window.error();
   }
   window_ = std::move(window).value();
   gui_ = std::make_unique<Gui>();
   watch_.emplace(options_.scene);
-  Result<Done> done = begin(std::move(session).value());
+  Result<Done> done = begin(std::move(session).value(), Keep::kNothing);
   while (done) {
     done = frame();
     const bool over = options_.seconds >= 0.0 && now() > options_.seconds;

@@ -11,6 +11,7 @@
 #include "app/live/interrupt.hpp"
 #include "app/live/live_session.hpp"
 #include "app/live/thread_starter.hpp"
+#include "app/view/gallery.hpp"
 #include "app/view/gui.hpp"
 #include "app/view/scene_watch.hpp"
 #include "app/view/tool_drag.hpp"
@@ -23,6 +24,7 @@ namespace torsion::engine {
 
 struct ViewerOptions {
   std::string scene;
+  std::vector<GalleryEntry> gallery;  // other scenes that the window offers
   PrepareOptions prepare;
   DeviceChoice device;     // what holds a tool; empty: what the scene says
   double seconds = -1.0;   // s: closes by itself after that; negative: when the person does
@@ -35,6 +37,7 @@ struct ViewerOutcome {
   RunStatistics statistics;
   std::string mode;
   std::uint64_t frames = 0;
+  std::uint64_t loops = 0;           // how often a scene began again after its animation
   double seconds = 0.0;              // that the window was open
   double opened_after = 0.0;         // s: from the scene being ready to the first picture
   double share = 1.0;                // inner resolution at the end
@@ -42,6 +45,8 @@ struct ViewerOutcome {
   std::optional<DeviceView> device;  // that held a tool at the end
   std::string problem;  // why there is no recording; empty: there is, or none was wanted
 };
+
+std::string window_title(const std::string& scene);
 
 /// A scene in a window. Everything is in the main thread but physics, and what prepares worlds.
 class Viewer {
@@ -76,7 +81,11 @@ class Viewer {
     std::uint64_t pictures = 0;
   };
 
-  Result<Done> begin(Session session);
+  /// What stays when another session begins.
+  enum class Keep : std::uint32_t { kNothing, kView };
+
+  Result<Done> begin(Session session, Keep keep);
+  void look_at_scene();
   Result<Done> make_renderer();
   Result<Done> frame();
   [[nodiscard]] bool panels_due(const WindowInput& input);
@@ -94,8 +103,11 @@ class Viewer {
   void drag_tool(const WindowInput& input);
   void take_wishes();
   void take_history();
+  void loop_scene();
   void watch_scene();
-  Result<Done> take_reloaded();
+  void open_in_background(const std::string& scene);
+  void open_chosen_scene();
+  Result<Done> take_opened();
   void fit_share(double frame_seconds);
   void say(const std::string& text);
   [[nodiscard]] double now() const;
@@ -130,9 +142,10 @@ class Viewer {
   std::uint64_t passes_timed_ = 0;
   int files_written_ = 0;
 
-  std::thread reloader_;
-  std::atomic<bool> reloaded_done_ = false;
-  std::optional<Result<Session>> reloaded_;
+  std::thread opener_;   // reads and prepares a scene
+  std::string opening_;  // its file
+  std::atomic<bool> opened_done_ = false;
+  std::optional<Result<Session>> opened_;
 };
 
 }  // namespace torsion::engine

@@ -56,10 +56,16 @@ void Viewer::take_keys(const WindowInput& input) {
       case 'G':
         state_.wants_release = true;
         break;
+      case 'L':
+        state_.loop = !state_.loop;
+        break;
       case 'H':
         state_.show_panels = !state_.show_panels;
         break;
       default:
+        if (key >= '1' && key <= '9') {
+          state_.wants_entry = static_cast<std::size_t>(key - '1');
+        }
         break;
     }
   }

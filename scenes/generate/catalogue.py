@@ -1,11 +1,14 @@
 """The scenes: the three experiments of Luo & Xiao (2007) with the parameters of their Table I, each
-also with a body three hundred times softer, and three more."""
+also with a body three hundred times softer, three more, and those of the gallery."""
 
 from . import motions, shapes
 from .gltf_writer import Gltf
 
 RUBBER = {"torsion_youngs_modulus": 3e6, "torsion_poisson_ratio": 0.5, "torsion_density": 1100.0,
           "torsion_static_friction": 0.75, "torsion_dynamic_friction": 0.75}
+GEL = {**RUBBER, "torsion_youngs_modulus": 2e4, "torsion_static_friction": 0.6,
+       "torsion_dynamic_friction": 0.6}
+STICKY_GEL = {**GEL, "torsion_static_friction": 1.2, "torsion_dynamic_friction": 1.2}
 SOFT = {**RUBBER, "torsion_youngs_modulus": 1e4}
 # Holds a quarter more than it has once it slips.
 STICKY = {**RUBBER, "torsion_static_friction": 0.9375}
@@ -35,7 +38,7 @@ def part(gltf, tool, name, mesh, shape, translation, rotation=(0.0, 0.0, 0.0, 1.
     return row
 
 
-def ball_on_cube(name, material, depth, degrees):
+def ball_on_cube(name, material, depth, degrees, *shown):
     radius = 0.03
     gltf = start("ball_on_cube.bin", (0.2, 0.285, 0.32), (0.0, 0.073, 0.0))
     body(gltf, "cube", shapes.box((0.05, 0.05, 0.05), 34), (0.0, 0.05, 0.0), "box", material)
@@ -46,6 +49,8 @@ def ball_on_cube(name, material, depth, degrees):
                              "torsion_mass": 1.0})
     gltf.animation("press and twist", ball,
                    motions.press_and_twist(top, depth, 0.003, motions.to_and_fro(degrees)))
+    if shown:
+        gltf.show(*shown)
     return gltf.files(name)
 
 
@@ -54,7 +59,7 @@ def elastic_ellipsoid(gltf, material):
          "ellipsoid", material)
 
 
-def mallet_on_ellipsoid(name, material, depth, degrees):
+def mallet_on_ellipsoid(name, material, depth, degrees, *shown):
     gltf = start("mallet_on_ellipsoid.bin", (0.2, 0.29, 0.33), (0.0, 0.083, 0.0))
     elastic_ellipsoid(gltf, material)
     top = (0.0, 0.1, 0.0)
@@ -66,10 +71,12 @@ def mallet_on_ellipsoid(name, material, depth, degrees):
     part(gltf, mallet, "handle", shapes.cylinder(0.005, 0.04, 24), "cylinder", (0.0, 0.065, 0.0))
     gltf.animation("press and twist", mallet,
                    motions.press_and_twist(top, depth, 0.003, motions.to_and_fro(degrees)))
+    if shown:
+        gltf.show(*shown)
     return gltf.files(name)
 
 
-def compass_on_ellipsoid(name, material, depth, degrees):
+def compass_on_ellipsoid(name, material, depth, degrees, *shown):
     gltf = start("compass_on_ellipsoid.bin", (0.2, 0.3, 0.34), (0.0, 0.1, 0.0))
     elastic_ellipsoid(gltf, material)
     # The tips stand 36 mm apart on the ellipsoid, 8 mm below its top.
@@ -86,6 +93,8 @@ def compass_on_ellipsoid(name, material, depth, degrees):
          (0.0, 0.081, 0.0))
     gltf.animation("press and twist", compass,
                    motions.press_and_twist(top, depth, 0.003, motions.to_and_fro(degrees)))
+    if shown:
+        gltf.show(*shown)
     return gltf.files(name)
 
 
@@ -104,6 +113,9 @@ def many_regions(name):
     part(gltf, table, "plate", shapes.box((0.085, 0.004, 0.04)), "box", (0.0, 0.032, 0.0))
     gltf.animation("press and twist", table,
                    motions.press_and_twist(top, 0.0018, 0.002, motions.to_and_fro(4.0)))
+    gltf.show("Ten contacts at once", "Ten feet, each a tenth of a millimetre shorter than the one "
+              "before: each contact sticks and slips by itself.", torsion_colors="twist",
+              torsion_stick_slip=True)
     return gltf.files(name)
 
 
@@ -121,19 +133,83 @@ def two_bodies(name):
     part(gltf, bar, "grip", shapes.cylinder(0.006, 0.03, 24), "cylinder", (0.0, 0.05, 0.0))
     gltf.animation("press and twist", bar,
                    motions.press_and_twist(top, 0.004, 0.003, motions.to_and_fro(12.0)))
+    gltf.show("One tool on two bodies", "The soft cube gives way where the firm one holds: the bar "
+              "feels both.", torsion_colors="twist")
     return gltf.files(name)
+
+
+def gallery(name, bin_name, size, material, depth, motion, eye, at, shown):
+    """A ball on a soft slab of `size`, on its bottom face."""
+    radius = 0.02
+    gltf = start(bin_name, eye, at)
+    ball = gltf.mesh("ball", shapes.grooved_ball(radius, 64), gltf.tool_material)
+    half = tuple(0.5 * side for side in size)
+    body(gltf, "slab", shapes.box(half, 44), (0.0, half[1], 0.0), "box", material,
+         torsion_fixed="bottom_face")
+    top = (0.0, size[1] + radius, 0.0)
+    node = gltf.node("ball", mesh=ball, translation=top,
+                     extras={"torsion_role": "tool", "torsion_shape": "sphere",
+                             "torsion_mass": 0.5})
+    gltf.animation("motion", node, motion(top, depth))
+    gltf.show(*shown[:2], torsion_colors="twist", torsion_stick_slip=True, **shown[2])
+    return gltf.files(name)
+
+
+def twist_and_slip():
+    def motion(top, depth):
+        return motions.pressed(top, depth, 0.002, [(0.0, 0.0)],
+                               [(0.0, 0.0), (1.0, 0.0), (3.0, 75.0), (3.4, 75.0)], 4.0)
+    return gallery("gallery/1_twist_and_slip", "ball_on_block.bin", (0.08, 0.05, 0.08), STICKY_GEL, 0.007, motion,
+                   (0.1, 0.125, 0.13), (0.0, 0.056, 0.0),
+                   ("Twist and slip ring",
+                    "The ball turns and the gel turns with it. Slip (red) begins at the rim and grows inwards; "
+                    "the torque bends until all slips.", {"torsion_speed": 0.2}))
+
+
+def hysteresis():
+    def motion(top, depth):
+        turns = [(0.0, 0.0), (1.0, 0.0)]
+        for half in range(7):
+            turns.append((2.0 + half, 25.0 if half % 2 == 0 else -25.0))
+        return motions.pressed(top, depth, 0.002, [(0.0, 0.0)], turns + [(9.0, 0.0)], 10.0)
+    return gallery("gallery/2_hysteresis", "ball_on_block.bin", (0.08, 0.05, 0.08), GEL, 0.005, motion,
+                   (0.1, 0.125, 0.13), (0.0, 0.056, 0.0),
+                   ("Torque with a memory", "To and fro: the torque by the turn (plot on the right) "
+                    "does not go back as it came, but round a loop. Its area is the work of friction.", {}))
+
+
+def spin_and_slide():
+    def motion(top, depth):
+        x, y, z = top
+        path = motions.at_even_speed((1.0, 0.0), (5.0, 0.06))
+        turns = [(0.0, 0.0), (2.6, 0.0)] + motions.at_even_speed((2.6, 0.0), (5.0, 1440.0))
+        return motions.pressed((x - 0.03, y, z), depth, 0.002, path, turns, 5.6)
+    return gallery("gallery/3_spin_and_slide", "ball_on_slab.bin", (0.14, 0.03, 0.06), GEL, 0.002, motion,
+                   (0.09, 0.13, 0.19), (0.0, 0.035, 0.0),
+                   ("Spinning makes sliding easy", "The ball slides, then spins as well: the force along its way "
+                    "falls, for friction has one direction at each point.", {"torsion_speed": 0.2}))
 
 
 def all_files():
     """File name -> bytes, of every scene that ships."""
     files = {}
-    files |= ball_on_cube("ball_on_cube", RUBBER, 0.0015, 40.0)
+    files |= twist_and_slip()
+    files |= hysteresis()
+    files |= spin_and_slide()
+    files |= ball_on_cube("ball_on_cube", RUBBER, 0.0015, 40.0, "Paper: ball on a cube",
+                          "Luo and Xiao (2007), Table I: rubber of 3 MPa. Take the ball with the "
+                          "mouse and press.")
     files |= ball_on_cube("ball_on_cube_soft", SOFT, 0.010, 60.0)
     files |= ball_on_cube("ball_on_cube_sticky", STICKY, 0.0015, 40.0)
     files |= mallet_on_ellipsoid("mallet_on_ellipsoid", RUBBER, 0.0015, 40.0)
-    files |= mallet_on_ellipsoid("mallet_on_ellipsoid_soft", SOFT, 0.010, 60.0)
+    files |= mallet_on_ellipsoid("mallet_on_ellipsoid_soft", SOFT, 0.010, 60.0,
+                               "Paper: mallet on a soft body",
+                               "A lying cylinder: its contact is long, and turns with the tool.")
     files |= compass_on_ellipsoid("compass_on_ellipsoid", RUBBER, 0.0012, 20.0)
-    files |= compass_on_ellipsoid("compass_on_ellipsoid_soft", SOFT, 0.008, 40.0)
+    files |= compass_on_ellipsoid("compass_on_ellipsoid_soft", SOFT, 0.008, 40.0,
+                                "Two tips: arm and couple",
+                                "The tips' friction forces make a torque by their arms (r x F); "
+                                "each contact adds its couple. The panel has both.")
     files |= many_regions("many_regions")
     files |= two_bodies("two_bodies")
     return files

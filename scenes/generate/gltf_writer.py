@@ -94,11 +94,17 @@ class Gltf:
         self.doc.setdefault("animations", []).append(
             {"name": name, "samplers": samplers, "channels": channels})
 
+    def show(self, title, caption, **keys):
+        """How a window shows the scene."""
+        self.doc["scenes"][0]["extras"] = {"torsion_title": title, "torsion_caption": caption,
+                                           **keys}
+
     def files(self, name):
-        """File name -> bytes."""
+        """File name -> bytes; the meshes are beside the glTF."""
         meshes, keys = (bytes(blob.data) for blob in self.blobs)
         embedded = "data:application/octet-stream;base64," + base64.b64encode(keys).decode()
         self.doc["buffers"] = [{"uri": self.bin_name, "byteLength": len(meshes)},
                                {"uri": embedded, "byteLength": len(keys)}]
         text = json.dumps(self.doc, indent=1) + "\n"
-        return {name + ".gltf": text.encode(), self.bin_name: meshes}
+        folder = name[:name.rfind("/") + 1]
+        return {name + ".gltf": text.encode(), folder + self.bin_name: meshes}

@@ -59,3 +59,22 @@ def to_and_fro(degrees):
     """Clockwise, then counter-clockwise, then back."""
     return [(0.0, 0.0), (0.9, 0.0), (1.6, -degrees), (2.0, -degrees), (3.0, degrees),
             (3.3, degrees), (4.0, degrees)]
+
+
+def pressed(start, depth, clearance, path, turns, seconds):
+    """Down from `clearance` above `start` to `depth` below it within 0.8 s; there along x as `path`
+    (time, m) says and turned as `turns` (time, degrees) says; up again in the last half second."""
+    x, y, z = start
+    heights = [(0.0, y + clearance), (0.8, y - depth), (seconds - 0.6, y - depth),
+               (seconds - 0.1, y + clearance)]
+    times = [i / RATE for i in range(round(seconds * RATE) + 1)]
+    places = [(x + eased(path, t), eased(heights, t), z) for t in times]
+    return {"translation": ("LINEAR", times, places),
+            "rotation": ("LINEAR", times, [about_y(eased(turns, t)) for t in times])}
+
+
+def at_even_speed(first, last):
+    """From one key (time, value) to another, without easing: so many keys that none matters."""
+    (t0, v0), (t1, v1) = first, last
+    steps = round((t1 - t0) * RATE)
+    return [(t0 + (t1 - t0) * i / steps, v0 + (v1 - v0) * i / steps) for i in range(steps + 1)]

@@ -8,11 +8,13 @@
 #include <gtest/gtest.h>
 
 #include "app/round_up.hpp"
+#include "app/view/gallery.hpp"
 #include "app/view/history.hpp"
 #include "app/view/orbit_camera.hpp"
 #include "app/view/scene_watch.hpp"
 #include "app/view/tool_drag.hpp"
 #include "tests/app/program.hpp"
+#include "tests/support/paths.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -167,6 +169,43 @@ TEST(SceneWatchTest, SaysOnceThatAFileOrItsBufferHasChanged) {
   std::filesystem::remove(scene);  // as some editors do before they write anew
   EXPECT_FALSE(watch.changed());
   EXPECT_TRUE(watch.changed());
+}
+
+TEST(GalleryTest, HasTheScenesOfItsFolderThenThoseWithATitle) {
+  const test::Folder folder;
+  const std::filesystem::path scenes = folder / "share/torsion/scenes";
+  std::filesystem::create_directories(scenes / "gallery");
+  std::filesystem::create_directories(folder / "bin");
+  const auto scene = [](const std::string& extras) {
+    return R"({"scene": 1, "scenes": [{}, {"extras": {)" + extras + "}}]}";
+  };
+  test::write_text(scenes / "gallery" / "2_b.gltf", scene(R"("torsion_title": "B")"));
+  test::write_text(scenes / "gallery" / "1_a.gltf", scene(R"("torsion_title": "A")"));
+  test::write_text(scenes / "gallery" / "0_bad.gltf", "{");
+  test::write_text(scenes / "c.gltf", scene(R"("torsion_title": "C")"));
+  test::write_text(scenes / "d.gltf", scene(""));
+  test::write_text(scenes / "e.gltf", scene(R"("torsion_title": 5)"));
+  test::write_text(scenes / "f.gltf", "[]");
+  test::write_text(scenes / "g.gltf", R"({"scene": "x", "scenes": []})");
+  EXPECT_EQ(shipped_scenes(folder / "bin/torsion"), scenes);
+  const std::vector<GalleryEntry> gallery = read_gallery(scenes);
+  ASSERT_EQ(gallery.size(), 3U);
+  EXPECT_EQ(gallery[0], (GalleryEntry{scenes / "gallery/1_a.gltf", "A"}));
+  EXPECT_EQ(gallery[1], (GalleryEntry{scenes / "gallery/2_b.gltf", "B"}));
+  EXPECT_EQ(gallery[2], (GalleryEntry{scenes / "c.gltf", "C"}));
+  EXPECT_EQ(entry_of(gallery, scenes / "gallery/../c.gltf"), 2U);
+  EXPECT_FALSE(entry_of(gallery, scenes / "d.gltf"));
+}
+
+TEST(GalleryTest, IsEmptyWhereNothingShips) {
+  const test::Folder folder;
+  EXPECT_TRUE(read_gallery(folder / "nowhere").empty());
+}
+
+TEST(GalleryTest, EveryShippedSceneOfItsFolderHasAKey) {
+  const std::vector<GalleryEntry> gallery = read_gallery(test::source_folder() + "/scenes");
+  EXPECT_GE(gallery.size(), 8U);
+  EXPECT_LE(gallery.size(), 9U);  // keys 1 to 9
 }
 
 }  // namespace

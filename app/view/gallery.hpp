@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace torsion::engine {
+
+/// A scene that ships with the program, for the list in the window.
+struct GalleryEntry {
+  std::filesystem::path file;
+  std::string title;  // torsion_title of the scene
+
+  bool operator==(const GalleryEntry&) const = default;
+};
+
+/// The scenes that ship: those in share/torsion/scenes beside the folder of the installed program,
+/// or in the source tree above the folder that it was built in. Empty where there are neither.
+/// @param program  its file
+std::filesystem::path shipped_scenes(const std::filesystem::path& program);
+
+/// The .gltf with a torsion_title in `scenes`/gallery, in the order of their names, then those in
+/// `scenes` itself.
+std::vector<GalleryEntry> read_gallery(const std::filesystem::path& scenes);
+
+/// The gallery of the program that runs.
+std::vector<GalleryEntry> read_gallery();
+
+/// Which entry a file is.
+std::optional<std::size_t> entry_of(const std::vector<GalleryEntry>& gallery,
+                                    const std::filesystem::path& file);
+
+}  // namespace torsion::engine

@@ -13,6 +13,12 @@ namespace torsion::engine {
 /// Keys with a name; letters and digits are their ASCII capitals.
 inline constexpr int kKeySpace = ' ';
 inline constexpr int kKeyEscape = 256;
+inline constexpr int kKeyEnter = 257;
+inline constexpr int kKeyTab = 258;
+inline constexpr int kKeyBackspace = 259;
+inline constexpr int kKeyDelete = 261;
+inline constexpr int kKeyRight = 262;
+inline constexpr int kKeyLeft = 263;
 
 /// What a person did with a window since the last look.
 struct WindowInput {

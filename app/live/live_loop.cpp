@@ -28,6 +28,7 @@ void take_sample(LiveTool& tool) {
   const HandleSample& sample = tool.slot->sample.front();
   if (tool.sample == 0) {
     tool.last_handle = sample.pose;
+    restart_smoothing(tool.smoothing, sample.pose);
   }
   if (sample.epoch != tool.epoch) {
     tool.epoch = sample.epoch;
@@ -38,6 +39,7 @@ void take_sample(LiveTool& tool) {
   const bool in_step = sample.epoch != 0 && sample.number == tool.sample + 1;
   tool.arrived = in_step ? sample.time_ns : 0;
   tool.handle = sample.pose;
+  tool.asked = sample.pose;
   tool.sample = sample.number;
 }
 
@@ -53,6 +55,9 @@ Pose next_pose(LiveLoop& loop, std::uint32_t row, Pose& handle) {
   if (tool.sample == 0) {  // nobody has taken it yet: it stays
     handle = world.state.tools.at<ToolPose>(row).now;
     return handle;
+  }
+  if (tool.smoothing.on && tool.epoch == 0) {
+    tool.handle = smooth(tool.smoothing, tool.asked, world.model.dt);
   }
   handle = tool.handle;
   if (tool.still_steps > 0) {

@@ -17,6 +17,7 @@
 #include "ecs/snapshot.hpp"
 #include "ecs/triple_buffer.hpp"
 #include "systems/hold/handle_side.hpp"
+#include "systems/hold/handle_smoothing.hpp"
 #include "systems/hold/tool_hold.hpp"
 
 namespace torsion::engine {
@@ -34,7 +35,7 @@ struct LiveTool {
   VirtualCoupling coupling;
   PassivityLimits limits;  // of the device; as they are made, the controller adds nothing
   PassivityState books;
-  Pose handle;               // of the last sample
+  Pose handle;               // of the last sample, smoothed if `smoothing` is on
   Pose last_handle;          // at the step before
   std::uint64_t sample = 0;  // its number; 0: there was none
   // When the sample of this step arrived, if it is a device's and the next after the last step's;
@@ -43,6 +44,8 @@ struct LiveTool {
   std::uint32_t epoch = 0;        // of the device that it is from
   std::uint32_t still_steps = 0;  // for which a held tool stays where it is
   ToolHold hold = ToolHold::kMassless;
+  HandleSmoothing smoothing;  // of a mouse
+  Pose asked;                 // of the last sample, as it came
 };
 
 /// A prepared world that the physics thread may go over to, and what draws it.

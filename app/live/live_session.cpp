@@ -67,6 +67,7 @@ LiveSession::LiveSession(Session session, PrepareOptions options, std::filesyste
         mouse_coupling(session_.scene, 0.5 * glm::length(bounds.highest - bounds.lowest) / 1.75));
     loop_.tools[tool].slot = slots_.back().get();
     loop_.tools[tool].coupling = couplings_.back();
+    loop_.tools[tool].smoothing.on = true;
   }
   samples_.resize(world.model.tools.size(), 0);
   held_.resize(world.model.tools.size(), 0);

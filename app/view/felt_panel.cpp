@@ -52,14 +52,13 @@ void wrench_plots(const ViewState& state, const History& history) {
   }
 }
 
-/// Torque against the tool's turn: what runs now, and in grey what ran before the last switch of
-/// models or restart.
+/// Torque against the tool's turn: what runs now, and in grey what ran before the last switch.
 void turn_plot(const History& history) {
   if (history.size() == 0) {
     return;
   }
   const std::uint64_t now = history[history.size() - 1].generation;
-  Curve before{"before", kCurveGrey, {}, {}};
+  Curve before{"before the switch", kCurveGrey, {}, {}};
   Curve current{"", kCurveBlue, {}, {}};
   for (std::size_t i = 0; i < history.size(); ++i) {
     const PlotPoint& point = history[i];

@@ -1,8 +1,10 @@
 #include "app/view/gui.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include <imgui.h>
 
@@ -49,6 +51,39 @@ void set_style() {
   style.Colors[ImGuiCol_Text] = ImVec4(0.10F, 0.11F, 0.13F, 1.0F);
 }
 
+struct EditKey {
+  int window;     // as WindowInput has it
+  ImGuiKey edit;  // what it does
+};
+constexpr std::array kEditKeys = {
+    EditKey{kKeyEscape, ImGuiKey_Escape}, EditKey{kKeyEnter, ImGuiKey_Enter},
+    EditKey{kKeyTab, ImGuiKey_Tab},       EditKey{kKeyBackspace, ImGuiKey_Backspace},
+    EditKey{kKeyDelete, ImGuiKey_Delete}, EditKey{kKeyRight, ImGuiKey_RightArrow},
+    EditKey{kKeyLeft, ImGuiKey_LeftArrow}};
+
+/// A key that went down goes up in the next picture.
+void press(const std::vector<int>& pressed) {
+  ImGuiIO& io = ImGui::GetIO();
+  for (const EditKey& key : kEditKeys) {
+    const bool down = std::ranges::find(pressed, key.window) != pressed.end();
+#if IMGUI_VERSION_NUM >= 18700
+    io.AddKeyEvent(key.edit, down);
+#else
+    io.KeyMap[key.edit] = key.window;
+    io.KeysDown[key.window] = down;
+#endif
+  }
+}
+
+/// Numbers are all that is typed.
+void type(const std::vector<int>& pressed) {
+  for (const int key : pressed) {
+    if ((key >= '0' && key <= '9') || key == '.' || key == '-' || key == 'E') {
+      ImGui::GetIO().AddInputCharacter(key == 'E' ? 'e' : static_cast<unsigned>(key));
+    }
+  }
+}
+
 }  // namespace
 
 Gui::Gui() {
@@ -75,6 +110,8 @@ void Gui::begin(const WindowInput& input, double seconds) {
   io.KeyShift = input.shift;
   io.KeyAlt = input.alt;
   io.KeyCtrl = input.control;
+  press(input.pressed);
+  type(input.pressed);
   ImGui::NewFrame();
 }
 
@@ -142,6 +179,10 @@ const OverlayDrawList& Gui::end() {
   }
   list_.panel_clips = list_.clips.size() - marks;
   return list_;
+}
+
+bool Gui::has_keyboard() {
+  return ImGui::GetIO().WantTextInput;
 }
 
 bool Gui::has_mouse() {

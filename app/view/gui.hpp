@@ -31,6 +31,8 @@ class Gui {
 
   /// Whether the mouse is over a panel, which then has it.
   [[nodiscard]] static bool has_mouse();
+  /// Whether a number is being typed.
+  [[nodiscard]] static bool has_keyboard();
 
  private:
   void append(const ImDrawCmd& command, const ImDrawList& from, std::uint32_t base_vertex);

@@ -12,6 +12,7 @@ constexpr ImU32 kRegion = IM_COL32(20, 20, 20, 220);
 constexpr ImU32 kSticks = IM_COL32(20, 130, 60, 255);
 constexpr ImU32 kSlips = IM_COL32(220, 60, 30, 255);
 constexpr ImU32 kAnchor = IM_COL32(120, 40, 160, 255);
+constexpr ImU32 kHand = IM_COL32(39, 111, 196, 255);
 constexpr ImU32 kFixedPoint = IM_COL32(60, 60, 70, 255);
 constexpr std::uint32_t kMostFixed = 400;  // dots
 
@@ -90,6 +91,26 @@ void draw_anchors(const Pencil& pencil, const LiveFrame& frame, const World& wor
   }
 }
 
+/// The spring between the hand and the tool that it holds, from mass centre to where it should be.
+void draw_hand(const Pencil& pencil, const LiveFrame& frame, std::uint32_t tool,
+               const Pose& handle) {
+  constexpr int kTurns = 12;
+  const Pose& now = frame.snapshot.tools.at<ToolPose>(tool).now;
+  const glm::dvec3 from = frame.snapshot.tools.at<ToolMotion>(tool).mass_center;
+  const glm::dvec3 to = in_world(handle, glm::conjugate(now.rotation) * (from - now.position));
+  const glm::dvec3 side = pencil.camera.pose.rotation * glm::dvec3(1.0, 0.0, 0.0);
+  const double width = 0.06 * glm::length(to - from);
+  glm::dvec3 last = from;
+  for (int i = 1; i <= kTurns; ++i) {
+    const double sign = i == kTurns ? 0.0 : (i % 2 == 0 ? 1.0 : -1.0);
+    const glm::dvec3 next =
+        glm::mix(from, to, static_cast<double>(i) / kTurns) + sign * width * side;
+    pencil.line(last, next, kHand);
+    last = next;
+  }
+  pencil.dot(to, 4.0F, kHand);
+}
+
 }  // namespace
 
 void draw_marks(const ViewState& state, LiveSession& session, const glm::dvec2& picture) {
@@ -106,6 +127,9 @@ void draw_marks(const ViewState& state, LiveSession& session, const glm::dvec2& 
     for (const CellMark& cell : frame.cells) {
       pencil.dot(glm::dvec3(cell.place), 2.5F, cell.sticks != 0 ? kSticks : kSlips);
     }
+  }
+  if (state.handle) {
+    draw_hand(pencil, frame, state.tool, *state.handle);
   }
   for (std::uint32_t region = 0; state.show_regions && region < frame.snapshot.regions.size();
        ++region) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -117,12 +118,10 @@ void state_lines(const ViewState& state, const LiveSession& session) {
   ImGui::TextColored(ImVec4(0.80F, 0.45F, 0.0F, 1.0F), "  torque %.3g N m",
                      glm::length(wrench.torque));
   const History& history = state.histories[state.tool];
-  if (history.size() > 0) {
-    const PlotPoint& last = history[history.size() - 1];
-    text(fmt::format("normal {} N, friction {} N", shown(last.normal_force),
-                     shown(last.friction_force)));
-    text(fmt::format("couple {} N m, r x F {} N m", shown(last.couples), shown(last.arm_torque)));
-  }
+  const PlotPoint last = history.size() > 0 ? history[history.size() - 1] : PlotPoint{};
+  text(fmt::format("normal {} N, friction {} N", shown(last.normal_force),
+                   shown(last.friction_force)));
+  text(fmt::format("couple {} N m, r x F {} N m", shown(last.couples), shown(last.arm_torque)));
   const VirtualCoupling& coupling = session.coupling(state.tool);
   if (session.on_device(state.tool)) {
     device_part(*session.device());
@@ -154,6 +153,36 @@ void timing_lines(const ViewState& state, const LiveSession& session) {
   ImGui::PushTextWrapPos();
   dim("physics thread: " + describe(session.mode()));
   ImGui::PopTextWrapPos();
+}
+
+/// A motion by numbers.
+void tool_move(ViewState& state, const LiveSession& session) {
+  constexpr double kMillimeter = 1e-3;
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  const auto number = [](const char* label, double& value, double unit, double step) {
+    double shown_value = value / unit;
+    ImGui::InputDouble(label, &shown_value, step, 10.0 * step, "%.3g");
+    value = unit * shown_value;
+  };
+  number("press (mm)", state.move.press, kMillimeter, 1.0);
+  number("turn (deg)", state.move.turn, kDegree, 5.0);
+  number("slide (mm)", state.move.slide, kMillimeter, 1.0);
+  number("in (s)", state.move.seconds, 1.0, 0.5);
+  state.move.seconds = std::clamp(state.move.seconds, 0.05, 1000.0);
+  if (session.on_device(state.tool)) {
+    dim("The device holds the tool.");
+  } else if (state.moving) {
+    text("moving ...");
+  } else if (ImGui::Button("Go")) {
+    state.wants_move = true;
+  }
+  int free = state.free_drag ? 1 : 0;
+  text("Mouse (F)");
+  ImGui::SameLine();
+  ImGui::RadioButton("press, turn", &free, 0);
+  ImGui::SameLine();
+  ImGui::RadioButton("free", &free, 1);
+  state.free_drag = free == 1;
 }
 
 void material(ViewState& state, LiveSession& session) {
@@ -223,6 +252,7 @@ void keys() {
   dim("Space pause   N step   R restart   L loop");
   dim("S speed   M switch models   Esc close");
   dim("P screenshot   V video   O recording");
+  dim("F free mouse   C camera as at first");
 }
 
 void left_panel(ViewState& state, LiveSession& session) {
@@ -245,6 +275,9 @@ void left_panel(ViewState& state, LiveSession& session) {
     ImGui::PushItemWidth(170.0F);
     if (ImGui::CollapsingHeader("Model and material", open_if(!state.entry))) {
       material(state, session);
+    }
+    if (ImGui::CollapsingHeader("Move the tool")) {
+      tool_move(state, session);
     }
     if (ImGui::CollapsingHeader("Shown", ImGuiTreeNodeFlags_DefaultOpen)) {
       shown_things(state);
@@ -274,7 +307,8 @@ void mouse_line(const ViewState& state, const LiveSession& session) {
       ImGui::Separator();
     }
     if (state.grabbed) {
-      text("You hold the tool: move = across   Shift = push along the view");
+      text(state.free_drag ? "You hold the tool: move = across   Shift = push along the view"
+                           : "You hold the tool: move = press and lift   Shift = slide");
       text("Alt or wheel = turn it about the contact's normal");
     } else {
       text(session.on_device(state.tool)

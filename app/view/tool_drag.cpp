@@ -28,6 +28,26 @@ void turn(Pose& handle, const glm::dvec3& pivot, const glm::dvec3& axis, double 
   handle.rotation = glm::normalize(rotation * handle.rotation);
 }
 
+namespace {
+
+/// How far along `axis` the mouse went, m.
+/// @param across  pixels a metre, in the plane of the view
+double pressed(const glm::dvec2& moved, const Camera& camera, double picture_height, double across,
+               const glm::dvec3& pivot, const glm::dvec3& axis) {
+  constexpr double kSeenWell = 0.3;          // of its length
+  const glm::dvec2 picture(picture_height);  // its width does not matter to differences
+  const double step = 1.0 / across;
+  const glm::dvec3 seen =
+      seen_at(camera, pivot + step * axis, picture) - seen_at(camera, pivot, picture);
+  glm::dvec2 way = glm::dvec2(seen) / step;  // pixels a metre
+  if (!(glm::length(way) > kSeenWell * across)) {
+    way = glm::dvec2(0.0, -across);
+  }
+  return glm::dot(moved, way) / glm::dot(way, way);
+}
+
+}  // namespace
+
 void drag(ToolDrag& taken, DragKind kind, const glm::dvec2& mouse, const Camera& camera,
           double picture_height, const glm::dvec3& pivot, const glm::dvec3& axis, Pose& handle) {
   const glm::dvec2 moved = mouse - taken.mouse;
@@ -35,9 +55,16 @@ void drag(ToolDrag& taken, DragKind kind, const glm::dvec2& mouse, const Camera&
   const double meters = 2.0 * taken.depth * std::tan(camera.vertical_field_of_view / 2.0) /
                         std::max(picture_height, 1.0);
   const glm::dquat& view = camera.pose.rotation;
+  const glm::dvec3 across = view * glm::dvec3(moved.x * meters, -moved.y * meters, 0.0);
   switch (kind) {
+    case DragKind::kPress:
+      handle.position += axis * pressed(moved, camera, picture_height, 1.0 / meters, pivot, axis);
+      break;
+    case DragKind::kSlide:
+      handle.position += across - axis * glm::dot(across, axis);
+      break;
     case DragKind::kAcross:
-      handle.position += view * glm::dvec3(moved.x * meters, -moved.y * meters, 0.0);
+      handle.position += across;
       break;
     case DragKind::kAlong:
       handle.position += view * glm::dvec3(0.0, 0.0, moved.y * meters);

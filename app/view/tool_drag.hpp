@@ -11,6 +11,8 @@ namespace torsion::engine {
 
 /// How a mouse that has taken a tool moves it.
 enum class DragKind : std::uint8_t {
+  kPress,   // along an axis, the surface's normal
+  kSlide,   // across that axis
   kAcross,  // in the plane of the view
   kAlong,   // towards and away from the person
   kTurn,    // about an axis
@@ -28,7 +30,9 @@ struct ToolDrag {
 std::optional<double> meets_box(const PixelRay& ray, const Pose& pose, const Bounds& bounds);
 
 /// Moves the handle as the mouse moved: across, one pixel of the picture at the depth of the point
-/// taken; along, as far towards or away; a turn, kRadiansAPixel about `axis` through `pivot`.
+/// taken; along, as far towards or away; pressed, so far along `axis` as that is seen to move, and
+/// by the mouse's way down where the axis is seen from its end; slid, as across, without what is
+/// along `axis`; a turn, kRadiansAPixel about `axis` through `pivot`.
 /// @param axis  world, unit
 void drag(ToolDrag& taken, DragKind kind, const glm::dvec2& mouse, const Camera& camera,
           double picture_height, const glm::dvec3& pivot, const glm::dvec3& axis, Pose& handle);

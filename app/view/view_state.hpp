@@ -13,6 +13,15 @@
 
 namespace torsion::engine {
 
+/// A motion that a held tool is told to make, in the scene's time: along the contact's normal,
+/// about it, and across it, eased.
+struct ToolMove {
+  double press = 0.0;    // m, into the body
+  double turn = 0.0;     // rad, counter-clockwise seen from outside
+  double slide = 0.0;    // m, along the contact's first tangent
+  double seconds = 2.0;  // s
+};
+
 /// What a person has set in the window, and what the window shows of the session. The panels read
 /// and write it; the viewer acts on the `wants_`.
 struct ViewState {
@@ -36,7 +45,14 @@ struct ViewState {
   bool wants_saved_recording = false;
   bool wants_release = false;
   bool wants_video = false;                // begins one, or ends the one under way
+  bool wants_view = false;                 // the camera as at first
+  bool wants_move = false;                 // of the tool of the plots
   std::optional<std::size_t> wants_entry;  // of the gallery: another scene
+
+  bool free_drag = false;      // the mouse moves a tool in the plane of the view, not by the normal
+  ToolMove move;               // as typed
+  bool moving = false;         // one is under way
+  std::optional<Pose> handle;  // where the tool of the plots is held; none: nobody holds it
 
   bool loop = true;                   // the scene begins again after its animation
   std::vector<GalleryEntry> gallery;  // scenes to choose from

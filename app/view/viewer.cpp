@@ -10,15 +10,12 @@
 
 #include "app/round_up.hpp"
 #include "app/view/panels.hpp"
-#include "render/auto_camera.hpp"
 #include "render/image_io.hpp"
 #include "systems/surface/surface_field.hpp"
 
 namespace torsion::engine {
 namespace {
 
-constexpr std::uint32_t kWidth = 1280;
-constexpr std::uint32_t kHeight = 720;
 constexpr double kFramePeriod = 1.0 / 60.0;  // s: no faster than that
 constexpr double kPanelPeriod = 0.1;         // s: between drawings of panels that nobody touches
 constexpr double kHiddenPeriod = 0.1;        // s: while nothing can be seen
@@ -92,90 +89,6 @@ Result<Done> Viewer::make_renderer() {
   return Done{};
 }
 
-/// The camera and what is drawn, as the scene says.
-void Viewer::look_at_scene() {
-  FrameWorld& frame = session_->shown().frame;
-  const double aspect = static_cast<double>(kWidth) / kHeight;
-  const std::vector<CameraDescription>& cameras = session_->scene().cameras;
-  state_.camera = orbit_of(
-      cameras.empty() ? auto_camera(frame, aspect) : camera_of(cameras.front()), glm::dvec3(0.0));
-  const SceneView& view = session_->scene().view;
-  state_.draw.heat_map = view.colors == "twist"      ? HeatMap::kTwist
-                         : view.colors == "pressure" ? HeatMap::kPressure
-                                                     : HeatMap::kNone;
-  state_.show_cells = view.stick_slip;
-  state_.slowness = static_cast<std::uint32_t>(std::lround(1.0 / view.speed));
-  state_.loop = view.loop;
-  state_.entry = entry_of(state_.gallery, options_.scene);
-  twist_scale_ = 0.0;
-  pressure_scale_ = 0.0;
-}
-
-/// Takes over a prepared scene: at the start, after its file has changed, or another one.
-Result<Done> Viewer::begin(Session session, Keep keep) {
-  const bool again = session_ != nullptr;
-  renderer_.reset();
-  session_.reset();
-  // Physics and devices do not inherit that this thread makes way for them.
-  Result<Done> started = Done{};
-  starter_->run([&] {
-    // A device that held a tool of the scene before is closed by now.
-    Result<SceneDevice> device = open_device(options_.device, session.scene);
-    if (!device) {
-      started = device.error();
-      return;
-    }
-    session_ = std::make_unique<LiveSession>(std::move(session), options_.prepare, options_.record);
-    if (!again && !options_.record.empty() && !session_->recording_problem().empty()) {
-      started = Error{session_->recording_problem()};
-      return;
-    }
-    session_->give(std::move(device).value());
-    session_->hold_by(options_.device.hold);
-    session_->start();
-  });
-  if (!started) {
-    return started;
-  }
-  if (!session_->mode().fifo) {
-    // Before the driver makes its threads, which inherit it.
-    make_way_for_realtime();
-  }
-  session_->pause(state_.paused);
-  const std::size_t tools = session_->scene().tools.size();
-  state_.histories.assign(tools, History{});
-  state_.tool = 0;
-  state_.body = 0;
-  state_.picks = session_->shown().picks;
-  handles_.assign(tools, Pose{});
-  grab_ = Grab{};
-  if (keep == Keep::kNothing) {
-    look_at_scene();
-  }
-  while (!session_->refresh()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return make_renderer();
-}
-
-/// Begins the scene again after its animation, as long as nobody has taken a tool.
-void Viewer::loop_scene() {
-  constexpr double kRest = 0.5;  // s, of the scene: at its end
-  const double duration = session_->scene().duration;
-  const LiveFrame& frame = session_->frame();
-  // A recording to a file is of one run.
-  if (!state_.loop || duration <= 0.0 || frame.snapshot.clock.time < duration + kRest ||
-      frame.paused || session_->preparing() || !options_.record.empty()) {
-    return;
-  }
-  for (std::uint32_t tool = 0; tool < handles_.size(); ++tool) {
-    if (session_->held(tool) || session_->on_device(tool)) {
-      return;
-    }
-  }
-  outcome_.loops += session_->choose(session_->shown().picks, true) ? 1U : 0U;
-}
-
 /// Does what panels and keys asked for.
 void Viewer::take_wishes() {
   const LiveFrame& frame = session_->frame();
@@ -190,7 +103,14 @@ void Viewer::take_wishes() {
     session_->pause(true);
     session_->step_once();
   }
+  if (state_.wants_view) {
+    place_camera();
+  }
+  if (state_.wants_move) {
+    begin_move();
+  }
   if (state_.wants_release) {
+    move_.reset();
     for (std::uint32_t tool = 0; tool < handles_.size(); ++tool) {
       handles_[tool] = frame.snapshot.tools.at<ToolPose>(tool).now;
       if (session_->held(tool)) {
@@ -200,6 +120,7 @@ void Viewer::take_wishes() {
   }
   if (state_.wants_restart && session_->choose(state_.picks, true)) {
     grab_ = Grab{};
+    move_.reset();
     say("from the start");
   }
   if (state_.wants_choice && differ(state_.picks, session_->shown().picks)) {
@@ -221,6 +142,8 @@ void Viewer::take_wishes() {
   state_.wants_video = false;
   state_.wants_step = false;
   state_.wants_release = false;
+  state_.wants_view = false;
+  state_.wants_move = false;
   state_.wants_restart = false;
   state_.wants_choice = false;
   state_.wants_saved_recording = false;
@@ -338,11 +261,14 @@ Result<Done> Viewer::frame() {
   if (Result<Done> taken = take_opened(); !taken) {
     return taken;
   }
-  gui_->begin(input, now() - last_frame_);
   const double started = now();
+  const double seconds = started - last_frame_;
+  gui_->begin(input, seconds);
   last_frame_ = started;
   take_keys(input);
-  take_mouse(input);
+  take_mouse(input, seconds);
+  go_on_moving();
+  state_.handle = session_->held(state_.tool) ? std::optional(handles_[state_.tool]) : std::nullopt;
   if (state_.show_panels) {
     draw_marks(state_, *session_, {input.width, input.height});
   }
@@ -366,7 +292,7 @@ Result<ViewerOutcome> Viewer::run() {
   interrupt_.emplace();  // before any thread, but not while a scene is prepared for long
   start_ = std::chrono::steady_clock::now();
   starter_.emplace();
-  Result<Window> window = Window::open(window_title(options_.scene), kWidth, kHeight);
+  Result<Window> window = Window::open(window_title(options_.scene), kWindowWidth, kWindowHeight);
   if (!window) {
     return window.error();
   }
@@ -379,7 +305,7 @@ Result<ViewerOutcome> Viewer::run() {
     const bool over = options_.seconds >= 0.0 && now() > options_.seconds;
     const WindowInput& input = window_->input();
     if (over || input.close || interrupt_->within(0) ||
-        std::ranges::count(input.pressed, kKeyEscape) > 0) {
+        (std::ranges::count(input.pressed, kKeyEscape) > 0 && !Gui::has_keyboard())) {
       break;
     }
   }

@@ -46,6 +46,10 @@ struct ViewerOutcome {
   std::string problem;  // why there is no recording; empty: there is, or none was wanted
 };
 
+// Pixels, at first.
+inline constexpr std::uint32_t kWindowWidth = 1280;
+inline constexpr std::uint32_t kWindowHeight = 720;
+
 std::string window_title(const std::string& scene);
 
 /// A scene in a window. Everything is in the main thread but physics, and what prepares worlds.
@@ -67,8 +71,22 @@ class Viewer {
     bool on_tool = false;
     bool orbiting = false;
     bool panning = false;
-    bool spent = false;     // the button is still down from a drag that a hidden window ended
-    glm::dvec2 mouse{0.0};  // pixels of the desktop
+    bool spent = false;      // the button is still down from a drag that a hidden window ended
+    glm::dvec2 mouse{0.0};   // pixels of the desktop
+    glm::dvec3 pivot{0.0};   // m, world: of the tool's contact when it was taken
+    glm::dvec3 axis{0.0};    // world, unit: its normal
+    double turn_left = 0.0;  // rad: of the wheel, still to be made
+  };
+
+  /// A typed motion under way.
+  struct Move {
+    ToolMove asked;
+    std::uint32_t tool = 0;
+    Pose start;
+    glm::dvec3 pivot{0.0};    // m, world
+    glm::dvec3 axis{0.0};     // world, unit, out of the body
+    glm::dvec3 tangent{0.0};  // world, unit
+    double begun = 0.0;       // s, of the scene
   };
 
   /// A video under way.
@@ -85,6 +103,7 @@ class Viewer {
   enum class Keep : std::uint32_t { kNothing, kView };
 
   Result<Done> begin(Session session, Keep keep);
+  void place_camera();
   void look_at_scene();
   Result<Done> make_renderer();
   Result<Done> frame();
@@ -98,9 +117,11 @@ class Viewer {
   Result<Done> write_screenshot(const std::string& path);
   Result<ViewerOutcome> finish();
   void take_keys(const WindowInput& input);
-  void take_mouse(const WindowInput& input);
+  void take_mouse(const WindowInput& input, double seconds);
   void start_drag(const glm::dvec2& mouse, const glm::dvec2& picture);
-  void drag_tool(const WindowInput& input);
+  void drag_tool(const WindowInput& input, double seconds);
+  void begin_move();
+  void go_on_moving();
   void take_wishes();
   void take_history();
   void loop_scene();
@@ -112,7 +133,14 @@ class Viewer {
   void say(const std::string& text);
   [[nodiscard]] double now() const;
   [[nodiscard]] Camera camera() const { return camera_of(state_.camera); }
-  void turn_axis(std::uint32_t tool, glm::dvec3& pivot, glm::dvec3& axis) const;
+  /// The frame in which a tool is pressed and turned: that of its oldest contact, or else the
+  /// nearest place of a body's surface.
+  struct ContactAxes {
+    glm::dvec3 pivot{0.0};              // m, world
+    glm::dvec3 normal{0.0, 1.0, 0.0};   // world, unit, out of the body
+    glm::dvec3 tangent{1.0, 0.0, 0.0};  // world, unit
+  };
+  [[nodiscard]] ContactAxes axes_under(std::uint32_t tool) const;
   [[nodiscard]] std::string file_name(const std::string& extension);
 
   ViewerOptions options_;
@@ -125,6 +153,7 @@ class Viewer {
   ViewState state_;
   ViewerOutcome outcome_;
   Grab grab_;
+  std::optional<Move> move_;
   std::vector<Pose> handles_;  // (tools) where they are held
   std::optional<SceneWatch> watch_;
   Film film_;

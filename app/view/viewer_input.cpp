@@ -1,10 +1,14 @@
 // What a person does with keys and mouse.
 
+#include <cmath>
 #include <optional>
 
 #include <glm/geometric.hpp>
 
 #include "app/view/viewer.hpp"
+#include "systems/geometry/distance.hpp"
+#include "systems/math/frames.hpp"
+#include "systems/math/smooth_step.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -24,6 +28,9 @@ std::optional<std::uint32_t> region_of(const Snapshot& snapshot, std::uint32_t t
 }  // namespace
 
 void Viewer::take_keys(const WindowInput& input) {
+  if (Gui::has_keyboard()) {
+    return;
+  }
   for (const int key : input.pressed) {
     switch (key) {
       case kKeySpace:
@@ -56,6 +63,12 @@ void Viewer::take_keys(const WindowInput& input) {
       case 'G':
         state_.wants_release = true;
         break;
+      case 'F':
+        state_.free_drag = !state_.free_drag;
+        break;
+      case 'C':
+        state_.wants_view = true;
+        break;
       case 'L':
         state_.loop = !state_.loop;
         break;
@@ -71,18 +84,32 @@ void Viewer::take_keys(const WindowInput& input) {
   }
 }
 
-void Viewer::turn_axis(std::uint32_t tool, glm::dvec3& pivot, glm::dvec3& axis) const {
+Viewer::ContactAxes Viewer::axes_under(std::uint32_t tool) const {
   const Snapshot& snapshot = session_->frame().snapshot;
-  const World& world = session_->shown().simulation.world;
+  const Model& model = session_->shown().simulation.world.model;
   if (const auto region = region_of(snapshot, tool)) {
-    const Pose& body =
-        world.model.bodies.at<Pose>(snapshot.regions.at<RegionIdentity>(*region).body);
-    axis = body.rotation * snapshot.regions.at<RegionFrame>(*region).normal;
-    pivot = body.position + body.rotation * snapshot.regions.at<Contact>(*region).equivalent_point;
-    return;
+    const Pose& body = model.bodies.at<Pose>(snapshot.regions.at<RegionIdentity>(*region).body);
+    const RegionFrame& frame = snapshot.regions.at<RegionFrame>(*region);
+    return {to_outer(body, snapshot.regions.at<Contact>(*region).equivalent_point),
+            body.rotation * frame.normal, body.rotation * frame.tangent_x};
   }
-  axis = glm::dvec3(0.0, 1.0, 0.0);
-  pivot = snapshot.tools.at<ToolMotion>(tool).mass_center;
+  ContactAxes axes;
+  axes.pivot = snapshot.tools.at<ToolMotion>(tool).mass_center;
+  double nearest = 1e300;
+  for (std::uint32_t row = 0; row < model.bodies.size(); ++row) {
+    const Pose& body = model.bodies.at<Pose>(row);
+    const Distance distance =
+        signed_distance(model, model.bodies.at<OwnedRows>(row).parts, to_inner(body, axes.pivot));
+    const double length = glm::length(distance.gradient);
+    if (distance.value < nearest && length > 0.0) {
+      nearest = distance.value;
+      axes.normal = body.rotation * (distance.gradient / length);
+    }
+  }
+  RegionFrame frame;
+  turn_normal_to(frame, axes.normal);
+  axes.tangent = frame.tangent_x;
+  return axes;
 }
 
 void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
@@ -111,27 +138,69 @@ void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
       handles_[tool] = tools.at<ToolPose>(tool).now;
     }
     state_.tool = tool;
+    const ContactAxes axes = axes_under(tool);
+    grab_.pivot = axes.pivot;
+    grab_.axis = axes.normal;
+    grab_.turn_left = 0.0;
+    move_.reset();
     session_->hold(tool, handles_[tool]);
   }
 }
 
-void Viewer::drag_tool(const WindowInput& input) {
+void Viewer::drag_tool(const WindowInput& input, double seconds) {
+  constexpr double kTurnTime = 0.08;  // s: in which the wheel's turn comes
   const std::uint32_t tool = grab_.drag.tool;
-  glm::dvec3 pivot;
-  glm::dvec3 axis;
-  turn_axis(tool, pivot, axis);
   Pose& handle = handles_[tool];
-  const DragKind kind = input.alt     ? DragKind::kTurn
-                        : input.shift ? DragKind::kAlong
-                                      : DragKind::kAcross;
-  drag(grab_.drag, kind, grab_.mouse, camera(), input.height, pivot, axis, handle);
-  if (input.wheel != 0.0) {
-    turn(handle, pivot, axis, kRadiansANotch * input.wheel);
+  const DragKind kind = input.alt           ? DragKind::kTurn
+                        : !state_.free_drag ? (input.shift ? DragKind::kSlide : DragKind::kPress)
+                                            : (input.shift ? DragKind::kAlong : DragKind::kAcross);
+  // The handle itself stays on the axis as it slides.
+  const glm::dvec3 before = handle.position;
+  drag(grab_.drag, kind, grab_.mouse, camera(), input.height, grab_.pivot, grab_.axis, handle);
+  grab_.pivot += kind == DragKind::kTurn ? glm::dvec3(0.0) : handle.position - before;
+  grab_.turn_left += kRadiansANotch * input.wheel;
+  const double now_turned = grab_.turn_left * -std::expm1(-seconds / kTurnTime);
+  grab_.turn_left -= now_turned;
+  if (now_turned != 0.0) {
+    turn(handle, grab_.pivot, grab_.axis, now_turned);
   }
   session_->hold(tool, handle);
 }
 
-void Viewer::take_mouse(const WindowInput& input) {
+/// Takes the tool of the plots, if nothing else has it, and begins the motion that was typed.
+void Viewer::begin_move() {
+  const std::uint32_t tool = state_.tool;
+  if (grab_.on_tool || session_->on_device(tool)) {
+    return;
+  }
+  const Snapshot& snapshot = session_->frame().snapshot;
+  if (!session_->held(tool)) {
+    handles_[tool] = snapshot.tools.at<ToolPose>(tool).now;
+  }
+  const ContactAxes axes = axes_under(tool);
+  move_ = Move{state_.move, tool,         handles_[tool],     axes.pivot,
+               axes.normal, axes.tangent, snapshot.clock.time};
+}
+
+void Viewer::go_on_moving() {
+  state_.moving = move_.has_value();
+  if (!move_) {
+    return;
+  }
+  const Move& move = *move_;
+  const double time = session_->frame().snapshot.clock.time - move.begun;
+  const double share = move.asked.seconds > 0.0 ? smooth_step(time / move.asked.seconds) : 1.0;
+  Pose& handle = handles_[move.tool];
+  handle = move.start;
+  turn(handle, move.pivot, move.axis, share * move.asked.turn);
+  handle.position += share * (move.asked.slide * move.tangent - move.asked.press * move.axis);
+  session_->hold(move.tool, handle);
+  if (share >= 1.0) {
+    move_.reset();
+  }
+}
+
+void Viewer::take_mouse(const WindowInput& input, double seconds) {
   // What is dragged follows the mouse on the desktop: a window that moves or changes its size takes
   // nothing with it.
   const glm::dvec2 mouse(input.mouse_x, input.mouse_y);
@@ -154,7 +223,7 @@ void Viewer::take_mouse(const WindowInput& input) {
       zoom(state_.camera, input.wheel);
     }
   } else if (grab_.on_tool) {
-    drag_tool(input);
+    drag_tool(input, seconds);
   } else if (grab_.orbiting) {
     orbit(state_.camera, kRadiansAPixelOfOrbit * glm::dvec2(-moved.x, moved.y));
   } else if (grab_.panning) {

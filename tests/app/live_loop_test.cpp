@@ -106,6 +106,13 @@ TEST(ThreadStarterTest, ThreadsItStartsDoNotMakeWayWithTheOneThatDraws) {
   draws.join();
 }
 
+/// From the start on.
+void hold(LiveTool& tool, HandleSlot& slot) {
+  tool.from = PoseFrom::kHandle;
+  tool.slot = &slot;
+  tool.coupling = coupling();
+}
+
 TEST(LiveLoopTest, ATickTakesNothingFromTheHeap) {
   Session session = ball_session();
   HandleSlot slot;
@@ -114,7 +121,7 @@ TEST(LiveLoopTest, ATickTakesNothingFromTheHeap) {
   loop.wants_inputs = true;
   loop.wants_pictures = true;
   reserve(loop, session, session.simulation);
-  loop.tools[0] = {PoseFrom::kHandle, PoseFrom::kScript, &slot, coupling(), {}, {}, {}, {}, 0};
+  hold(loop.tools[0], slot);
   for (int i = 0; i < 200; ++i) {
     hold_at(slot, static_cast<std::uint64_t>(i) + 1, kTouching - 1e-5 * i, 1e-3 * i);
     const AllocationGuard guard;
@@ -237,7 +244,7 @@ TEST(LiveLoopTest, WhatOnlyAPictureNeedsIsFoundForWhoDraws) {
     LiveLoop loop;
     loop.wants_pictures = draws;
     reserve(loop, session, session.simulation);
-    loop.tools[0] = {PoseFrom::kHandle, PoseFrom::kScript, &slot, coupling(), {}, {}, {}, {}, 0};
+    hold(loop.tools[0], slot);
     for (int i = 0; i < 200; ++i) {
       hold_at(slot, static_cast<std::uint64_t>(i) + 1, kTouching - 1e-5 * i, 1e-3 * i);
       live_tick(loop, 0.0);

@@ -95,6 +95,55 @@ TEST(ToolDragTest, WhatWasTakenStaysUnderTheMouse) {
   EXPECT_NEAR(after.z, before.z, 1e-12);
 }
 
+Camera camera_from_above(double elevation) {
+  OrbitCamera orbiting;
+  orbiting.azimuth = 0.4;
+  orbiting.elevation = elevation;
+  return camera_of(orbiting);
+}
+
+TEST(ToolDragTest, PressingFollowsTheAxisOnTheScreenAndNothingElse) {
+  const Camera camera = camera_from_above(0.6);
+  const glm::dvec3 axis(0.0, 1.0, 0.0);
+  // Straight below the middle of the picture, where the axis is seen upright.
+  Pose handle{{0.0, 0.02, 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)};
+  const glm::dvec3 start = handle.position;
+  const glm::dvec3 before = seen_at(camera, start, kPicture);
+  ToolDrag taken{0, before.z, {before.x, before.y}};
+  // 20 pixels down where the axis points up on the screen; sideways says nothing.
+  drag(taken, DragKind::kPress, {before.x + 50.0, before.y + 20.0}, camera, kPicture.y, start, axis,
+       handle);
+  EXPECT_EQ(handle.position.x, start.x);
+  EXPECT_EQ(handle.position.z, start.z);
+  EXPECT_LT(handle.position.y, start.y);
+  // Straight on the screen but for perspective: on its way the handle comes nearer by this share of
+  // its distance.
+  const double nearer =
+      20.0 / kPicture.y * 2.0 * std::tan(camera.vertical_field_of_view / 2.0) * std::tan(0.6);
+  EXPECT_NEAR(seen_at(camera, handle.position, kPicture).y, before.y + 20.0, 1.5 * 20.0 * nearer);
+}
+
+TEST(ToolDragTest, PressingFromStraightAboveTakesTheMousesWayDown) {
+  const Camera camera = camera_from_above(1.55);
+  const glm::dvec3 axis(0.0, 1.0, 0.0);
+  Pose handle{{0.0, 0.0, 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)};
+  ToolDrag taken{0, 0.5, {100.0, 100.0}};
+  drag(taken, DragKind::kPress, {100.0, 110.0}, camera, kPicture.y, {}, axis, handle);
+  const double meters = 10.0 * 2.0 * 0.5 * std::tan(camera.vertical_field_of_view / 2.0) / 720.0;
+  EXPECT_NEAR(handle.position.y, -meters, 1e-12);
+}
+
+TEST(ToolDragTest, SlidingStaysOnTheSurface) {
+  const Camera camera = camera_from_above(0.6);
+  const glm::dvec3 axis = glm::normalize(glm::dvec3(0.3, 1.0, -0.2));
+  Pose handle{{0.05, 0.02, 0.1}, glm::dquat(1.0, 0.0, 0.0, 0.0)};
+  const glm::dvec3 start = handle.position;
+  ToolDrag taken{0, 0.5, {100.0, 100.0}};
+  drag(taken, DragKind::kSlide, {140.0, 80.0}, camera, kPicture.y, start, axis, handle);
+  EXPECT_NEAR(glm::dot(handle.position - start, axis), 0.0, 1e-12);
+  EXPECT_GT(glm::length(handle.position - start), 0.005);
+}
+
 TEST(ToolDragTest, ATurnKeepsWhatIsOnTheAxis) {
   Pose handle{{0.1, 0.3, 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)};
   const glm::dvec3 pivot(0.1, 0.0, 0.0);

@@ -31,7 +31,11 @@ name=3_spin_and_slide
 act
 keep third
 # The list is clicked.
-xdotool mousemove 120 119 click 1
+xdotool mousemove 120 119
+act
+xdotool mousedown 1
+sleep 1
+xdotool mouseup 1
 until_true title_is ball_on_cube
 name=ball_on_cube
 act

@@ -29,6 +29,17 @@ act() {
   until_true test -s "${name}_$taken.png"
 }
 
+# click X Y: so slowly that a slow machine sees the mouse come, the button go down, and go up
+click() {
+  xdotool mousemove "$1" "$2"
+  act
+  xdotool mousedown 1
+  sleep 0.5
+  act
+  xdotool mouseup 1
+  act
+}
+
 # keep NAME: the last picture, once more
 keep() { ln "${name}_$taken.png" "$1.png"; }
 

@@ -31,6 +31,7 @@ restore() {
 all_lost() { [ "$(grep -c 'surface given up' session.err)" = 4 ]; }
 until_true all_lost
 # Takes the ball off the body, then to the right.
+act key f
 act mousemove 640 200
 act mousedown 1
 act mousemove 640 140

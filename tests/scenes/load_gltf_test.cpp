@@ -156,7 +156,9 @@ TEST(LoadGltfTest, PartsBelowAToolNeedNoMeshEither) {
        {"translation", {0.0, 0.03, 0.0}},
        {"extras", {{"torsion_shape", "cylinder"}, {"torsion_size", {0.01, 0.05, 0.01}}}}});
   builder.put_below(handle, 1);
-  const ToolDescription& tool = scene_of(load_text(builder.text())).tools[0];
+  const LoadedScene loaded = load_text(builder.text());
+  ASSERT_EQ(scene_of(loaded).tools.size(), 1U);
+  const ToolDescription& tool = scene_of(loaded).tools[0];
   ASSERT_EQ(tool.parts.size(), 2U);
   EXPECT_EQ(tool.parts[1].shape.kind, ShapeKind::kCylinder);
   expect_near(tool.parts[1].shape.pose.position, {0.0, 0.03, 0.0}, 1e-12);

@@ -1,0 +1,162 @@
+// The scene in the window: how it begins, and begins again, and others that are opened meanwhile:
+// the same after its files have changed, for an author who works on them, or one of the gallery.
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "app/view/viewer.hpp"
+#include "render/auto_camera.hpp"
+
+namespace torsion::engine {
+namespace {
+
+constexpr double kLookPeriod = 0.3;  // s: between looks at the scene's files
+
+}  // namespace
+
+void Viewer::place_camera() {
+  FrameWorld& frame = session_->shown().frame;
+  const double aspect = static_cast<double>(kWindowWidth) / kWindowHeight;
+  const std::vector<CameraDescription>& cameras = session_->scene().cameras;
+  state_.camera = orbit_of(
+      cameras.empty() ? auto_camera(frame, aspect) : camera_of(cameras.front()), glm::dvec3(0.0));
+}
+
+/// The camera and what is drawn, as the scene says.
+void Viewer::look_at_scene() {
+  place_camera();
+  const SceneView& view = session_->scene().view;
+  state_.draw.heat_map = view.colors == "twist"      ? HeatMap::kTwist
+                         : view.colors == "pressure" ? HeatMap::kPressure
+                                                     : HeatMap::kNone;
+  state_.show_cells = view.stick_slip;
+  state_.slowness = static_cast<std::uint32_t>(std::lround(1.0 / view.speed));
+  state_.loop = view.loop;
+  state_.entry = entry_of(state_.gallery, options_.scene);
+  twist_scale_ = 0.0;
+  pressure_scale_ = 0.0;
+}
+
+/// Takes over a prepared scene: at the start, after its file has changed, or another one.
+Result<Done> Viewer::begin(Session session, Keep keep) {
+  const bool again = session_ != nullptr;
+  renderer_.reset();
+  session_.reset();
+  // Physics and devices do not inherit that this thread makes way for them.
+  Result<Done> started = Done{};
+  starter_->run([&] {
+    // A device that held a tool of the scene before is closed by now.
+    Result<SceneDevice> device = open_device(options_.device, session.scene);
+    if (!device) {
+      started = device.error();
+      return;
+    }
+    session_ = std::make_unique<LiveSession>(std::move(session), options_.prepare, options_.record);
+    if (!again && !options_.record.empty() && !session_->recording_problem().empty()) {
+      started = Error{session_->recording_problem()};
+      return;
+    }
+    session_->give(std::move(device).value());
+    session_->hold_by(options_.device.hold);
+    session_->start();
+  });
+  if (!started) {
+    return started;
+  }
+  if (!session_->mode().fifo) {
+    // Before the driver makes its threads, which inherit it.
+    make_way_for_realtime();
+  }
+  session_->pause(state_.paused);
+  const std::size_t tools = session_->scene().tools.size();
+  state_.histories.assign(tools, History{});
+  state_.tool = 0;
+  state_.body = 0;
+  state_.picks = session_->shown().picks;
+  handles_.assign(tools, Pose{});
+  grab_ = Grab{};
+  move_.reset();
+  if (keep == Keep::kNothing) {
+    look_at_scene();
+  }
+  while (!session_->refresh()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return make_renderer();
+}
+
+/// Begins the scene again after its animation, as long as nobody has taken a tool.
+void Viewer::loop_scene() {
+  constexpr double kRest = 0.5;  // s, of the scene: at its end
+  const double duration = session_->scene().duration;
+  const LiveFrame& frame = session_->frame();
+  // A recording to a file is of one run.
+  if (!state_.loop || duration <= 0.0 || frame.snapshot.clock.time < duration + kRest ||
+      frame.paused || session_->preparing() || !options_.record.empty()) {
+    return;
+  }
+  for (std::uint32_t tool = 0; tool < handles_.size(); ++tool) {
+    if (session_->held(tool) || session_->on_device(tool)) {
+      return;
+    }
+  }
+  outcome_.loops += session_->choose(session_->shown().picks, true) ? 1U : 0U;
+}
+
+void Viewer::open_in_background(const std::string& scene) {
+  opening_ = scene;
+  opened_done_ = false;
+  opener_ = std::thread([this] {
+    constexpr bool kQuiet = true;
+    opened_ = open_session(opening_, options_.prepare, kQuiet);
+    opened_done_.store(true, std::memory_order_release);
+  });
+}
+
+void Viewer::watch_scene() {
+  if (now() < next_look_ || opener_.joinable()) {
+    return;
+  }
+  next_look_ = now() + kLookPeriod;
+  if (watch_->changed()) {
+    open_in_background(options_.scene);
+  }
+}
+
+void Viewer::open_chosen_scene() {
+  if (state_.wants_entry && *state_.wants_entry < state_.gallery.size() && !opener_.joinable()) {
+    if (film_.writer) {
+      end_film("another scene begins");
+    }
+    open_in_background(state_.gallery[*state_.wants_entry].file.string());
+  }
+  state_.wants_entry.reset();
+  state_.opening = opener_.joinable();
+}
+
+/// Fails where the new scene can be read but not shown: then the one before it is gone.
+Result<Done> Viewer::take_opened() {
+  if (!opener_.joinable() || !opened_done_.load(std::memory_order_acquire)) {
+    return Done{};
+  }
+  opener_.join();
+  if (!*opened_) {
+    state_.scene_error = opened_->error().text;
+    return Done{};
+  }
+  state_.scene_error.clear();
+  const bool another = opening_ != options_.scene;
+  if (another) {
+    options_.scene = opening_;
+    watch_.emplace(options_.scene);
+    window_->set_title(window_title(options_.scene));
+  }
+  Result<Done> begun = begin(std::move(*opened_).value(), another ? Keep::kNothing : Keep::kView);
+  if (begun && !another) {
+    say("the scene's file has changed: loaded anew");
+  }
+  return begun;
+}
+
+}  // namespace torsion::engine

@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# A hand at the window: presses along the normal, turns by the wheel, and moves the tool by numbers; inside an Xvfb
+# display.
+# usage: xvfb-run -a window_hand_test.sh TORSION SCENE FOLDER: leaves in FOLDER the recording, its trace, and screenshots
+# that the P key took.
+set -euo pipefail
+torsion=$1 scene=$2 folder=$3
+source "$(dirname "${BASH_SOURCE[0]}")/window_person.sh"
+cd "$folder"
+name=$(basename "$scene" .gltf)
+
+open_window "$scene" --seconds 3000 --record session.rec
+act
+# The panel's part about moving the tool.
+click 100 476
+act mousemove 640 250
+act mousedown 1
+act mousemove 640 270
+act mousemove 640 290
+xdotool click 4 click 4 click 4
+sleep 0.5
+act
+keep pressed
+act mouseup 1
+# The field of the turn. While it has the keys nothing else hears of them, so there are no pictures to wait for.
+xdotool mousemove 60 527
+act
+xdotool mousedown 1
+sleep 1
+xdotool mouseup 1
+sleep 1
+xdotool key BackSpace
+sleep 1
+xdotool type --delay 100 30
+sleep 1
+xdotool key Return
+sleep 2  # keys are the field's until it is done
+act
+keep typed
+# A digit was of the field, not of the gallery.
+[ "$(xdotool getwindowname "$id")" = "Torsion: $name.gltf" ]
+click 24 602
+sleep 4
+act
+keep moved
+# The camera goes away and comes back.
+act mousemove 480 600
+act mousedown 1
+act mousemove 600 560
+act mouseup 1
+keep orbited
+act key c
+act
+keep back
+close_window
+"$torsion" simulate --replay session.rec --trace trace.csv --columns usual,turn_rad "$scene" --quiet

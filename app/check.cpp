@@ -18,6 +18,7 @@ namespace {
 struct CheckOptions {
   SceneOptions scene;
   bool json = false;
+  bool verbose = false;
 };
 
 nlohmann::ordered_json problems_json(const std::vector<Problem>& problems) {
@@ -134,12 +135,12 @@ void print_scene(const SceneDescription& scene, const Simulation& simulation,
   for (const std::string& node : simulation.united_nodes) {
     fmt::print("\"{}\" has meshes that overlap: they count as one solid, their union\n", node);
   }
-  fmt::print("physics tables: {:.1f} MiB\n",
-             static_cast<double>(memory_of(world)) / (1024.0 * 1024.0));
 }
 
+/// For who wants to know what a step costs and why.
 void print_systems(const Simulation& simulation) {
-  fmt::print("what a step does, in order:\n");
+  fmt::print("physics tables: {:.1f} MiB\nwhat a step does, in order:\n",
+             static_cast<double>(memory_of(simulation.world)) / (1024.0 * 1024.0));
   for (const auto& row : simulation.scratch->schedule.rows()) {
     fmt::print("  {:3}  {:24}  {}{}\n", row.on ? "on" : "off", row.system.name, row.system.purpose,
                row.on ? "" : fmt::format(" (off: it needs {})", row.system.needs));
@@ -201,7 +202,9 @@ int check(const CheckOptions& options) {
     fmt::print("{}\n", scene_json(*loaded.scene, prepared.value(), warnings).dump(2));
   } else {
     print_scene(*loaded.scene, prepared.value(), warnings);
-    print_systems(prepared.value());
+    if (options.verbose) {
+      print_systems(prepared.value());
+    }
   }
   return kDone;
 }
@@ -214,6 +217,8 @@ void add_check(CLI::App& app, Command& command) {
   auto options = std::make_shared<CheckOptions>();
   options->scene.add_to(*subcommand);
   subcommand->add_flag("--json", options->json, "Print as JSON");
+  subcommand->add_flag("--verbose", options->verbose,
+                       "Also what a step does, in order, and the memory of the physics tables");
   subcommand->callback([options, &command] {
     command = [options] {
       return check(*options);

@@ -71,31 +71,29 @@ void add_motion(tinygltf::Model& model, tinygltf::Animation& animation, int buff
   rest.scale = {motion.scale.x, motion.scale.y, motion.scale.z};
 }
 
+std::size_t row_of(const tinygltf::Model& model, const std::string& node) {
+  return static_cast<std::size_t>(std::ranges::find(model.nodes, node, &tinygltf::Node::name) -
+                                  model.nodes.begin());
+}
+
 }  // namespace
 
-Result<std::string> with_motions(const std::filesystem::path& path,
-                                 const std::vector<NodeMotion>& motions, bool binary) {
-  std::vector<Problem> problems;
-  std::optional<tinygltf::Model> read = read_gltf_file(path, problems);
-  if (!read) {
-    return Error{to_text(problems)};
-  }
-  tinygltf::Model& model = *read;
+void add_motions(tinygltf::Model& model, const std::string& animation,
+                 const std::vector<NodeMotion>& motions) {
   const int buffer = static_cast<int>(model.buffers.size());
   model.buffers.emplace_back();
-  tinygltf::Animation animation;
-  animation.name = "recorded";
+  tinygltf::Animation added;
+  added.name = animation;
   for (const NodeMotion& motion : motions) {
-    const auto found = std::ranges::find(model.nodes, motion.node, &tinygltf::Node::name);
-    if (found == model.nodes.end() || motion.poses.empty()) {
-      return Error{path.string() + ": no node is named \"" + motion.node +
-                   "\", or nothing moves it"};
-    }
-    const int node = static_cast<int>(found - model.nodes.begin());
+    const int node = static_cast<int>(row_of(model, motion.node));
     remove_motion(model, node);
-    add_motion(model, animation, buffer, node, motion);
+    add_motion(model, added, buffer, node, motion);
   }
-  model.animations.push_back(animation);
+  model.animations.push_back(added);
+}
+
+Result<std::string> written(tinygltf::Model& model, bool binary,
+                            const std::filesystem::path& path) {
   for (tinygltf::Buffer& each : model.buffers) {
     each.uri.clear();  // inside, wherever the scene's files are
   }
@@ -105,6 +103,23 @@ Result<std::string> with_motions(const std::filesystem::path& path,
     return Error{path.string() + ": cannot be written as glTF"};
   }
   return stream.str();
+}
+
+Result<std::string> with_motions(const std::filesystem::path& path,
+                                 const std::vector<NodeMotion>& motions, bool binary) {
+  std::vector<Problem> problems;
+  std::optional<tinygltf::Model> read = read_gltf_file(path, problems);
+  if (!read) {
+    return Error{to_text(problems)};
+  }
+  for (const NodeMotion& motion : motions) {
+    if (row_of(*read, motion.node) == read->nodes.size() || motion.poses.empty()) {
+      return Error{path.string() + ": no node is named \"" + motion.node +
+                   "\", or nothing moves it"};
+    }
+  }
+  add_motions(*read, "recorded", motions);
+  return written(*read, binary, path);
 }
 
 }  // namespace torsion::engine

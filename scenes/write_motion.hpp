@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <tiny_gltf.h>
+
 #include "ecs/components.hpp"
 #include "ecs/result.hpp"
 
@@ -16,6 +18,16 @@ struct NodeMotion {
   std::vector<float> times;  // s, strictly increasing
   std::vector<Pose> poses;   // (times)
 };
+
+/// Puts these motions in place of what moved their nodes, in an animation and a buffer of their
+/// own.
+/// @pre each has poses, and its node is there
+void add_motions(tinygltf::Model& model, const std::string& animation,
+                 const std::vector<NodeMotion>& motions);
+
+/// The bytes of a model, buffers inside.
+/// @param path  for the error
+Result<std::string> written(tinygltf::Model& model, bool binary, const std::filesystem::path& path);
 
 /// The bytes of the scene in `path` with these motions in place of what moved these nodes; all else
 /// stays, buffers inside. Fails where the file cannot be read or has no such node.

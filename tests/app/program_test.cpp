@@ -261,12 +261,46 @@ TEST(SimulateTest, SeveralToolsWouldHaveColumnsOfTheirOwnAndBodiesShareOneTool) 
 }
 
 TEST(CheckTest, SaysWhatRunsAndWhatStaysOff) {
-  const Ran ran = run_torsion({"check", scene("ball_on_cube"), "--body-model", "none"});
+  const Ran brief = run_torsion({"check", scene("ball_on_cube"), "--body-model", "none"});
+  EXPECT_EQ(brief.out.find("detect_contacts"), std::string::npos) << brief.out;
+  EXPECT_LT(std::ranges::count(brief.out, '\n'), 8) << brief.out;
+  const Ran ran =
+      run_torsion({"check", scene("ball_on_cube"), "--body-model", "none", "--verbose"});
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_EQ(ran.out.find(brief.out), 0U) << ran.out;
   EXPECT_NE(ran.out.find("no problems"), std::string::npos);
   EXPECT_NE(ran.out.find("on   detect_contacts"), std::string::npos);
   EXPECT_NE(ran.out.find("off  compliance"), std::string::npos);
   EXPECT_NE(ran.out.find("body model none (the command line says so)"), std::string::npos);
+}
+
+TEST(AddPhysicsProgramTest, SomebodysFileRunsAfterOneCommand) {
+  const Folder folder;
+  const std::string asset = test::source_folder() + "/scenes/many_regions.gltf";
+  // The slab alone, without what makes it a scene, is somebody's file.
+  json document = json::parse(read_text(asset));
+  for (json& node : document["nodes"]) {
+    node.erase("extras");
+  }
+  document.erase("animations");
+  document["scenes"][0].erase("extras");
+  write_text(folder / "asset.gltf", document.dump());
+  std::filesystem::copy_file(test::source_folder() + "/scenes/many_regions.bin",
+                             folder / "many_regions.bin");
+  const std::string out = folder / "scene.glb";
+  const Ran unnamed = run_torsion({"add-physics", folder / "asset.gltf", "--out", out});
+  EXPECT_EQ(unnamed.exit_code, 1);
+  EXPECT_NE(unnamed.err.find("\"slab\""), std::string::npos) << unnamed.err;
+  EXPECT_FALSE(std::filesystem::exists(out));
+  const Ran added = run_torsion(
+      {"add-physics", folder / "asset.gltf", "--out", out, "--body", "slab", "--shape", "box"});
+  ASSERT_EQ(added.exit_code, 0) << added.err;
+  EXPECT_NE(added.out.find("tool \"ball\""), std::string::npos) << added.out;
+  const Ran ran = run_torsion({"simulate", out, "--body-model", "none"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_EQ(ran.out.find("FAULTS"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("up to 1 regions"), std::string::npos) << ran.out;
+  EXPECT_EQ(run_torsion({"add-physics", asset, "--out", folder / "scene.obj"}).exit_code, 2);
 }
 
 TEST(CheckTest, AndTheSummarySayWhatAutoTakesAndWhy) {

@@ -125,7 +125,10 @@ void Viewer::watch_scene() {
 }
 
 void Viewer::open_chosen_scene() {
-  if (state_.wants_entry && *state_.wants_entry < state_.gallery.size() && !opener_.joinable()) {
+  const bool wanted = state_.wants_entry && *state_.wants_entry < state_.gallery.size();
+  if (wanted && !options_.record.empty()) {
+    say("one scene is recorded to " + options_.record + ": close the window to see another");
+  } else if (wanted && !opener_.joinable()) {
     if (film_.writer) {
       end_film("another scene begins");
     }

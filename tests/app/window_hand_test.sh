@@ -52,5 +52,9 @@ keep orbited
 act key c
 act
 keep back
+# One scene is recorded: a key of the gallery must not throw that away.
+act key 3
+sleep 1
+[ "$(xdotool getwindowname "$id")" = "Torsion: $name.gltf" ]
 close_window
 "$torsion" simulate --replay session.rec --trace trace.csv --columns usual,turn_rad "$scene" --quiet

@@ -82,13 +82,6 @@ struct BodyExtent {
   glm::dvec3 top{0.0};      // m: the middle of its highest vertices
 };
 
-bool is_below(const std::vector<SceneNode>& nodes, std::size_t node, std::size_t above) {
-  while (node != SIZE_MAX && node != above) {
-    node = nodes[node].parent;
-  }
-  return node == above;
-}
-
 BodyExtent extent_of(const tinygltf::Model& model, const std::vector<SceneNode>& nodes,
                      std::size_t body, const ProblemList& problems) {
   std::vector<glm::dvec3> positions;

@@ -18,14 +18,6 @@ namespace {
 constexpr const char* kStaticFriction = "torsion_static_friction";
 constexpr const char* kDynamicFriction = "torsion_dynamic_friction";
 
-/// Below `top`, and `top` itself.
-bool is_below(const SceneReader& reader, std::size_t node, std::size_t top) {
-  while (node != SIZE_MAX && node != top) {
-    node = reader.nodes[node].parent;
-  }
-  return node == top;
-}
-
 Friction read_friction(const SceneReader& reader, std::size_t node) {
   const NodeKeys& keys = reader.keys[node];
   const PhysicsExtension physics = read_physics_extension(reader.model, reader.file_node(node));
@@ -65,7 +57,7 @@ std::vector<FixedNode> fixed_nodes(const SceneReader& reader, std::size_t owner,
 /// A body stays where it is, whole.
 void check_body_rests(const SceneReader& reader, std::size_t body) {
   for (std::size_t node = 0; node < reader.nodes.size(); ++node) {
-    const bool moves_it = is_below(reader, node, body) || is_below(reader, body, node);
+    const bool moves_it = is_below(reader.nodes, node, body) || is_below(reader.nodes, body, node);
     if (moves_it && is_animated(reader.model, reader.nodes[node].row)) {
       reader.problems.add(reader.name(node), "animation", "",
                           "moves " + (node == body ? "it" : reader.name(body)) +
@@ -109,7 +101,7 @@ BodyDescription read_body(const SceneReader& reader, std::size_t node) {
 /// A tool is rigid: nothing below it moves on its own.
 void check_tool_is_rigid(const SceneReader& reader, std::size_t tool) {
   for (std::size_t node = tool + 1; node < reader.nodes.size(); ++node) {
-    if (is_below(reader, node, tool) && is_animated(reader.model, reader.nodes[node].row)) {
+    if (is_below(reader.nodes, node, tool) && is_animated(reader.model, reader.nodes[node].row)) {
       reader.problems.add(reader.name(node), "animation", "",
                           "moves a part of the rigid tool " + reader.name(tool),
                           "animate the tool's own node");

@@ -43,6 +43,13 @@ std::size_t shown_scene(const tinygltf::Model& model) {
   return static_cast<std::size_t>(std::max(model.defaultScene, 0));
 }
 
+bool is_below(const std::vector<SceneNode>& nodes, std::size_t node, std::size_t top) {
+  while (node != SIZE_MAX && node != top) {
+    node = nodes[node].parent;
+  }
+  return node == top;
+}
+
 std::optional<NodeTransform> split_transform(const glm::dmat4& matrix) {
   glm::dmat3 axes(matrix);
   glm::dvec3 scale(glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2]));

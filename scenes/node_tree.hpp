@@ -38,6 +38,9 @@ glm::dmat4 local_matrix(const tinygltf::Node& node);
 /// Which scene is shown. @pre the file has one
 std::size_t shown_scene(const tinygltf::Model& model);
 
+/// Whether a node of the list is `top` or below it.
+bool is_below(const std::vector<SceneNode>& nodes, std::size_t node, std::size_t top);
+
 /// The nodes of the scene that is shown, parents before children, in the order of the file's trees.
 std::vector<SceneNode> list_scene_nodes(const tinygltf::Model& model);
 

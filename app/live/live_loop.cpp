@@ -39,7 +39,6 @@ void take_sample(LiveTool& tool) {
   const bool in_step = sample.epoch != 0 && sample.number == tool.sample + 1;
   tool.arrived = in_step ? sample.time_ns : 0;
   tool.handle = sample.pose;
-  tool.asked = sample.pose;
   tool.sample = sample.number;
 }
 
@@ -57,7 +56,7 @@ Pose next_pose(LiveLoop& loop, std::uint32_t row, Pose& handle) {
     return handle;
   }
   if (tool.smoothing.on && tool.epoch == 0) {
-    tool.handle = smooth(tool.smoothing, tool.asked, world.model.dt);
+    tool.handle = smooth(tool.smoothing, tool.slot->sample.front().pose, world.model.dt);
   }
   handle = tool.handle;
   if (tool.still_steps > 0) {

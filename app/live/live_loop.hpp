@@ -45,7 +45,6 @@ struct LiveTool {
   std::uint32_t still_steps = 0;  // for which a held tool stays where it is
   ToolHold hold = ToolHold::kMassless;
   HandleSmoothing smoothing;  // of a mouse
-  Pose asked;                 // of the last sample, as it came
 };
 
 /// A prepared world that the physics thread may go over to, and what draws it.

@@ -160,9 +160,11 @@ void tool_move(ViewState& state, const LiveSession& session) {
   constexpr double kMillimeter = 1e-3;
   constexpr double kDegree = std::numbers::pi / 180.0;
   const auto number = [](const char* label, double& value, double unit, double step) {
-    double shown_value = value / unit;
-    ImGui::InputDouble(label, &shown_value, step, 10.0 * step, "%.3g");
-    value = unit * shown_value;
+    constexpr double kMost = 1e4;  // 1e999 can be typed, and no handle is there
+    double typed = value / unit;
+    if (ImGui::InputDouble(label, &typed, step, 10.0 * step, "%.3g")) {
+      value = unit * std::clamp(typed, -kMost, kMost);
+    }
   };
   number("press (mm)", state.move.press, kMillimeter, 1.0);
   number("turn (deg)", state.move.turn, kDegree, 5.0);

@@ -47,7 +47,7 @@ std::string window_title(const std::string& scene) {
 }
 
 Viewer::Viewer(ViewerOptions options) : options_(std::move(options)) {
-  state_.gallery = options_.gallery;
+  state_.gallery = std::move(options_.gallery);
 }
 
 Viewer::~Viewer() {

@@ -74,6 +74,11 @@ class LiveSession {
   /// scene's start, else where the tools are. False while another preparation is under way.
   bool choose(const std::vector<BodyPick>& picks, bool restart);
   [[nodiscard]] bool preparing() const { return worker_.joinable(); }
+  /// Whether the newest frame is of the world that was prepared last, and none is being prepared:
+  /// the physics thread goes over to a world some steps after it is ready.
+  [[nodiscard]] bool settled() const {
+    return !preparing() && frame().generation == generations_.back()->number;
+  }
   /// Why the last preparation failed; empty if it did not.
   [[nodiscard]] const std::string& preparation_error() const { return error_; }
 

@@ -93,7 +93,7 @@ void Viewer::loop_scene() {
   const LiveFrame& frame = session_->frame();
   // A recording to a file is of one run.
   if (!state_.loop || duration <= 0.0 || frame.snapshot.clock.time < duration + kRest ||
-      frame.paused || session_->preparing() || !options_.record.empty()) {
+      frame.paused || !session_->settled() || !options_.record.empty()) {
     return;
   }
   for (std::uint32_t tool = 0; tool < handles_.size(); ++tool) {

@@ -9,6 +9,7 @@
 #include "device/scripted_motion.hpp"
 #include "systems/hold/virtual_coupling.hpp"
 #include "systems/math/frames.hpp"
+#include "systems/math/smooth_step.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -18,6 +19,7 @@ constexpr std::size_t kCommands = 256;
 // s: after a change of models contacts form anew, and their forces rise within 10 ms; a tool
 // without mass would fall through until then.
 constexpr double kSettle = 0.05;
+constexpr double kReturnTime = 1.0;   // s: a tool's way back to its script
 constexpr double kDeadline = 1000.0;  // us: later than that and a hand may feel it
 
 void take_sample(LiveTool& tool) {
@@ -42,13 +44,41 @@ void take_sample(LiveTool& tool) {
   tool.sample = sample.number;
 }
 
+/// Where the animation has a tool in the next step, or a place on the way back to that.
+Pose next_scripted_pose(LiveTool& tool, const MotionScript& script, const World& world) {
+  const Pose scripted = scripted_pose(script, next_time(world));
+  if (tool.returning >= 1.0) {
+    return scripted;
+  }
+  tool.returning += world.model.dt / kReturnTime;
+  const double share = smooth_step(tool.returning);
+  return {glm::mix(tool.let_go.position, scripted.position, share),
+          glm::slerp(tool.let_go.rotation, scripted.rotation, share)};
+}
+
+/// @param now  where the tool is
+void change_source(LiveTool& tool, const Pose& now, PoseFrom from) {
+  if (tool.from == PoseFrom::kHandle && from == PoseFrom::kScript) {
+    tool.let_go = now;
+    tool.returning = 0.0;
+  } else if (tool.from == PoseFrom::kScript && from == PoseFrom::kHandle) {
+    // Who takes it has said where the handle is before this; what was before somebody let go of it
+    // does not count.
+    take_sample(tool);
+    tool.last_handle = tool.handle;
+    tool.books = PassivityState{};
+    restart_smoothing(tool.smoothing, tool.handle);
+  }
+  tool.from = from;
+}
+
 /// The pose that a tool takes in the next step; fills `handle` with what asked for it.
 Pose next_pose(LiveLoop& loop, std::uint32_t row, Pose& handle) {
   LiveTool& tool = loop.tools[row];
   const World& world = loop.simulation->world;
   take_sample(tool);
   if (tool.from == PoseFrom::kScript || world.state.clock.step == 0) {
-    handle = scripted_pose(loop.session->scene.tools[row].script, next_time(world));
+    handle = next_scripted_pose(tool, loop.session->scene.tools[row].script, world);
     return handle;
   }
   if (tool.sample == 0) {  // nobody has taken it yet: it stays
@@ -116,6 +146,7 @@ void go_over(LiveLoop& loop, Generation& to, bool carry) {
     loop.statistics = RunStatistics{};
     for (LiveTool& tool : loop.tools) {
       tool.from = tool.at_start;
+      tool.returning = 1.0;
       tool.sample = 0;
       tool.books = PassivityState{};
     }
@@ -137,7 +168,12 @@ void do_command(LiveLoop& loop, const LiveCommand& command) {
       loop.slowness = static_cast<std::uint32_t>(std::max<std::uint64_t>(command.number, 1));
       break;
     case LiveCommandKind::kPoseFrom:
-      loop.tools[command.index].from = static_cast<PoseFrom>(command.number);
+      change_source(loop.tools[command.index],
+                    loop.simulation->world.state.tools.at<ToolPose>(command.index).now,
+                    static_cast<PoseFrom>(command.number));
+      break;
+    case LiveCommandKind::kCoupling:
+      loop.tools[command.index].coupling = command.coupling;
       break;
     case LiveCommandKind::kSwap:
       go_over(loop, *command.generation, true);
@@ -176,6 +212,8 @@ LiveRow live_row(const LiveLoop& loop, std::uint32_t tool, double step_us, doubl
       row.tangent_x = to_world * world.state.regions.at<RegionFrame>(region).tangent_x;
       row.turn = world.state.regions.at<RegionMotion>(region).turn;
       row.couple = world.state.regions.at<RegionFriction>(region).couple;
+      row.radius = world.state.regions.at<Contact>(region).radius;
+      row.contact = identity.order + 1;
       break;
     }
   }

@@ -45,6 +45,9 @@ struct LiveTool {
   std::uint32_t still_steps = 0;  // for which a held tool stays where it is
   ToolHold hold = ToolHold::kMassless;
   HandleSmoothing smoothing;  // of a mouse
+  // A tool that was let go of goes back to its script from where it was, from `returning` = 0 to 1.
+  Pose let_go;
+  double returning = 1.0;
 };
 
 /// A prepared world that the physics thread may go over to, and what draws it.
@@ -59,7 +62,8 @@ enum class LiveCommandKind : std::uint32_t {
   kPause,     // number: 0 or 1
   kStepOnce,  // while paused
   kSlowness,  // number: periods of the clock to a step
-  kPoseFrom,  // index: tool, number: PoseFrom
+  kPoseFrom,  // index: tool, number: PoseFrom; from a handle to the script it goes in a second
+  kCoupling,  // index: tool, coupling
   kSwap,      // generation; goes on where the old one was
   kRestart,   // generation; from its own start
 };
@@ -69,6 +73,7 @@ struct LiveCommand {
   std::uint32_t index = 0;
   std::uint64_t number = 0;
   Generation* generation = nullptr;  // the sender keeps it alive until a frame of the next one
+  VirtualCoupling coupling{};
 };
 
 /// One tool in one step, for traces and plots.
@@ -80,6 +85,8 @@ struct LiveRow {
   glm::dvec3 tangent_x{0.0};  // world, unit
   double turn = 0.0;          // rad: of the tool, since the region formed
   double couple = 0.0;        // N m: about the normal through the pressure centre, on the tool
+  double radius = 0.0;        // m: of the contact
+  std::uint64_t contact = 0;  // 1 + the order of its formation; 0: there is none
   std::uint64_t generation = 0;
   std::uint32_t tool = 0;
   std::uint32_t faults = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include <glm/geometric.hpp>
 
@@ -23,6 +24,12 @@ constexpr double kStiffnessShare = 0.5;  // of E* r
 constexpr double kTorqueShare = 0.04;    // of E* r^3
 constexpr double kTurnStiffShare = 0.1;  // of E* r^3: 0.4 rad at the largest torque
 
+/// m: of a ball with the tool's bounds, whose diagonal is 1.75 of its diameter
+double tool_radius(const Model& model, std::uint32_t tool) {
+  const Bounds& bounds = model.tools.at<Bounds>(tool);
+  return 0.5 * glm::length(bounds.highest - bounds.lowest) / 1.75;
+}
+
 /// Whether one input can come after another in a run: of a step, the poses of tools come last.
 bool goes_on(const InputEntry& last, const InputEntry& next) {
   return next.step > last.step ||
@@ -32,18 +39,22 @@ bool goes_on(const InputEntry& last, const InputEntry& next) {
 
 }  // namespace
 
-VirtualCoupling mouse_coupling(const SceneDescription& scene, double radius) {
+VirtualCoupling mouse_coupling(const SceneDescription& scene, double radius, double strength) {
   double modulus = 0.0;
   for (const BodyDescription& body : scene.bodies) {
     modulus = std::max(modulus, body.elasticity.contact_modulus());
   }
   const double er = modulus * radius;
-  return {kStiffnessShare * er,
+  const double deepest = kForceShare * er * radius;
+  const double share = deepest > 0.0 ? std::min(strength / deepest, 1.0) : 1.0;
+  // The torque goes by force and contact radius, which goes by the force's third root.
+  const double torque_share = share * std::cbrt(share);
+  return {share * kStiffnessShare * er,
           0.0,
-          kTurnStiffShare * er * radius * radius,
+          torque_share * kTurnStiffShare * er * radius * radius,
           0.0,
-          kForceShare * er * radius,
-          kTorqueShare * er * radius * radius};
+          share * deepest,
+          torque_share * kTorqueShare * er * radius * radius};
 }
 
 LiveSession::LiveSession(Session session, PrepareOptions options, std::filesystem::path record)
@@ -61,10 +72,9 @@ LiveSession::LiveSession(Session session, PrepareOptions options, std::filesyste
   loop_.wants_inputs = true;
   reserve(loop_, session_, generations_.front()->simulation);
   for (std::uint32_t tool = 0; tool < world.model.tools.size(); ++tool) {
-    const Bounds& bounds = world.model.tools.at<Bounds>(tool);
     slots_.push_back(std::make_unique<HandleSlot>());
     couplings_.push_back(
-        mouse_coupling(session_.scene, 0.5 * glm::length(bounds.highest - bounds.lowest) / 1.75));
+        mouse_coupling(session_.scene, tool_radius(world.model, tool), kGentleForce));
     loop_.tools[tool].slot = slots_.back().get();
     loop_.tools[tool].coupling = couplings_.back();
     loop_.tools[tool].smoothing.on = true;
@@ -186,8 +196,27 @@ void LiveSession::hold(std::uint32_t tool, const Pose& handle) {
   slots_[tool]->sample.publish();
   if (held_[tool] == 0) {
     held_[tool] = 1;
+    // After the sample: the loop begins there.
     send(
         {LiveCommandKind::kPoseFrom, tool, static_cast<std::uint64_t>(PoseFrom::kHandle), nullptr});
+  }
+}
+
+void LiveSession::release(std::uint32_t tool) {
+  if (held_[tool] == 0) {
+    return;
+  }
+  held_[tool] = 0;
+  send({LiveCommandKind::kPoseFrom, tool, static_cast<std::uint64_t>(PoseFrom::kScript), nullptr});
+}
+
+void LiveSession::set_strength(double strength) {
+  const Model& model = shown().simulation.world.model;
+  for (std::uint32_t tool = 0; tool < couplings_.size(); ++tool) {
+    if (!on_device(tool)) {
+      couplings_[tool] = mouse_coupling(session_.scene, tool_radius(model, tool), strength);
+      send({LiveCommandKind::kCoupling, tool, 0, nullptr, couplings_[tool]});
+    }
   }
 }
 

@@ -65,10 +65,15 @@ class LiveSession {
   /// Holds a tool at `handle`, through its coupling; an animation lets go of it.
   /// @pre no device has it
   void hold(std::uint32_t tool, const Pose& handle);
+  /// Lets go of a tool: within a second of the scene it is back on its animation's way.
+  void release(std::uint32_t tool);
   [[nodiscard]] bool held(std::uint32_t tool) const { return held_[tool] != 0; }
   [[nodiscard]] const VirtualCoupling& coupling(std::uint32_t tool) const {
     return couplings_[tool];
   }
+
+  /// The largest force of a mouse on any tool, N, as far as mouse_coupling() lets it.
+  void set_strength(double strength);
 
   /// Prepares the scene with these in another thread, then goes over to it. `restart`: from the
   /// scene's start, else where the tools are. False while another preparation is under way.
@@ -129,9 +134,14 @@ class LiveSession {
   std::string error_;
 };
 
-/// A coupling between a mouse, which feels nothing, and a tool: stiff enough for the scene's bodies
-/// that the tool follows, limited so that it does not go deeper than the models hold.
-/// @param radius  m: of the tool
-VirtualCoupling mouse_coupling(const SceneDescription& scene, double radius);
+/// N: what a hand keeps up without effort.
+inline constexpr double kGentleForce = 20.0;
+
+/// A coupling between a mouse, which feels nothing, and a tool: limited in force, and so that the
+/// tool does not go deeper than the models hold; as soft as gives the largest force a third of the
+/// tool's radius from where it is.
+/// @param radius    m: of the tool
+/// @param strength  N: the largest force wanted
+VirtualCoupling mouse_coupling(const SceneDescription& scene, double radius, double strength);
 
 }  // namespace torsion::engine

@@ -155,6 +155,66 @@ TEST(LiveLoopTest, TheHandleFeelsWhatTheToolDoes) {
   EXPECT_NEAR(answer.wrench.force.y, contact.force.y, 1e-6 * contact.force.y);
 }
 
+TEST(LiveLoopTest, AToolThatIsLetGoOfGoesBackToItsAnimationAndOnWithIt) {
+  Session session = ball_session();
+  // From over the cube down into it, within two seconds.
+  MotionScript& script = session.scene.tools[0].script;
+  script.links.back().animated_translation = {
+      Interpolation::kLinear,
+      {0.0, 2.0},
+      {{0.0, kTouching + 0.01, 0.0, 0.0}, {0.0, kTouching - 2e-3, 0.0, 0.0}}};
+  HandleSlot slot;
+  LiveLoop loop;
+  reserve(loop, session, session.simulation);
+  loop.tools[0].slot = &slot;
+  loop.tools[0].coupling = coupling();
+  loop.tools[0].smoothing.on = true;
+  const auto& tools = session.simulation.world.state.tools;
+  glm::dvec3 last(0.0);
+  std::uint64_t samples = 0;
+  double farthest = 0.0;  // m, in a step
+  const auto tick = [&] {
+    live_tick(loop, 0.0);
+    const glm::dvec3& now = tools.at<ToolPose>(0).now.position;
+    farthest = std::max(farthest, glm::length(now - last));
+    last = now;
+  };
+  const auto from = [&](PoseFrom source) {
+    loop.commands.push(
+        {LiveCommandKind::kPoseFrom, 0, static_cast<std::uint64_t>(source), nullptr});
+  };
+  tick();
+  farthest = 0.0;
+  for (int round = 0; round < 2; ++round) {
+    // Taken where it is, moved 30 mm aside at 0.1 m/s, and let go of.
+    Pose handle = tools.at<ToolPose>(0).now;
+    const auto say = [&] {
+      slot.sample.back().pose = handle;
+      slot.sample.back().number = ++samples;
+      slot.sample.publish();
+    };
+    say();  // as LiveSession::hold() does, before the command
+    from(PoseFrom::kHandle);
+    for (int i = 0; i < 300; ++i) {
+      tick();
+      handle.position.x += 1e-4;
+      say();
+    }
+    EXPECT_GT(last.x, 0.02);
+    tick();  // takes the last sample
+    from(PoseFrom::kScript);
+    for (int i = 0; i < 1100; ++i) {
+      tick();
+    }
+    const double time = session.simulation.world.state.clock.time;
+    EXPECT_NEAR(last.x, 0.0, 1e-12) << time;
+    const double scripted = kTouching + 0.01 - 0.012 * std::min(time / 2.0, 1.0);
+    EXPECT_NEAR(last.y, scripted, 1e-9) << time;
+    // The hand's 0.1 m/s, or 1.5 times 30 mm/s of the way back: no jump anywhere.
+    EXPECT_LT(farthest, 1.3e-4) << time;
+  }
+}
+
 TEST(LiveLoopTest, PauseHoldsTheTimeAndASingleStepMovesItByOne) {
   Session session = ball_session();
   LiveLoop loop;

@@ -195,7 +195,8 @@ TEST(LiveSessionTest, ADeviceHasTheToolFromTheStartOnAndAfterARestart) {
 
 TEST(LiveSessionTest, AMouseHoldsNoDeeperThanTheModelsGo) {
   const Session session = test::ball_session();
-  const VirtualCoupling coupling = mouse_coupling(session.scene, 0.05);
+  constexpr double kStrong = 1e9;  // N
+  const VirtualCoupling coupling = mouse_coupling(session.scene, 0.05, kStrong);
   // Hertz: the depth at which the half-space pushes back with the coupling's largest force.
   const double modulus = session.scene.bodies[0].elasticity.contact_modulus();
   const double depth =
@@ -203,6 +204,24 @@ TEST(LiveSessionTest, AMouseHoldsNoDeeperThanTheModelsGo) {
   // Deep enough for the shipped scenes' presses, short of half the tool, which is a fault.
   EXPECT_LT(depth, 0.3 * 0.05);
   EXPECT_GT(depth, 0.2 * 0.05);
+}
+
+TEST(LiveSessionTest, AMouseIsGentleOnAHardBody) {
+  Session session = test::ball_session();
+  for (const double modulus : {1e4, 3e6, 1e9}) {
+    session.scene.bodies[0].elasticity.youngs_modulus = modulus;
+    const VirtualCoupling strongest = mouse_coupling(session.scene, 0.05, 1e12);
+    const VirtualCoupling gentle = mouse_coupling(session.scene, 0.05, kGentleForce);
+    EXPECT_LE(gentle.largest_force, kGentleForce);
+    EXPECT_LE(gentle.largest_force, strongest.largest_force);
+    // The largest force is as far from the tool as with the strongest hand, on a body of any
+    // modulus: a third of the tool's radius.
+    EXPECT_NEAR(gentle.largest_force / gentle.stiffness, 0.34 * 0.05, 0.01 * 0.05);
+    // The torque that friction can hold, mu F a, falls with the force and the contact's radius.
+    const double share = gentle.largest_force / strongest.largest_force;
+    EXPECT_NEAR(gentle.largest_torque, strongest.largest_torque * std::pow(share, 4.0 / 3.0),
+                1e-9 * strongest.largest_torque);
+  }
 }
 
 }  // namespace

@@ -67,10 +67,7 @@ PictureScales find_scales(Session& session, std::uint64_t steps, std::uint64_t s
   PictureScales scales;
   for (std::uint64_t i = 0; i < steps; ++i) {
     step_scripted(session);
-    for (const ToolWrench& wrench : world.state.tools.column<ToolWrench>()) {
-      scales.force = std::max(scales.force, glm::length(wrench.total.force));
-      scales.torque = std::max(scales.torque, glm::length(wrench.total.torque));
-    }
+    widen(scales.arrows, world.state.tools, world.state.regions);
     scales.pressure = std::max(scales.pressure, largest_pressure(world));
     if (i % stride == 0) {
       take_snapshot(session.simulation, snapshot);
@@ -80,8 +77,10 @@ PictureScales find_scales(Session& session, std::uint64_t steps, std::uint64_t s
     }
   }
   world.state = start;
-  return {rounded_angle(scales.twist), round_up(scales.pressure), round_up(scales.force),
-          round_up(scales.torque)};
+  const ArrowLimits& arrows = scales.arrows;
+  return {rounded_angle(scales.twist),
+          round_up(scales.pressure),
+          {round_up(arrows.force), round_up(arrows.torque), round_up(arrows.couple)}};
 }
 
 Result<Camera> choose_camera(const Session& session, const FrameWorld& frame,
@@ -125,6 +124,8 @@ Result<PictureRun> PictureRun::create(const Session& session, const Options& opt
   if (!camera) {
     return camera.error();
   }
+  Options as_shown = options;
+  as_shown.draw.torque_parts = session.scene.view.torque_parts;
   OverlayFont font(overlay_text_height(options.height));
   RendererOptions renderer_options;
   renderer_options.width = options.width;
@@ -134,15 +135,16 @@ Result<PictureRun> PictureRun::create(const Session& session, const Options& opt
   if (!renderer) {
     return renderer.error();
   }
-  return PictureRun(std::move(frame), std::move(snapshot), camera.value(), options, std::move(font),
-                    std::move(renderer).value());
+  return PictureRun(std::move(frame), std::move(snapshot), camera.value(), std::move(as_shown),
+                    std::move(font), std::move(renderer).value());
 }
 
 void PictureRun::set_scales(const PictureScales& scales) {
   DrawOptions& draw = options_.draw;
   draw.heat_limit = draw.heat_map == HeatMap::kPressure ? scales.pressure : scales.twist;
-  draw.full_force = scales.force;
-  draw.full_torque = scales.torque;
+  draw.full_force = scales.arrows.force;
+  draw.full_torque = scales.arrows.torque;
+  draw.full_couple = scales.arrows.couple;
 }
 
 OverlayContent PictureRun::content_of(const Session& session) const {
@@ -164,6 +166,7 @@ OverlayContent PictureRun::content_of(const Session& session) const {
   if (options_.draw.arrows) {
     content.full_force = options_.draw.full_force;
     content.full_torque = options_.draw.full_torque;
+    content.full_couple = options_.draw.torque_parts ? options_.draw.full_couple : 0.0;
   }
   if (clock.faults != 0) {
     const std::string text = faults_text(clock.faults);

@@ -7,6 +7,7 @@
 #include "app/progress.hpp"
 #include "app/session.hpp"
 #include "ecs/frame_world.hpp"
+#include "render/arrows.hpp"
 #include "render/camera.hpp"
 #include "render/draw_options.hpp"
 #include "render/overlay.hpp"
@@ -18,8 +19,7 @@ namespace torsion::engine {
 struct PictureScales {
   double twist = 0.0;     // rad
   double pressure = 0.0;  // Pa
-  double force = 0.0;     // N
-  double torque = 0.0;    // N m
+  ArrowLimits arrows;
 };
 
 /// Runs `steps` steps to find what the scales must hold, looking every `stride` steps, and leaves

@@ -70,6 +70,7 @@ struct SceneView {
   bool loop = true;                 // begins again after its animation
   double speed = 1.0;               // of real time, up to 1
   std::string colors = "material";  // material, twist or pressure
+  bool torque_parts = false;        // contact couples apart from what the forces' arms make
   bool stick_slip = false;          // marks where the contact sticks and where it slips
 };
 

@@ -17,6 +17,11 @@ constexpr double kTipLength = 0.26;  // of `size`
 constexpr double kFullArc = 300.0 / 360.0 * glm::two_pi<double>();
 constexpr glm::vec3 kForceColor(0.02F, 0.16F, 0.55F);
 constexpr glm::vec3 kTorqueColor(0.75F, 0.22F, 0.0F);
+constexpr glm::vec3 kCoupleColor(0.30F, 0.03F, 0.42F);
+// Radius of a couple's arc: around the contact, and no smaller than a tool's own arc can be told
+// from.
+constexpr double kAroundContact = 1.35;     // of the contact's radius
+constexpr double kSmallestCoupleArc = 0.3;  // of the full arrow
 
 /// A cross-section of a tube: a circle, and how its wall leans.
 struct Ring {
@@ -143,19 +148,54 @@ glm::dvec3 arc_start(const glm::dvec3& axis, const glm::dvec3& to_eye) {
 
 }  // namespace
 
+namespace {
+
+/// @param torque  N m, world
+/// @param full    N m of an arc of 300 degrees
+void append_torque(const glm::dvec3& torque, double full, const glm::dvec3& center, double radius,
+                   const ArrowScale& scale, const glm::vec3& color, ArrowMesh& mesh) {
+  const double size = glm::length(torque);
+  if (size > 0.0) {
+    const double angle = std::min(size / full, 1.0) * kFullArc;
+    const glm::dvec3 axis = torque / size;
+    append_arc({center, axis, arc_start(axis, scale.eye - center), radius}, angle, scale.length,
+               color, mesh);
+  }
+}
+
+/// The arcs of a tool's contact couples. @return their sum, N m, world
+glm::dvec3 append_couples(const Snapshot& snapshot, std::uint32_t tool, const ArrowScale& scale,
+                          ArrowMesh& mesh) {
+  glm::dvec3 sum(0.0);
+  for (std::uint32_t region = 0; region < snapshot.regions.size(); ++region) {
+    const RegionIdentity& identity = snapshot.regions.at<RegionIdentity>(region);
+    if (identity.tool == tool) {
+      const Pose& body = scale.bodies[identity.body];
+      const Contact& contact = snapshot.regions.at<Contact>(region);
+      const glm::dvec3 couple = snapshot.regions.at<RegionFriction>(region).couple *
+                                (body.rotation * snapshot.regions.at<RegionFrame>(region).normal);
+      append_torque(couple, scale.full_couple,
+                    body.position + body.rotation * contact.equivalent_point,
+                    std::max(kAroundContact * contact.radius, kSmallestCoupleArc * scale.length),
+                    scale, kCoupleColor, mesh);
+      sum += couple;
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
 void append_wrenches(const Snapshot& snapshot, const ArrowScale& scale, ArrowMesh& mesh) {
   for (std::uint32_t tool = 0; tool < snapshot.tools.size(); ++tool) {
     const glm::dvec3& center = snapshot.tools.at<ToolMotion>(tool).mass_center;
     const Wrench& wrench = snapshot.tools.at<ToolWrench>(tool).total;
     append_arrow(center, wrench.force / scale.full_force * scale.length, scale.length, kForceColor,
                  mesh);
-    const double torque = glm::length(wrench.torque);
-    if (torque > 0.0) {
-      const double angle = std::min(torque / scale.full_torque, 1.0) * kFullArc;
-      const glm::dvec3 axis = wrench.torque / torque;
-      append_arc({center, axis, arc_start(axis, scale.eye - center), scale.arc_radii[tool]}, angle,
-                 scale.length, kTorqueColor, mesh);
-    }
+    const glm::dvec3 couples =
+        scale.parts ? append_couples(snapshot, tool, scale, mesh) : glm::dvec3(0.0);
+    append_torque(wrench.torque - couples, scale.full_torque, center, scale.arc_radii[tool], scale,
+                  kTorqueColor, mesh);
   }
 }
 

@@ -19,6 +19,7 @@ glm::dmat4 projection_matrix(const Camera& camera, double aspect) {
   projection[0][0] = scale / aspect;
   projection[1][1] = -scale;
   projection[2][2] = f == 0.0 ? -1.0 : -f / (f - n);
+  projection[2][0] = -2.0 * camera.shift;  // clip space is two wide, and w is -z
   projection[2][3] = -1.0;
   projection[3][2] = f == 0.0 ? -n : -f * n / (f - n);
   return projection;

@@ -12,6 +12,8 @@ struct Camera {
   double vertical_field_of_view = 0.8;  // rad, 0 to pi
   double near_plane = 0.01;             // m, > 0
   double far_plane = 100.0;             // m, > near_plane; 0: infinite
+  double shift =
+      0.0;  // of the picture's width: what is straight ahead is so far right of its middle
 };
 
 /// World to camera frame.

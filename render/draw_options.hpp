@@ -21,8 +21,10 @@ struct DrawOptions {
   bool ground = true;             // a floor under the bodies that takes the shadow
   bool transparent_tools = true;  // the contact shows through the tool
   bool arrows = true;             // force and torque on each tool
+  bool torque_parts = false;      // contact couples apart from what the forces' arms make
   double full_force = 0.0;   // N that the longest arrow stands for; 0: the largest drawn so far
   double full_torque = 0.0;  // N m that the longest arc stands for; 0: the largest drawn so far
+  double full_couple = 0.0;  // N m: likewise, of the couples apart
 };
 
 }  // namespace torsion::engine

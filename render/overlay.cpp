@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 
 #include "render/colormap.hpp"
+#include "render/heat_scale.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -22,6 +22,7 @@ constexpr std::uint32_t kWhite = rgba(255, 255, 255, 255);
 // As render/arrows.cpp draws them, sRGB.
 constexpr std::uint32_t kForceText = rgba(39, 111, 196, 255);
 constexpr std::uint32_t kTorqueText = rgba(225, 129, 0, 255);
+constexpr std::uint32_t kCoupleText = rgba(149, 48, 173, 255);
 
 std::uint32_t color_of(const glm::dvec3& color) {
   const auto byte = [](double value) {
@@ -34,37 +35,6 @@ std::string number(double value) {
   std::array<char, 40> text{};
   std::snprintf(text.data(), text.size(), "%.3g", value == 0.0 ? 0.0 : value);
   return text.data();
-}
-
-struct Scale {
-  double low;
-  double high;
-  std::string title;
-  bool square_roots = false;  // on both sides of the middle; else linear
-
-  /// @param share  place on the bar, 0 to 1
-  [[nodiscard]] double value_at(double share) const {
-    const double part = 2.0 * share - 1.0;
-    const double linear = square_roots ? 0.5 + 0.5 * part * std::abs(part) : share;
-    return low + (high - low) * linear;
-  }
-};
-
-/// The scale in the unit that its numbers read best in.
-Scale scale_of(const OverlayContent& content) {
-  const double limit = content.heat_limit;
-  if (content.heat_map == HeatMap::kTwist) {
-    const double degrees = limit * 180.0 / std::numbers::pi;
-    return {-degrees, degrees, "twist angle [\xC2\xB0], root scale", true};
-  }
-  const std::array<std::pair<double, const char*>, 3> units = {
-      {{1e6, "MPa"}, {1e3, "kPa"}, {1.0, "Pa"}}};
-  for (const auto& [factor, name] : units) {
-    if (limit >= factor) {
-      return {0.0, limit / factor, std::string("pressure [") + name + "]", false};
-    }
-  }
-  return {0.0, limit, "pressure [Pa]", false};
 }
 
 /// A panel as wide as its lines, with its bottom left or top left corner near the picture's.
@@ -87,7 +57,7 @@ void append_color_bar(const OverlayFont& font, const OverlayContent& content, do
                       double bottom, OverlayDrawList& list) {
   constexpr int kSteps = 128;
   constexpr int kTicks = 4;  // intervals
-  const Scale scale = scale_of(content);
+  const HeatScale scale = heat_scale(content.heat_map, content.heat_limit);
   const double line = font.line_height();
   const double pad = 0.4 * line;
   const double bar_width = 12.0 * line;
@@ -119,10 +89,15 @@ void append_legend(const OverlayFont& font, const OverlayContent& content, doubl
                    double bottom, OverlayDrawList& list) {
   const double line = font.line_height();
   const double pad = 0.4 * line;
+  const bool parts = content.full_couple > 0.0;
   const std::string force = "force, full arrow " + number(content.full_force) + " N";
-  const std::string torque = "torque, full arc " + number(content.full_torque) + " N m";
-  const double width = std::max(font.width_of(force), font.width_of(torque)) + 1.6 * line;
-  const double top = bottom - 2.0 * line - 2.0 * pad;
+  const std::string torque = std::string(parts ? "r x F" : "torque") + ", full arc " +
+                             number(content.full_torque) + " N m";
+  const std::string couple = "couple, full arc " + number(content.full_couple) + " N m";
+  const double couple_width = parts ? font.width_of(couple) : 0.0;
+  const double width =
+      std::max({font.width_of(force), font.width_of(torque), couple_width}) + 1.6 * line;
+  const double top = bottom - (parts ? 3.0 : 2.0) * line - 2.0 * pad;
   font.append_box(list, left, top, left + width + 2.0 * pad, bottom, kPanel);
   const auto row = [&](const std::string& text, std::uint32_t color, double y) {
     font.append_box(list, left + pad, y + 0.35 * line, left + pad + 1.1 * line, y + 0.7 * line,
@@ -131,6 +106,9 @@ void append_legend(const OverlayFont& font, const OverlayContent& content, doubl
   };
   row(force, kForceText, top + pad);
   row(torque, kTorqueText, top + pad + line);
+  if (parts) {
+    row(couple, kCoupleText, top + pad + 2.0 * line);
+  }
 }
 
 }  // namespace

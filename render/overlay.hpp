@@ -15,6 +15,7 @@ struct OverlayContent {
   double heat_limit = 1.0;   // rad or Pa, as in DrawOptions
   double full_force = 0.0;   // N of the longest arrow; 0: no legend
   double full_torque = 0.0;  // N m of the longest arc; 0: no legend
+  double full_couple = 0.0;  // N m likewise, where the couples are apart and arcs of r x F; else 0
   std::string banner;        // a fault, over the whole width; empty: none
 };
 

@@ -8,8 +8,8 @@
 
 namespace torsion::engine {
 
-/// One corner. The colour's alpha times the atlas's alpha at (u, v) is how much of it covers the
-/// picture.
+/// One corner. Its colour is multiplied by the atlas's at (u, v), alpha too, which is how much of
+/// it covers the picture.
 struct OverlayVertex {
   float x = 0.0F;          // pixels from the left edge
   float y = 0.0F;          // pixels from the top edge
@@ -18,11 +18,11 @@ struct OverlayVertex {
   std::uint32_t rgba = 0;  // sRGB bytes, R lowest (Dear ImGui's IM_COL32), alpha not premultiplied
 };
 
-/// Glyphs and one solid patch as coverage, 0 to 255; rows from the top.
+/// Glyphs and one solid patch, white with their coverage as alpha, and pictures; rows from the top.
 struct OverlayAtlas {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  std::vector<std::uint8_t> alpha;  // width * height
+  std::vector<std::uint8_t> rgba;  // 4 * width * height: sRGB and alpha, not premultiplied
 };
 
 /// A run of indices of which only what lies in a rectangle is drawn.

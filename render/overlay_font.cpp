@@ -65,10 +65,10 @@ char32_t next_letter(std::string_view& text) {
 
 OverlayFont::OverlayFont(double height) {
   const float size = static_cast<float>(std::clamp(height, 8.0, 128.0)) / 1.2F;
-  atlas_ = {kAtlasSide, kAtlasSide, std::vector<std::uint8_t>(kAtlasTexels, 0)};
+  std::vector<std::uint8_t> alpha(kAtlasTexels, 0);
   std::array<stbtt_packedchar, kCount> packed{};
   stbtt_pack_context context;
-  stbtt_PackBegin(&context, atlas_.alpha.data(), kAtlasSide, kAtlasSide, 0, 2, nullptr);
+  stbtt_PackBegin(&context, alpha.data(), kAtlasSide, kAtlasSide, 0, 2, nullptr);
   const int ascii =
       stbtt_PackFontRange(&context, torsion_font_begin, 0, size, kFirst, kCount - 1, packed.data());
   const int degree = stbtt_PackFontRange(&context, torsion_font_begin, 0, size, kDegree, 1,
@@ -84,8 +84,12 @@ OverlayFont::OverlayFont(double height) {
   }
   // A solid patch in the last corner, which the packing leaves free.
   for (std::size_t row = 1; row <= 4; ++row) {
-    std::fill_n(atlas_.alpha.end() - static_cast<std::ptrdiff_t>((row - 1) * kAtlasSide + 4), 4,
+    std::fill_n(alpha.end() - static_cast<std::ptrdiff_t>((row - 1) * kAtlasSide + 4), 4,
                 std::uint8_t{255});
+  }
+  atlas_ = {kAtlasSide, kAtlasSide, std::vector<std::uint8_t>(4 * kAtlasTexels, 255)};
+  for (std::size_t i = 0; i < kAtlasTexels; ++i) {
+    atlas_.rgba[4 * i + 3] = alpha[i];
   }
   solid_u_ = solid_v_ = 1.0F - 2.0F / static_cast<float>(kAtlasSide);
   line_height_ = 1.2 * static_cast<double>(size);

@@ -72,8 +72,7 @@ struct Renderer::Impl {
   ArrowMesh arrows;
   std::vector<shared::ContactSpot> contacts;
   std::vector<Range> contact_ranges;
-  double largest_force = 0.0;   // N, drawn so far
-  double largest_torque = 0.0;  // N m, drawn so far
+  ArrowLimits drawn_limits;  // of all pictures so far
 
   Impl() = default;
   Impl(const Impl&) = delete;
@@ -87,10 +86,10 @@ struct Renderer::Impl {
     }
   }
 
-  [[nodiscard]] ArrowScale arrow_scale(const Snapshot& snapshot, const Camera& camera,
-                                       const DrawOptions& options);
-  void write_arrows(const Snapshot& snapshot, const Camera& camera, const DrawOptions& options,
-                    SlotBuffers& slot);
+  [[nodiscard]] ArrowScale arrow_scale(const FrameWorld& frame, const Snapshot& snapshot,
+                                       const Camera& camera, const DrawOptions& options);
+  void write_arrows(const FrameWorld& frame, const Snapshot& snapshot, const Camera& camera,
+                    const DrawOptions& options, SlotBuffers& slot);
   void write_overlay(const OverlayDrawList* overlay, SlotBuffers& slot) const;
   void record_window_overlay(const Frame& frame, const FrameInputs& inputs);
   void record(const Frame& frame, const FrameInputs& inputs, SlotBuffers& slot);
@@ -104,27 +103,30 @@ Target& Renderer::Impl::target() {
   return pictures ? static_cast<Target&>(*pictures) : static_cast<Target&>(*window);
 }
 
-ArrowScale Renderer::Impl::arrow_scale(const Snapshot& snapshot, const Camera& camera,
-                                       const DrawOptions& options) {
-  for (const ToolWrench& wrench : snapshot.tools.column<ToolWrench>()) {
-    largest_force = std::max(largest_force, glm::length(wrench.total.force));
-    largest_torque = std::max(largest_torque, glm::length(wrench.total.torque));
-  }
+ArrowScale Renderer::Impl::arrow_scale(const FrameWorld& frame, const Snapshot& snapshot,
+                                       const Camera& camera, const DrawOptions& options) {
+  widen(drawn_limits, snapshot.tools, snapshot.regions);
   const auto scale_or = [](double wanted, double largest) {
     const double scale = wanted > 0.0 ? wanted : largest;
     return scale > 0.0 ? scale : 1.0;
   };
   const glm::dvec3 side = extent.highest - extent.lowest;
   return {kArrowLength * std::max({side.x, side.y, side.z}),
-          scale_or(options.full_force, largest_force),
-          scale_or(options.full_torque, largest_torque), camera.pose.position, extent.arc_radii};
+          scale_or(options.full_force, drawn_limits.force),
+          scale_or(options.full_torque, drawn_limits.torque),
+          camera.pose.position,
+          extent.arc_radii,
+          options.torque_parts,
+          scale_or(options.full_couple, drawn_limits.couple),
+          frame.bodies.column<Pose>()};
 }
 
-void Renderer::Impl::write_arrows(const Snapshot& snapshot, const Camera& camera,
-                                  const DrawOptions& options, SlotBuffers& slot) {
+void Renderer::Impl::write_arrows(const FrameWorld& frame, const Snapshot& snapshot,
+                                  const Camera& camera, const DrawOptions& options,
+                                  SlotBuffers& slot) {
   arrows.clear();
   if (options.arrows) {
-    append_wrenches(snapshot, arrow_scale(snapshot, camera, options), arrows);
+    append_wrenches(snapshot, arrow_scale(frame, snapshot, camera, options), arrows);
   }
   const auto write = [&](FrameBuffer& buffer, const std::vector<glm::vec4>& rows) {
     const auto bytes = std::as_bytes(std::span(rows));
@@ -204,7 +206,7 @@ void Renderer::Impl::draw(const Frame& target, const FrameWorld& frame, const Sn
   slot.uniforms.write(0, std::as_bytes(std::span(&uniforms, 1)));
   contact_spots(snapshot, frame.bodies.size(), contacts, contact_ranges);
   slot.contacts.write(0, std::as_bytes(std::span(contacts)));
-  write_arrows(snapshot, camera, draw_options, slot);
+  write_arrows(frame, snapshot, camera, draw_options, slot);
   write_overlay(overlay, slot);
   const vk::Rect2D part = window ? window->visible() : vk::Rect2D{{0, 0}, target.extent};
   record(target,

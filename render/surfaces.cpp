@@ -50,8 +50,8 @@ Surfaces make_surfaces(const Gpu& gpu, std::uint32_t shadow_size, const OverlayA
   surfaces.color_maps = make_color_maps(gpu);
   if (glyphs != nullptr) {
     surfaces.glyphs =
-        make_constant_image(gpu, {glyphs->width, glyphs->height}, vk::Format::eR8Unorm,
-                            std::as_bytes(std::span(glyphs->alpha)));
+        make_constant_image(gpu, {glyphs->width, glyphs->height}, vk::Format::eR8G8B8A8Unorm,
+                            std::as_bytes(std::span(glyphs->rgba)));
   }
   vk::SamplerCreateInfo sampler{
       .magFilter = vk::Filter::eLinear,

@@ -108,6 +108,7 @@ inline constexpr std::array kSceneKeys = {
              1.0},
     SceneKey{"torsion_colors", bits(Role::kScene), KeyKind::kWord, "material twist pressure"},
     SceneKey{"torsion_stick_slip", bits(Role::kScene), KeyKind::kFlag, "true or false"},
+    SceneKey{"torsion_torque", bits(Role::kScene), KeyKind::kWord, "total parts"},
 };
 
 }  // namespace torsion::engine

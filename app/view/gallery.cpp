@@ -5,13 +5,22 @@
 
 #include <nlohmann/json.hpp>
 
+#include "render/image_io.hpp"
+
 namespace torsion::engine {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The torsion_title of the scene that a file shows; nothing where it has none or is no JSON.
-std::optional<std::string> title_of(const fs::path& file) {
+/// A text among the extras of the scene that a file shows.
+std::optional<std::string> text_of(const nlohmann::json& extras, const char* key) {
+  return extras.contains(key) && extras[key].is_string()
+             ? std::optional(extras[key].get<std::string>())
+             : std::nullopt;
+}
+
+/// What a file says of itself; nothing where it has no title or is no JSON.
+std::optional<GalleryEntry> entry_from(const fs::path& file) {
   std::ifstream stream(file);
   const auto document = nlohmann::json::parse(stream, nullptr, false);
   if (!document.is_object()) {
@@ -20,12 +29,16 @@ std::optional<std::string> title_of(const fs::path& file) {
   const auto shown = document.find("scene");
   const unsigned row =
       shown != document.end() && shown->is_number_unsigned() ? shown->get<unsigned>() : 0U;
-  const nlohmann::json::json_pointer scene("/scenes/" + std::to_string(row) +
-                                           "/extras/torsion_title");
-  if (!document.contains(scene) || !document[scene].is_string()) {
+  const nlohmann::json::json_pointer place("/scenes/" + std::to_string(row) + "/extras");
+  if (!document.contains(place) || !document[place].is_object()) {
     return std::nullopt;
   }
-  return document[scene].get<std::string>();
+  const nlohmann::json& extras = document[place];
+  const auto title = text_of(extras, "torsion_title");
+  if (!title) {
+    return std::nullopt;
+  }
+  return GalleryEntry{file, *title, text_of(extras, "torsion_caption").value_or(""), {}};
 }
 
 /// Of a folder's .gltf, by name, those that have a title.
@@ -39,8 +52,8 @@ void add_titled(const fs::path& folder, std::vector<GalleryEntry>& gallery) {
   }
   std::ranges::sort(files);
   for (const fs::path& file : files) {
-    if (const auto title = title_of(file)) {
-      gallery.push_back({file, *title});
+    if (auto entry = entry_from(file)) {
+      gallery.push_back(*std::move(entry));
     }
   }
 }
@@ -64,6 +77,12 @@ std::vector<GalleryEntry> read_gallery(const fs::path& scenes) {
   std::vector<GalleryEntry> gallery;
   add_titled(scenes / "gallery", gallery);
   add_titled(scenes, gallery);
+  for (GalleryEntry& entry : gallery) {
+    Result<Image> picture = read_png(scenes / "gallery" / entry.file.stem().concat(".png"));
+    if (picture && picture.value().width == kCardWidth && picture.value().height == kCardHeight) {
+      entry.picture = std::move(picture).value();
+    }
+  }
   return gallery;
 }
 

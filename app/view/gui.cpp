@@ -17,23 +17,6 @@ static_assert(offsetof(ImDrawVert, pos) == offsetof(OverlayVertex, x));
 static_assert(offsetof(ImDrawVert, uv) == offsetof(OverlayVertex, u));
 static_assert(offsetof(ImDrawVert, col) == offsetof(OverlayVertex, rgba));
 
-constexpr float kFontSize = 15.0F;  // pixels
-constexpr const char* kFontFile = TORSION_FONT_FILE;
-
-OverlayAtlas make_atlas() {
-  ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
-  // The degree sign and the like, and a few Greek letters and arrows that units and keys need.
-  static const ImWchar ranges[] = {0x0020, 0x00FF, 0x0391, 0x03C9, 0x2190, 0x2193, 0};
-  fonts.AddFontFromFileTTF(kFontFile, kFontSize, nullptr, ranges);
-  unsigned char* alpha = nullptr;
-  int width = 0;
-  int height = 0;
-  fonts.GetTexDataAsAlpha8(&alpha, &width, &height);
-  OverlayAtlas atlas{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
-  atlas.alpha.assign(alpha, alpha + std::ptrdiff_t{width} * height);
-  return atlas;
-}
-
 void set_style() {
   ImGui::StyleColorsLight();
   ImGuiStyle& style = ImGui::GetStyle();
@@ -86,14 +69,14 @@ void type(const std::vector<int>& pressed) {
 
 }  // namespace
 
-Gui::Gui() {
+Gui::Gui(std::span<const Image> pictures) {
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;  // no file beside the scene
   io.LogFilename = nullptr;
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;  // lists of over 65536 vertices
   set_style();
-  atlas_ = make_atlas();
+  atlas_ = make_atlas(pictures, cards_);
 }
 
 Gui::~Gui() {

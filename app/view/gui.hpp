@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
-#include "render/overlay_draw_list.hpp"
+#include "app/view/gui_atlas.hpp"
 #include "render/window.hpp"
 
 struct ImDrawCmd;
@@ -14,15 +16,18 @@ namespace torsion::engine {
 /// and end() the caller builds its panels with ImGui's functions.
 class Gui {
  public:
-  Gui();
+  /// @param pictures  for the panels to show; empty ones are left out
+  explicit Gui(std::span<const Image> pictures);
   ~Gui();
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
   Gui(Gui&&) = delete;
   Gui& operator=(Gui&&) = delete;
 
-  /// Its glyphs, for RendererOptions::overlay_atlas.
+  /// Glyphs and pictures, for RendererOptions::overlay_atlas.
   [[nodiscard]] const OverlayAtlas& atlas() const { return atlas_; }
+  /// Where the pictures are in it, in their order.
+  [[nodiscard]] const std::vector<CardPictures>& cards() const { return cards_; }
 
   /// @param seconds  since the last frame
   void begin(const WindowInput& input, double seconds);
@@ -38,6 +43,7 @@ class Gui {
   void append(const ImDrawCmd& command, const ImDrawList& from, std::uint32_t base_vertex);
   void append_panel(const ImDrawList& from);
   OverlayAtlas atlas_;
+  std::vector<CardPictures> cards_;
   OverlayDrawList list_;
 };
 

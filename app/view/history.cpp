@@ -33,6 +33,8 @@ void History::add(const LiveRow& row, double device_hz) {
       in_contact_axes(row.trace.wrench, row.normal, row.tangent_x),
       row.turn,
       row.couple,
+      row.radius,
+      row.contact,
       row.trace.load.normal_sum,
       glm::length(row.trace.load.friction.force),
       glm::length(row.trace.load.normal.torque + row.trace.load.friction.torque),

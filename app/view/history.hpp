@@ -14,7 +14,9 @@ struct PlotPoint {
   Wrench world;                 // on the tool
   Wrench contact;               // the same along the oldest region's tangents (x, y) and normal (z)
   double turn = 0.0;            // rad: of the tool
-  double couple = 0.0;          // N m
+  double couple = 0.0;          // N m: of the oldest region
+  double radius = 0.0;          // m: of its contact
+  std::uint64_t region = 0;     // which that is: LiveRow::contact
   double normal_force = 0.0;    // N: summed over the tool's regions
   double friction_force = 0.0;  // N: the size of their sum
   double arm_torque = 0.0;      // N m: the size of r x F about the mass centre

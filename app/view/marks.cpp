@@ -1,16 +1,17 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/view/legend.hpp"
+#include "app/view/panel_style.hpp"
 #include "app/view/panels.hpp"
 
 namespace torsion::engine {
 namespace {
 
 constexpr ImU32 kRegion = IM_COL32(20, 20, 20, 220);
-constexpr ImU32 kSticks = IM_COL32(20, 130, 60, 255);
-constexpr ImU32 kSlips = IM_COL32(220, 60, 30, 255);
 constexpr ImU32 kAnchor = IM_COL32(120, 40, 160, 255);
 constexpr ImU32 kHand = IM_COL32(39, 111, 196, 255);
 constexpr ImU32 kFixedPoint = IM_COL32(60, 60, 70, 255);
@@ -26,6 +27,18 @@ struct Pencil {
     if (at.z > camera.near_plane) {
       list.AddCircleFilled(ImVec2(static_cast<float>(at.x), static_cast<float>(at.y)), radius,
                            color, 6);
+    }
+  }
+  void number(const glm::dvec3& place, std::uint64_t value) const {
+    const glm::dvec3 at = seen_at(camera, place, picture);
+    if (at.z > camera.near_plane) {
+      const std::string words = fmt::format("{}", value);
+      const ImVec2 size = ImGui::CalcTextSize(words.c_str());
+      const ImVec2 low(std::round(static_cast<float>(at.x) - 0.5F * size.x),
+                       std::round(static_cast<float>(at.y)));
+      list.AddRectFilled(ImVec2(low.x - 2.0F, low.y), ImVec2(low.x + size.x + 2.0F, low.y + size.y),
+                         IM_COL32(255, 255, 255, 220));
+      list.AddText(low, kRegion, words.c_str());
     }
   }
   void line(const glm::dvec3& from, const glm::dvec3& to, ImU32 color) const {
@@ -63,6 +76,9 @@ void draw_region(const Pencil& pencil, const LiveFrame& frame, const World& worl
   pencil.line(center, in_world(body, contact.equivalent_point + 1.5 * contact.radius * axes.normal),
               kRegion);
   pencil.line(center, on_ring(regions.at<RegionMotion>(region).turn), kRegion);
+  if (regions.size() > 1) {
+    pencil.number(on_ring(-0.5 * std::numbers::pi), regions.at<RegionIdentity>(region).order + 1);
+  }
 }
 
 void draw_fixed(const Pencil& pencil, const FrameWorld& frame) {
@@ -113,10 +129,11 @@ void draw_hand(const Pencil& pencil, const LiveFrame& frame, std::uint32_t tool,
 
 }  // namespace
 
-void draw_marks(const ViewState& state, LiveSession& session, const glm::dvec2& picture) {
+void draw_marks(const ViewState& state, LiveSession& session, const Camera& camera,
+                const glm::dvec2& picture) {
   const LiveFrame& frame = session.frame();
   const Generation& shown = session.shown();
-  const Pencil pencil{*ImGui::GetBackgroundDrawList(), camera_of(state.camera), picture};
+  const Pencil pencil{*ImGui::GetBackgroundDrawList(), camera, picture};
   if (state.show_fixed) {
     draw_fixed(pencil, shown.frame);
   }
@@ -125,7 +142,10 @@ void draw_marks(const ViewState& state, LiveSession& session, const glm::dvec2& 
   }
   if (state.show_cells) {
     for (const CellMark& cell : frame.cells) {
-      pencil.dot(glm::dvec3(cell.place), 2.5F, cell.sticks != 0 ? kSticks : kSlips);
+      pencil.dot(glm::dvec3(cell.place), 3.0F, kSticksInk);
+      if (cell.sticks == 0) {
+        pencil.dot(glm::dvec3(cell.place), 2.2F, kSlipsInk);
+      }
     }
   }
   if (state.handle) {
@@ -134,6 +154,9 @@ void draw_marks(const ViewState& state, LiveSession& session, const glm::dvec2& 
   for (std::uint32_t region = 0; state.show_regions && region < frame.snapshot.regions.size();
        ++region) {
     draw_region(pencil, frame, shown.simulation.world, region);
+  }
+  if (state.show_legend && state.show_panels) {
+    draw_legend(state, picture);
   }
 }
 

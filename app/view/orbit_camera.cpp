@@ -63,8 +63,8 @@ void zoom(OrbitCamera& camera, double notches) {
 PixelRay ray_through(const Camera& camera, const glm::dvec2& pixel, const glm::dvec2& picture) {
   const double half = std::tan(camera.vertical_field_of_view / 2.0);
   const double scale = 2.0 * half / picture.y;
-  const glm::dvec3 ahead((pixel.x - picture.x / 2.0) * scale, (picture.y / 2.0 - pixel.y) * scale,
-                         -1.0);
+  const glm::dvec3 ahead((pixel.x - (0.5 + camera.shift) * picture.x) * scale,
+                         (picture.y / 2.0 - pixel.y) * scale, -1.0);
   return {camera.pose.position, glm::normalize(camera.pose.rotation * ahead),
           scale / glm::length(ahead)};
 }
@@ -74,7 +74,7 @@ glm::dvec3 seen_at(const Camera& camera, const glm::dvec3& point, const glm::dve
   const double depth = -at.z;
   const double scale =
       picture.y / (2.0 * std::tan(camera.vertical_field_of_view / 2.0) * std::max(depth, 1e-9));
-  return {picture.x / 2.0 + at.x * scale, picture.y / 2.0 - at.y * scale, depth};
+  return {(0.5 + camera.shift) * picture.x + at.x * scale, picture.y / 2.0 - at.y * scale, depth};
 }
 
 }  // namespace torsion::engine

@@ -6,9 +6,9 @@
 
 namespace torsion::engine {
 
-/// A curve of a plot: points in order.
+/// A curve of a plot: points in order. Where y is not a number, it is interrupted.
 struct Curve {
-  const char* name = "";
+  std::string name;
   std::uint32_t rgba = 0;  // as ImGui's IM_COL32
   std::vector<double> x;
   std::vector<double> y;
@@ -24,8 +24,14 @@ struct PlotAxes {
   bool y_from_zero = false;
 };
 
-/// Draws one plot into the current ImGui window, over its width.
+/// Draws one plot into the current ImGui window, over its width; under the mouse, what the curves
+/// are there.
 /// @param height  pixels
-void draw_plot(const PlotAxes& axes, std::span<const Curve> curves, float height);
+/// @return whether the mouse is over it
+bool draw_plot(const PlotAxes& axes, std::span<const Curve> curves, float height);
+
+/// The point of a curve that is nearest in x; none where it has no number there.
+/// @return its row, or the curve's size
+std::size_t nearest_in_x(const Curve& curve, double x);
 
 }  // namespace torsion::engine

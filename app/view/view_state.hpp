@@ -7,8 +7,10 @@
 
 #include "app/live/live_session.hpp"
 #include "app/view/gallery.hpp"
+#include "app/view/gui_atlas.hpp"
 #include "app/view/history.hpp"
 #include "app/view/orbit_camera.hpp"
+#include "app/view/region_history.hpp"
 #include "render/draw_options.hpp"
 
 namespace torsion::engine {
@@ -27,11 +29,15 @@ struct ToolMove {
 struct ViewState {
   DrawOptions draw;
   bool show_panels = true;
+  std::optional<bool> folded;  // the panel, to icons; none: by the window's size
   bool show_regions = true;
   bool show_cells = false;
   bool show_anchors = false;
   bool show_fixed = false;
-  bool contact_axes = true;  // plots along the contact's axes, else the world's
+  bool show_legend = true;
+  bool contact_axes = true;    // plots along the contact's axes, else the world's
+  double plot_seconds = 10.0;  // s: as far back as plots go
+  bool over_plot = false;      // the mouse is, so that the wheel is the plot's
   bool paused = false;
   std::uint32_t slowness = 1;   // periods of the clock to a step
   std::uint32_t tool = 0;       // of the plots
@@ -47,23 +53,28 @@ struct ViewState {
   bool wants_video = false;                // begins one, or ends the one under way
   bool wants_view = false;                 // the camera as at first
   bool wants_move = false;                 // of the tool of the plots
+  bool wants_strength = false;             // of the mouse: takes over `strength`
   std::optional<std::size_t> wants_entry;  // of the gallery: another scene
 
-  bool free_drag = false;      // the mouse moves a tool in the plane of the view, not by the normal
-  ToolMove move;               // as typed
-  bool moving = false;         // one is under way
-  std::optional<Pose> handle;  // where the tool of the plots is held; none: nobody holds it
+  bool free_drag = false;  // the mouse moves a tool in the plane of the view, not by the normal
+  double strength = kGentleForce;  // N: the largest force of the mouse
+  ToolMove move;                   // as typed
+  bool moving = false;             // one is under way
+  bool let_go = false;             // of the tool of the plots, which stays where it is
+  std::optional<Pose> handle;      // where the tool of the plots is held; none: nobody holds it
 
   bool loop = true;                   // the scene begins again after its animation
   std::vector<GalleryEntry> gallery;  // scenes to choose from
+  std::vector<CardPictures> cards;    // (gallery)
   std::optional<std::size_t> entry;   // which of them is shown; none: a scene of one's own
   bool opening = false;               // another scene is being read and prepared
 
   OrbitCamera camera;
-  std::vector<History> histories;  // (tools)
-  std::string message;             // what was just done, shown for a while
-  double message_until = 0.0;      // s, of the window's clock
-  std::string scene_error;         // why the file on disk cannot be shown; empty: it can
+  std::vector<History> histories;               // (tools)
+  std::vector<RegionHistory> region_histories;  // (tools)
+  std::string message;                          // what was just done, shown for a while
+  double message_until = 0.0;                   // s, of the window's clock
+  std::string scene_error;  // why the file on disk cannot be shown; empty: it can
   double frames_per_second = 0.0;
   double share = 1.0;  // of the window's pixels along each side in which the scene is drawn
   bool filming = false;
@@ -73,5 +84,8 @@ struct ViewState {
 
 /// The number of BodyPick's models and materials that differ.
 bool differ(const std::vector<BodyPick>& a, const std::vector<BodyPick>& b);
+
+/// Periods of the clock to a step, after these: 1, 5, 20, 100, 1, ...
+std::uint32_t next_slowness(std::uint32_t slowness);
 
 }  // namespace torsion::engine

@@ -25,22 +25,37 @@ constexpr double kSmallestShare = 0.4;
 constexpr double kMessageSeconds = 4.0;
 constexpr double kLeastTwistScale = 5.0 * std::numbers::pi / 180.0;  // rad
 
-/// Ends of the colour scales that hold everything so far.
-void widen_scales(const Snapshot& snapshot, DrawOptions& draw, double& twist, double& pressure) {
+/// Ends of the scales of colours and arrows that hold everything so far.
+void widen_scales(const Snapshot& snapshot, DrawOptions& draw, SeenScales& seen) {
   for (std::uint32_t region = 0; region < snapshot.regions.size(); ++region) {
     const double area = snapshot.regions.at<Contact>(region).area;
-    twist = std::max(twist, std::abs(snapshot.regions.at<RegionMotion>(region).turn));
+    seen.twist = std::max(seen.twist, std::abs(snapshot.regions.at<RegionMotion>(region).turn));
     if (area > 0.0) {
-      pressure = std::max(pressure, snapshot.regions.at<RegionNormal>(region).force / area);
+      seen.pressure =
+          std::max(seen.pressure, snapshot.regions.at<RegionNormal>(region).force / area);
     }
   }
+  widen(seen.arrows, snapshot.tools, snapshot.regions);
+  constexpr double kDegree = std::numbers::pi / 180.0;
   draw.heat_limit = draw.heat_map == HeatMap::kPressure
-                        ? round_up(pressure)
-                        : std::max(kLeastTwistScale, round_up(twist * 180.0 / std::numbers::pi) *
-                                                         std::numbers::pi / 180.0);
+                        ? round_up(seen.pressure)
+                        : std::max(kLeastTwistScale, round_up(seen.twist / kDegree) * kDegree);
+  // 0 has the renderer choose.
+  const auto end_of = [](double limit) {
+    return limit > 0.0 ? round_up(limit) : 0.0;
+  };
+  draw.full_force = end_of(seen.arrows.force);
+  draw.full_torque = end_of(seen.arrows.torque);
+  draw.full_couple = end_of(seen.arrows.couple);
 }
 
 }  // namespace
+
+std::string whole_path(const std::string& name) {
+  std::error_code failed;
+  const std::filesystem::path path = std::filesystem::absolute(name, failed);
+  return failed ? name : path.string();
+}
 
 std::string window_title(const std::string& scene) {
   return "Torsion: " + std::filesystem::path(scene).filename().string();
@@ -110,13 +125,10 @@ void Viewer::take_wishes() {
     begin_move();
   }
   if (state_.wants_release) {
-    move_.reset();
-    for (std::uint32_t tool = 0; tool < handles_.size(); ++tool) {
-      handles_[tool] = frame.snapshot.tools.at<ToolPose>(tool).now;
-      if (session_->held(tool)) {
-        session_->hold(tool, handles_[tool]);
-      }
-    }
+    let_go();
+  }
+  if (state_.wants_strength) {
+    session_->set_strength(state_.strength);
   }
   if (state_.wants_restart && session_->choose(state_.picks, true)) {
     grab_ = Grab{};
@@ -131,7 +143,7 @@ void Viewer::take_wishes() {
     const Result<Done> saved = session_->save_recording(name);
     say(saved ? fmt::format("{}: {:.1f} s, everything since the start; play it with torsion "
                             "simulate --replay",
-                            name, session_->recorded_seconds())
+                            whole_path(name), session_->recorded_seconds())
               : saved.error().text);
   }
   if (state_.wants_video) {
@@ -144,6 +156,7 @@ void Viewer::take_wishes() {
   state_.wants_release = false;
   state_.wants_view = false;
   state_.wants_move = false;
+  state_.wants_strength = false;
   state_.wants_restart = false;
   state_.wants_choice = false;
   state_.wants_saved_recording = false;
@@ -156,6 +169,9 @@ void Viewer::take_history() {
     const bool shown = session_->on_device(row.tool) && device->sample.state == DeviceState::kLive;
     state_.histories[row.tool].add(row, shown ? device->sample.rate : 0.0);
   });
+  for (std::uint32_t tool = 0; tool < state_.region_histories.size(); ++tool) {
+    state_.region_histories[tool].add(session_->frame().snapshot, tool);
+  }
   const std::uint64_t missed = session_->frame().statistics.missed_deadlines;
   if (missed < missed_then_ || now() > missed_since_ + 1.0) {
     state_.missed_lately =
@@ -198,13 +214,14 @@ Result<Done> Viewer::show(const WindowInput& input, const OverlayDrawList& overl
   Generation& shown = session_->shown();
   const Snapshot& snapshot = session_->frame().snapshot;
   surface_field(shown.simulation.world.model, snapshot, shown.frame);
-  widen_scales(snapshot, state_.draw, twist_scale_, pressure_scale_);
+  widen_scales(snapshot, state_.draw, seen_);
   const bool filmed = film_due();
   const bool keep = state_.wants_screenshot || filmed;
+  const bool whole = state_.wants_screenshot || film_.writer;
   const bool redraw = panels_due(input) || state_.wants_screenshot;
-  const Result<bool> drawn = renderer_->show(
-      shown.frame, snapshot, camera(), state_.draw, &overlay,
-      {input.width, input.height, state_.wants_screenshot ? 1.0 : state_.share, keep, redraw});
+  const Result<bool> drawn =
+      renderer_->show(shown.frame, snapshot, camera(), state_.draw, &overlay,
+                      {input.width, input.height, whole ? 1.0 : state_.share, keep, redraw});
   if (!drawn) {
     return drawn.error();
   }
@@ -222,7 +239,7 @@ Result<Done> Viewer::show(const WindowInput& input, const OverlayDrawList& overl
     state_.wants_screenshot = false;
     const std::string name = file_name(".png");
     const Result<Done> written = write_screenshot(name);
-    say(written ? name : written.error().text);
+    say(written ? whole_path(name) : written.error().text);
   }
   return Done{};
 }
@@ -269,9 +286,7 @@ Result<Done> Viewer::frame() {
   take_mouse(input, seconds);
   go_on_moving();
   state_.handle = session_->held(state_.tool) ? std::optional(handles_[state_.tool]) : std::nullopt;
-  if (state_.show_panels) {
-    draw_marks(state_, *session_, {input.width, input.height});
-  }
+  draw_marks(state_, *session_, camera(), {input.width, input.height});
   draw_panels(state_, *session_, started);
   const OverlayDrawList& overlay = gui_->end();
   take_wishes();
@@ -297,7 +312,12 @@ Result<ViewerOutcome> Viewer::run() {
     return window.error();
   }
   window_ = std::move(window).value();
-  gui_ = std::make_unique<Gui>();
+  std::vector<Image> pictures;
+  for (const GalleryEntry& entry : state_.gallery) {
+    pictures.push_back(entry.picture);
+  }
+  gui_ = std::make_unique<Gui>(pictures);
+  state_.cards = gui_->cards();
   watch_.emplace(options_.scene);
   Result<Done> done = begin(std::move(session).value(), Keep::kNothing);
   while (done) {
@@ -324,7 +344,7 @@ Result<ViewerOutcome> Viewer::finish() {
     state_.wants_screenshot = true;
     const WindowInput& input = window_->look();
     gui_->begin(input, kFramePeriod);
-    draw_marks(state_, *session_, {input.width, input.height});
+    draw_marks(state_, *session_, camera(), {input.width, input.height});
     draw_panels(state_, *session_, now());
     const OverlayDrawList& overlay = gui_->end();
     Generation& shown = session_->shown();

@@ -16,6 +16,7 @@
 #include "app/view/scene_watch.hpp"
 #include "app/view/tool_drag.hpp"
 #include "app/view/view_state.hpp"
+#include "render/arrows.hpp"
 #include "render/renderer.hpp"
 #include "render/video.hpp"
 #include "render/window.hpp"
@@ -46,11 +47,20 @@ struct ViewerOutcome {
   std::string problem;  // why there is no recording; empty: there is, or none was wanted
 };
 
+/// The largest so far of what is drawn to scale.
+struct SeenScales {
+  double twist = 0.0;     // rad
+  double pressure = 0.0;  // Pa
+  ArrowLimits arrows;
+};
+
 // Pixels, at first.
 inline constexpr std::uint32_t kWindowWidth = 1280;
 inline constexpr std::uint32_t kWindowHeight = 720;
 
 std::string window_title(const std::string& scene);
+/// Of a file beside the person, for messages.
+std::string whole_path(const std::string& name);
 
 /// A scene in a window. Everything is in the main thread but physics, and what prepares worlds.
 class Viewer {
@@ -95,6 +105,7 @@ class Viewer {
     std::string name;
     std::uint32_t width = 0;
     std::uint32_t height = 0;
+    bool panels = true;  // were shown before
     double begun = 0.0;  // s
     std::uint64_t pictures = 0;
   };
@@ -121,6 +132,7 @@ class Viewer {
   void start_drag(const glm::dvec2& mouse, const glm::dvec2& picture);
   void drag_tool(const WindowInput& input, double seconds);
   void begin_move();
+  void let_go();
   void go_on_moving();
   void take_wishes();
   void take_history();
@@ -132,7 +144,8 @@ class Viewer {
   void fit_share(double frame_seconds);
   void say(const std::string& text);
   [[nodiscard]] double now() const;
-  [[nodiscard]] Camera camera() const { return camera_of(state_.camera); }
+  /// In the middle of what the panel leaves free.
+  [[nodiscard]] Camera camera() const;
   /// The frame in which a tool is pressed and turned: that of its oldest contact, or else the
   /// nearest place of a body's surface.
   struct ContactAxes {
@@ -165,8 +178,8 @@ class Viewer {
   glm::dvec2 panels_mouse_{0.0};   // where the mouse was when they were drawn
   double shown_frame_time_ = 0.0;  // s, smoothed
   double missed_since_ = 0.0;      // s
-  double twist_scale_ = 0.0;       // rad, the largest so far
-  double pressure_scale_ = 0.0;    // Pa, likewise
+  SeenScales seen_;
+  double let_go_until_ = 0.0;  // s, of the scene: a tool is on the way back to its animation
   std::uint64_t missed_then_ = 0;
   std::uint64_t passes_timed_ = 0;
   int files_written_ = 0;

@@ -1,4 +1,5 @@
-// The window as a video.
+// The window as a video: of the scene, in all its pixels. The panel comes back at the end, or with
+// H while it is filmed; the window's title says that it is.
 
 #include <cmath>
 
@@ -30,6 +31,9 @@ void Viewer::begin_or_end_film() {
     return;
   }
   film_.writer = std::move(writer).value();
+  film_.panels = state_.show_panels;
+  state_.show_panels = false;
+  window_->set_title("Filming " + film_.name + " (V ends it)");
   film_.begun = now();
 }
 
@@ -55,6 +59,8 @@ void Viewer::add_to_film() {
     const Result<Done> added = film_.writer->add(image.value());
     if (!added) {
       film_.writer.reset();
+      state_.show_panels = film_.panels;
+      window_->set_title(window_title(options_.scene));
       say(added.error().text);
       return;
     }
@@ -66,8 +72,10 @@ void Viewer::add_to_film() {
 void Viewer::end_film(const std::string& why) {
   const Result<Done> finished = film_.writer->finish();
   film_.writer.reset();
+  state_.show_panels = film_.panels;
+  window_->set_title(window_title(options_.scene));
   say(!finished ? finished.error().text
-                : fmt::format("{}: {:.1f} s{}", film_.name,
+                : fmt::format("{}: {:.1f} s{}", whole_path(film_.name),
                               static_cast<double>(film_.pictures) / kPicturesASecond,
                               why.empty() ? "" : "; ended, because " + why));
 }

@@ -43,10 +43,7 @@ void Viewer::take_keys(const WindowInput& input) {
         state_.wants_restart = true;
         break;
       case 'S':
-        state_.slowness = state_.slowness == 1    ? 5
-                          : state_.slowness == 5  ? 20
-                          : state_.slowness == 20 ? 100
-                                                  : 1;
+        state_.slowness = next_slowness(state_.slowness);
         break;
       case 'P':
         state_.wants_screenshot = true;
@@ -143,7 +140,33 @@ void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
     grab_.axis = axes.normal;
     grab_.turn_left = 0.0;
     move_.reset();
+    state_.let_go = false;
     session_->hold(tool, handles_[tool]);
+  }
+}
+
+/// Of every tool that the mouse has: an animated one goes on as its animation does, any other stays
+/// where it is, without force.
+void Viewer::let_go() {
+  const Snapshot& snapshot = session_->frame().snapshot;
+  constexpr double kWayBack = 1.0;  // s, as LiveSession::release() says
+  move_.reset();
+  grab_ = Grab{};
+  grab_.spent = true;
+  for (std::uint32_t tool = 0; tool < handles_.size(); ++tool) {
+    if (!session_->held(tool)) {
+      continue;
+    }
+    if (session_->scene().tools[tool].script.end_time > 0.0) {
+      session_->release(tool);
+      let_go_until_ = snapshot.clock.time + kWayBack;
+      say("let go of: the tool goes back to the scene's animation");
+    } else {
+      handles_[tool] = snapshot.tools.at<ToolPose>(tool).now;
+      session_->hold(tool, handles_[tool]);
+      state_.let_go = true;
+      say("let go of: the tool stays where it is, without force");
+    }
   }
 }
 
@@ -177,6 +200,7 @@ void Viewer::begin_move() {
   if (!session_->held(tool)) {
     handles_[tool] = snapshot.tools.at<ToolPose>(tool).now;
   }
+  state_.let_go = false;
   const ContactAxes axes = axes_under(tool);
   move_ = Move{state_.move, tool,         handles_[tool],     axes.pivot,
                axes.normal, axes.tangent, snapshot.clock.time};

@@ -1,10 +1,12 @@
 // The scene in the window: how it begins, and begins again, and others that are opened meanwhile:
 // the same after its files have changed, for an author who works on them, or one of the gallery.
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <thread>
 
+#include "app/view/panel_layout.hpp"
 #include "app/view/viewer.hpp"
 #include "render/auto_camera.hpp"
 
@@ -23,6 +25,14 @@ void Viewer::place_camera() {
       cameras.empty() ? auto_camera(frame, aspect) : camera_of(cameras.front()), glm::dvec3(0.0));
 }
 
+Camera Viewer::camera() const {
+  const WindowInput& input = window_->input();
+  Camera camera = camera_of(state_.camera);
+  camera.shift = 0.5 * covered_columns(state_, input.width, input.height) /
+                 std::max(static_cast<double>(input.width), 1.0);
+  return camera;
+}
+
 /// The camera and what is drawn, as the scene says.
 void Viewer::look_at_scene() {
   place_camera();
@@ -34,8 +44,8 @@ void Viewer::look_at_scene() {
   state_.slowness = static_cast<std::uint32_t>(std::lround(1.0 / view.speed));
   state_.loop = view.loop;
   state_.entry = entry_of(state_.gallery, options_.scene);
-  twist_scale_ = 0.0;
-  pressure_scale_ = 0.0;
+  state_.draw.torque_parts = view.torque_parts;
+  seen_ = SeenScales{};
 }
 
 /// Takes over a prepared scene: at the start, after its file has changed, or another one.
@@ -71,12 +81,16 @@ Result<Done> Viewer::begin(Session session, Keep keep) {
   session_->pause(state_.paused);
   const std::size_t tools = session_->scene().tools.size();
   state_.histories.assign(tools, History{});
+  state_.region_histories.assign(tools, RegionHistory{});
   state_.tool = 0;
   state_.body = 0;
   state_.picks = session_->shown().picks;
   handles_.assign(tools, Pose{});
   grab_ = Grab{};
   move_.reset();
+  state_.let_go = false;
+  state_.strength = kGentleForce;
+  let_go_until_ = 0.0;
   if (keep == Keep::kNothing) {
     look_at_scene();
   }
@@ -92,8 +106,9 @@ void Viewer::loop_scene() {
   const double duration = session_->scene().duration;
   const LiveFrame& frame = session_->frame();
   // A recording to a file is of one run.
-  if (!state_.loop || duration <= 0.0 || frame.snapshot.clock.time < duration + kRest ||
-      frame.paused || !session_->settled() || !options_.record.empty()) {
+  const double end = std::max(duration, let_go_until_);
+  if (!state_.loop || duration <= 0.0 || frame.snapshot.clock.time < end + kRest || frame.paused ||
+      !session_->settled() || !options_.record.empty()) {
     return;
   }
   for (std::uint32_t tool = 0; tool < handles_.size(); ++tool) {
@@ -101,6 +116,7 @@ void Viewer::loop_scene() {
       return;
     }
   }
+  let_go_until_ = 0.0;
   outcome_.loops += session_->choose(session_->shown().picks, true) ? 1U : 0U;
 }
 

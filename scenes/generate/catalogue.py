@@ -94,7 +94,7 @@ def compass_on_ellipsoid(name, material, depth, degrees, *shown):
     gltf.animation("press and twist", compass,
                    motions.press_and_twist(top, depth, 0.003, motions.to_and_fro(degrees)))
     if shown:
-        gltf.show(*shown)
+        gltf.show(*shown, torsion_torque="parts")
     return gltf.files(name)
 
 
@@ -162,7 +162,7 @@ def twist_and_slip():
     return gallery("gallery/1_twist_and_slip", "ball_on_block.bin", (0.08, 0.05, 0.08), STICKY_GEL, 0.007, motion,
                    (0.1, 0.125, 0.13), (0.0, 0.056, 0.0),
                    ("Twist and slip ring",
-                    "The ball turns and the gel turns with it. Slip (red) begins at the rim and grows inwards; "
+                    "The ball turns and the gel turns with it. Slip (yellow) begins at the rim and grows inwards; "
                     "the torque bends until all slips.", {"torsion_speed": 0.2}))
 
 
@@ -174,7 +174,7 @@ def hysteresis():
         return motions.pressed(top, depth, 0.002, [(0.0, 0.0)], turns + [(9.0, 0.0)], 10.0)
     return gallery("gallery/2_hysteresis", "ball_on_block.bin", (0.08, 0.05, 0.08), GEL, 0.005, motion,
                    (0.1, 0.125, 0.13), (0.0, 0.056, 0.0),
-                   ("Torque with a memory", "To and fro: the torque by the turn (plot on the right) "
+                   ("Torque with a memory", "To and fro: the torque by the turn (plot on the left) "
                     "does not go back as it came, but round a loop. Its area is the work of friction.", {}))
 
 
@@ -209,7 +209,7 @@ def all_files():
     files |= compass_on_ellipsoid("compass_on_ellipsoid_soft", SOFT, 0.008, 40.0,
                                 "Two tips: arm and couple",
                                 "The tips' friction forces make a torque by their arms (r x F); "
-                                "each contact adds its couple. The panel has both.")
+                                "each contact adds its couple. Orange: r x F. Violet: the couples.")
     files |= many_regions("many_regions")
     files |= two_bodies("two_bodies")
     return files

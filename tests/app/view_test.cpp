@@ -11,8 +11,12 @@
 #include "app/view/gallery.hpp"
 #include "app/view/history.hpp"
 #include "app/view/orbit_camera.hpp"
+#include "app/view/panel_layout.hpp"
+#include "app/view/plots.hpp"
+#include "app/view/region_history.hpp"
 #include "app/view/scene_watch.hpp"
 #include "app/view/tool_drag.hpp"
+#include "render/image_io.hpp"
 #include "tests/app/program.hpp"
 #include "tests/support/paths.hpp"
 
@@ -65,6 +69,36 @@ TEST(OrbitCameraTest, ARayGoesThroughWhatIsSeenAtItsPixel) {
   const glm::dvec3 seen = seen_at(camera, ray.origin + 0.8 * ray.direction, kPicture);
   EXPECT_NEAR(seen.x, 200.0, 1e-9);
   EXPECT_NEAR(seen.y, 500.0, 1e-9);
+}
+
+TEST(OrbitCameraTest, AShiftedPictureIsTheSameForTheShadersAndForTheMouse) {
+  OrbitCamera orbiting;
+  orbiting.azimuth = 0.3;
+  orbiting.elevation = 0.5;
+  Camera camera = camera_of(orbiting);
+  camera.shift = 0.125;
+  // A panel covers a quarter on the left: the middle of the rest is at 5/8.
+  EXPECT_NEAR(seen_at(camera, orbiting.target, kPicture).x, 0.625 * kPicture.x, 1e-9);
+  const glm::dvec3 point(0.05, 0.1, -0.02);
+  const glm::dvec3 seen = seen_at(camera, point, kPicture);
+  const glm::dvec4 clip = projection_matrix(camera, kPicture.x / kPicture.y) * view_matrix(camera) *
+                          glm::dvec4(point, 1.0);
+  EXPECT_NEAR(seen.x, (0.5 + 0.5 * clip.x / clip.w) * kPicture.x, 1e-9);
+  EXPECT_NEAR(seen.y, (0.5 + 0.5 * clip.y / clip.w) * kPicture.y, 1e-9);
+  const PixelRay ray = ray_through(camera, {seen.x, seen.y}, kPicture);
+  EXPECT_LT(glm::length(glm::cross(ray.direction, glm::normalize(point - ray.origin))), 1e-12);
+}
+
+TEST(PanelLayoutTest, TakesAQuarterAndFoldsInSmallWindows) {
+  ViewState state;
+  EXPECT_LE(covered_columns(state, 1280.0, 720.0), 0.25 * 1280.0);
+  EXPECT_LE(covered_columns(state, 1920.0, 1080.0), 0.25 * 1920.0);
+  EXPECT_TRUE(folded(state, 700.0, 500.0));
+  EXPECT_LE(covered_columns(state, 700.0, 500.0), 0.1 * 700.0);
+  state.folded = false;  // a person wants it
+  EXPECT_FALSE(folded(state, 700.0, 500.0));
+  state.show_panels = false;
+  EXPECT_EQ(covered_columns(state, 1280.0, 720.0), 0.0);
 }
 
 TEST(ToolDragTest, ARayMeetsATurnedBoxWhereItDoes) {
@@ -193,6 +227,57 @@ TEST(HistoryTest, ContactAxesTurnAWrenchWithoutChangingItsSize) {
   EXPECT_NEAR(contact.torque.z, -2.0, 1e-12);
 }
 
+Snapshot with_regions(double time, const std::vector<std::uint64_t>& orders) {
+  Snapshot snapshot;
+  snapshot.clock.time = time;
+  snapshot.regions.reserve(16);
+  for (const std::uint64_t order : orders) {
+    const std::uint32_t row = snapshot.regions.size();
+    snapshot.regions.append();
+    snapshot.regions.at<RegionIdentity>(row).tool = static_cast<std::uint32_t>(order % 2);
+    snapshot.regions.at<RegionIdentity>(row).order = order;
+    snapshot.regions.at<RegionNormal>(row).force = static_cast<double>(order);
+  }
+  return snapshot;
+}
+
+TEST(RegionHistoryTest, KeepsTheRegionsOfItsToolApart) {
+  RegionHistory history;
+  history.add(with_regions(0.0, {2, 3, 4}), 0);
+  history.add(with_regions(0.001, {2, 3, 4}), 0);  // too soon
+  history.add(with_regions(0.02, {4, 5, 6, 8}), 0);
+  ASSERT_EQ(history.size(), 2U);
+  ASSERT_EQ(history[0].count, 2U);
+  EXPECT_EQ(history[0].regions[1].order, 4U);
+  EXPECT_EQ(history[0].regions[1].normal_force, 4.0);
+  ASSERT_EQ(history[1].count, 3U);
+  EXPECT_EQ(history[1].regions[0].order, 4U);
+  history.add(with_regions(0.0, {}), 0);  // from the start
+  ASSERT_EQ(history.size(), 1U);
+  EXPECT_EQ(history[0].count, 0U);
+}
+
+TEST(RegionHistoryTest, ForgetsTheOldestAndTakesNoMoreThanItHolds) {
+  RegionHistory history;
+  for (std::size_t i = 0; i < RegionHistory::kMoments + 3; ++i) {
+    history.add(with_regions(0.1 * static_cast<double>(i), {}), 0);
+  }
+  EXPECT_EQ(history.size(), RegionHistory::kMoments);
+  EXPECT_NEAR(history[0].time, 0.3, 1e-12);
+  history.add(with_regions(1e6, {2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24}), 0);
+  EXPECT_EQ(history[history.size() - 1].count, RegionHistory::kMost);
+}
+
+TEST(PlotsTest, TheMouseReadsTheNearestPointAndNothingWhereACurveIsInterrupted) {
+  const Curve curve{"", 0, {-3.0, -2.0, -1.0, 0.0}, {1.0, NAN, 2.0, 3.0}};
+  EXPECT_EQ(nearest_in_x(curve, -5.0), 0U);
+  EXPECT_EQ(nearest_in_x(curve, -2.6), 0U);
+  EXPECT_EQ(nearest_in_x(curve, -2.4), 4U);  // none
+  EXPECT_EQ(nearest_in_x(curve, -0.6), 2U);
+  EXPECT_EQ(nearest_in_x(curve, 9.0), 3U);
+  EXPECT_EQ(nearest_in_x(Curve{}, 0.0), 0U);
+}
+
 TEST(PlotsTest, ScalesEndAtRoundNumbers) {
   EXPECT_DOUBLE_EQ(round_up(0.9), 1.0);
   EXPECT_DOUBLE_EQ(round_up(1.1), 2.0);
@@ -239,11 +324,35 @@ TEST(GalleryTest, HasTheScenesOfItsFolderThenThoseWithATitle) {
   EXPECT_EQ(shipped_scenes(folder / "bin/torsion"), scenes);
   const std::vector<GalleryEntry> gallery = read_gallery(scenes);
   ASSERT_EQ(gallery.size(), 3U);
-  EXPECT_EQ(gallery[0], (GalleryEntry{scenes / "gallery/1_a.gltf", "A"}));
-  EXPECT_EQ(gallery[1], (GalleryEntry{scenes / "gallery/2_b.gltf", "B"}));
-  EXPECT_EQ(gallery[2], (GalleryEntry{scenes / "c.gltf", "C"}));
+  EXPECT_EQ(gallery[0], (GalleryEntry{scenes / "gallery/1_a.gltf", "A", "", {}}));
+  EXPECT_EQ(gallery[1], (GalleryEntry{scenes / "gallery/2_b.gltf", "B", "", {}}));
+  EXPECT_EQ(gallery[2], (GalleryEntry{scenes / "c.gltf", "C", "", {}}));
   EXPECT_EQ(entry_of(gallery, scenes / "gallery/../c.gltf"), 2U);
   EXPECT_FALSE(entry_of(gallery, scenes / "d.gltf"));
+}
+
+TEST(GalleryTest, HasThePicturesThatFitItsCards) {
+  const test::Folder folder;
+  const std::filesystem::path scenes(folder / ".");
+  std::filesystem::create_directories(scenes / "gallery");
+  const auto scene = [](const std::string& name) {
+    return R"({"scenes": [{"extras": {"torsion_title": ")" + name +
+           R"(", "torsion_caption": "look"}}]})";
+  };
+  const auto picture = [](std::uint32_t width, std::uint32_t height) {
+    return Image{width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height, 200)};
+  };
+  for (const std::string name : {"a", "b", "c"}) {
+    test::write_text(scenes / (name + ".gltf"), scene(name));
+  }
+  ASSERT_TRUE(write_png(picture(kCardWidth, kCardHeight), scenes / "gallery/a.png"));
+  ASSERT_TRUE(write_png(picture(kCardWidth, kCardHeight - 1), scenes / "gallery/b.png"));
+  const std::vector<GalleryEntry> gallery = read_gallery(scenes);
+  ASSERT_EQ(gallery.size(), 3U);
+  EXPECT_EQ(gallery[0].caption, "look");
+  EXPECT_EQ(gallery[0].picture, picture(kCardWidth, kCardHeight));
+  EXPECT_EQ(gallery[1].picture, Image{});
+  EXPECT_EQ(gallery[2].picture, Image{});
 }
 
 TEST(GalleryTest, IsEmptyWhereNothingShips) {
@@ -255,6 +364,10 @@ TEST(GalleryTest, EveryShippedSceneOfItsFolderHasAKey) {
   const std::vector<GalleryEntry> gallery = read_gallery(test::source_folder() + "/scenes");
   EXPECT_GE(gallery.size(), 8U);
   EXPECT_LE(gallery.size(), 9U);  // keys 1 to 9
+  for (const GalleryEntry& entry : gallery) {
+    EXPECT_EQ(entry.picture.width, kCardWidth) << entry.file;
+    EXPECT_NE(entry.caption, "") << entry.file;
+  }
 }
 
 }  // namespace

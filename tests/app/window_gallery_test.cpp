@@ -46,7 +46,8 @@ class WindowGalleryTest : public ::testing::Test {
     const Result<Image> before = read_png(*folder_ / (a + ".png"));
     const Result<Image> after = read_png(*folder_ / (b + ".png"));
     EXPECT_TRUE(before.ok() && after.ok());
-    return before && after ? test::changed(before.value(), after.value(), 340, 48, 940, 620) : 0.0;
+    return before && after ? test::changed(before.value(), after.value(), 330, 150, 1030, 620)
+                           : 0.0;
   }
 
   static test::Folder* folder_;

@@ -30,8 +30,8 @@ until_true title_is 3_spin_and_slide
 name=3_spin_and_slide
 act
 keep third
-# The list is clicked.
-xdotool mousemove 120 119
+# A card is clicked.
+xdotool mousemove 270 75
 act
 xdotool mousedown 1
 sleep 1

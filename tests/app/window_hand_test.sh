@@ -11,19 +11,20 @@ name=$(basename "$scene" .gltf)
 
 open_window "$scene" --seconds 3000 --record session.rec
 act
-# The panel's part about moving the tool.
-click 100 476
-act mousemove 640 250
+# The panel's part about moving the tool, without the plots above it.
+click 160 234
+click 160 284
+act mousemove 800 250
 act mousedown 1
-act mousemove 640 270
-act mousemove 640 290
+act mousemove 800 270
+act mousemove 800 290
 xdotool click 4 click 4 click 4
 sleep 0.5
 act
 keep pressed
 act mouseup 1
 # The field of the turn. While it has the keys nothing else hears of them, so there are no pictures to wait for.
-xdotool mousemove 60 527
+xdotool mousemove 60 331
 act
 xdotool mousedown 1
 sleep 1
@@ -39,7 +40,7 @@ act
 keep typed
 # A digit was of the field, not of the gallery.
 [ "$(xdotool getwindowname "$id")" = "Torsion: $name.gltf" ]
-click 24 602
+click 24 424
 sleep 4
 act
 keep moved
@@ -52,6 +53,11 @@ keep orbited
 act key c
 act
 keep back
+# Let go of, the tool goes back to where the animation has it.
+act key g
+sleep 3
+act
+keep let_go
 # One scene is recorded: a key of the gallery must not throw that away.
 act key 3
 sleep 1

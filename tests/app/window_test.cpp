@@ -57,14 +57,14 @@ TEST_F(WindowTest, ValidationLayersAreSilent) {
 TEST_F(WindowTest, TheMousePressesTheToolAndItIsFelt) {
   const auto session = nlohmann::json::parse(read_text(*folder_ / "session.json"));
   EXPECT_GT(session["pictures"].get<int>(), 10);
-  // Reloaded at the end, so what was felt is in the pictures: the plots on the right.
-  EXPECT_GT(changed(shot("before"), shot("pressed"), 1010, 80, 1260, 280), 0.005);
+  // Reloaded at the end, so what was felt is in the pictures: the plots in the panel.
+  EXPECT_GT(changed(shot("before"), shot("pressed"), 70, 295, 310, 440), 0.005);
   // And the ball and the arrows over the body.
-  EXPECT_GT(changed(shot("before"), shot("pressed"), 480, 60, 800, 400), 0.02);
+  EXPECT_GT(changed(shot("before"), shot("pressed"), 640, 60, 960, 400), 0.02);
 }
 
 TEST_F(WindowTest, DraggingBesideTheToolTurnsTheView) {
-  EXPECT_GT(changed(shot("pressed"), shot("turned"), 340, 400, 930, 640), 0.2);
+  EXPECT_GT(changed(shot("pressed"), shot("turned"), 330, 400, 1090, 640), 0.2);
 }
 
 TEST_F(WindowTest, AVideoHasTheTimeThatPassedAndTheWindowsSize) {

@@ -29,10 +29,10 @@ is_wide() {
 act
 keep before
 # Takes the ball, presses it down, turns it by the wheel.
-act mousemove 640 200
+act mousemove 800 200
 act mousedown 1
 for y in $(seq 220 20 260); do
-  act mousemove 640 "$y"
+  act mousemove 800 "$y"
 done
 xdotool click 4 click 4 click 4 click 4
 sleep 0.5  # the plots' curves have a length

@@ -42,7 +42,7 @@ class WindowTroubleTest : public ::testing::Test {
     EXPECT_EQ(before.width, 1280U);
     EXPECT_EQ(after.width, 1280U);
     return before.width == 1280 && after.width == 1280
-               ? test::changed(before, after, 340, 48, 940, 640)
+               ? test::changed(before, after, 330, 60, 1270, 660)
                : 1.0;
   }
   static Image shot(const std::string& name) {

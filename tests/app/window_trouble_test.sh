@@ -32,13 +32,13 @@ all_lost() { [ "$(grep -c 'surface given up' session.err)" = 4 ]; }
 until_true all_lost
 # Takes the ball off the body, then to the right.
 act key f
-act mousemove 640 200
+act mousemove 800 200
 act mousedown 1
-act mousemove 640 140
+act mousemove 800 140
 act mouseup 1
 keep lifted
 act mousedown 1
-act mousemove 700 140
+act mousemove 860 140
 act mouseup 1
 keep right
 # Takes it back, while the window goes away under the mouse.
@@ -46,7 +46,7 @@ act mousedown 1
 act windowmove "$id" 40 30
 act windowsize "$id" 1000 600
 act windowsize "$id" 1280 720
-act mousemove 640 140
+act mousemove 800 140
 act mouseup 1
 act windowmove "$id" 0 0
 keep back
@@ -56,13 +56,13 @@ minimise
 xdotool mousemove 300 400
 xdotool mouseup 1
 restore
-act mousemove 640 140
-act mousemove 700 140
+act mousemove 800 140
+act mousemove 860 140
 keep let_go
 # Can be taken again.
-act mousemove 640 140
+act mousemove 800 140
 act mousedown 1
-act mousemove 700 140
+act mousemove 860 140
 act mouseup 1
 keep again
 close_window

@@ -129,5 +129,66 @@ TEST(ArrowsTest, FullForceIsAsLongAsTheScaleSays) {
   EXPECT_NEAR(reach(mesh, glm::dvec3(0.0, 1.0, 0.0)), 0.2 + 0.03, 1e-7);
 }
 
+TEST(ArrowsTest, PartsOfTheTorqueAreTheCouplesAndTheRest) {
+  const std::array radii = {0.05};
+  // A body turned so that its y axis is the world's z. Two contacts with couples of +0.3 and
+  // -0.1 N m about it, and 0.5 N m in all.
+  const std::array bodies = {
+      Pose{{1.0, 2.0, 3.0}, glm::angleAxis(glm::half_pi<double>(), glm::dvec3(1.0, 0.0, 0.0))}};
+  Snapshot snapshot = wrench_on_one_tool(glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 0.5));
+  snapshot.regions.reserve(2);
+  for (const double couple : {0.3, -0.1}) {
+    const std::uint32_t row = snapshot.regions.size();
+    snapshot.regions.append();
+    snapshot.regions.at<RegionFrame>(row).normal = {0.0, 1.0, 0.0};
+    snapshot.regions.at<RegionFriction>(row).couple = couple;
+    snapshot.regions.at<Contact>(row).radius = 0.02;
+    snapshot.regions.at<Contact>(row).equivalent_point = {0.1 * row, 0.0, 0.0};
+  }
+  // What an arc of this torque alone looks like.
+  const auto arc = [&](const glm::dvec3& center, const glm::dvec3& torque, double radius) {
+    Snapshot alone = wrench_on_one_tool(glm::dvec3(0.0), torque);
+    alone.tools.at<ToolMotion>(0).mass_center = center;
+    const std::array one = {radius};
+    ArrowMesh mesh;
+    append_wrenches(alone, {0.06, 1.0, 1.0, glm::dvec3(9.0), one}, mesh);
+    return mesh;
+  };
+  const glm::dvec3 up(0.0, 0.0, 1.0);
+  ArrowMesh expected;
+  for (const ArrowMesh& part :
+       {arc({1.0, 2.0, 3.0}, 0.3 / 0.5 * up, 0.027), arc({1.1, 2.0, 3.0}, -0.1 / 0.5 * up, 0.027),
+        arc(snapshot.tools.at<ToolMotion>(0).mass_center, 0.3 * up, 0.05)}) {
+    expected.positions.insert(expected.positions.end(), part.positions.begin(),
+                              part.positions.end());
+  }
+  ArrowMesh mesh;
+  append_wrenches(snapshot, {0.06, 1.0, 1.0, glm::dvec3(9.0), radii, true, 0.5, bodies}, mesh);
+  ASSERT_EQ(mesh.positions.size(), expected.positions.size());
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    EXPECT_LT(glm::length(mesh.positions[i] - expected.positions[i]), 1e-6F) << i;
+  }
+  // The couples have a colour of their own.
+  EXPECT_NE(mesh.colors.front(), mesh.colors.back());
+}
+
+TEST(ArrowsTest, NoiseOfATorqueFillsNoScale) {
+  // A normal force of 3 N on a contact of 20 mm, and 3e-6 N m: a part in 20 000 of what friction
+  // could hold.
+  Snapshot snapshot = wrench_on_one_tool(glm::dvec3(0.0, 3.0, 0.0), glm::dvec3(0.0, 3e-6, 0.0));
+  snapshot.regions.reserve(1);
+  snapshot.regions.append();
+  snapshot.regions.at<Contact>(0).radius = 0.02;
+  snapshot.regions.at<RegionFriction>(0).couple = 3e-6;
+  ArrowLimits limits;
+  widen(limits, snapshot.tools, snapshot.regions);
+  EXPECT_EQ(limits.force, 3.0);
+  for (const double full : {limits.torque, limits.couple}) {
+    EXPECT_GT(full, 100.0 * 3e-6);
+    // And what slides with a friction of 0.05 shows: 3 pi / 16 mu F a.
+    EXPECT_LT(full, 3.0 * glm::pi<double>() / 16.0 * 0.05 * 3.0 * 0.02);
+  }
+}
+
 }  // namespace
 }  // namespace torsion::engine

@@ -42,7 +42,7 @@ TEST(OverlayFontTest, EveryLetterHasInk) {
          y < static_cast<std::uint32_t>(high.v * static_cast<float>(atlas.height)); ++y) {
       for (auto x = static_cast<std::uint32_t>(low.u * static_cast<float>(atlas.width));
            x < static_cast<std::uint32_t>(high.u * static_cast<float>(atlas.width)); ++x) {
-        most = std::max(most, atlas.alpha[y * atlas.width + x]);
+        most = std::max(most, atlas.rgba[4 * (y * atlas.width + x) + 3]);
       }
     }
     EXPECT_GT(most, 128) << letter;

@@ -32,7 +32,7 @@ int difference(const Pixel& a, const Pixel& b) {
 }
 
 /// A solid patch as an atlas, and a list of one rectangle.
-const OverlayAtlas kAtlas{1, 1, {255}};
+const OverlayAtlas kAtlas{1, 1, {255, 255, 255, 255}};
 OverlayDrawList rectangle(float left, float top, float right, float bottom, std::uint32_t rgba) {
   return {{{left, top, 0.5F, 0.5F, rgba},
            {right, top, 0.5F, 0.5F, rgba},

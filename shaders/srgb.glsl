@@ -1,0 +1,4 @@
+// Linear of encoded sRGB (IEC 61966-2-1).
+vec3 decoded(vec3 c) {
+  return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
+}

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
+#include "app/drawn_detail.hpp"
 #include "app/scene_warnings.hpp"
 #include "app/session.hpp"
 #include "device/scripted_motion.hpp"
@@ -196,8 +197,10 @@ int check(const CheckOptions& options) {
     return report_problems({{options.scene.scene, "", "", "", prepared.error().text, ""}},
                            options.json);
   }
+  SceneDescription as_drawn = *loaded.scene;
+  refine_drawn_bodies(as_drawn, prepared.value().world.model, chosen.expected_poses);
   const std::vector<std::string> warnings =
-      scene_warnings(*loaded.scene, prepared.value(), chosen.expected_poses, chosen);
+      scene_warnings(as_drawn, prepared.value(), chosen.expected_poses, chosen);
   if (options.json) {
     fmt::print("{}\n", scene_json(*loaded.scene, prepared.value(), warnings).dump(2));
   } else {

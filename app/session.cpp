@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/drawn_detail.hpp"
 #include "app/progress.hpp"
 #include "app/scene_settings.hpp"
 #include "device/scripted_motion.hpp"
@@ -37,6 +38,8 @@ Result<Session> open_session(const std::filesystem::path& path, const PrepareOpt
     return Error{path.string() + ": " + simulation.error().text};
   }
   session.value().simulation = std::move(simulation).value();
+  refine_drawn_bodies(session.value().scene, session.value().simulation.world.model,
+                      informed.expected_poses);
   return session;
 }
 

@@ -13,6 +13,7 @@
 #include <tiny_gltf.h>
 
 #include "tests/app/program.hpp"
+#include "tests/scenes/gltf_builder.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -186,6 +187,37 @@ TEST(ExportTest, ARecordingBecomesAnAnimationThatPlaysBack) {
 TEST(ExportTest, WantsAMomentOrARecording) {
   const Folder folder;
   EXPECT_EQ(run_torsion({"export", scene("ball_on_cube"), "--out", folder / "a.glb"}).exit_code, 2);
+}
+
+TEST(ExportTest, ACubeOfEightCornersShowsItsDent) {
+  // A ball of 10 mm pressed 3 mm into the top of a cube of 100 mm whose mesh is its six faces.
+  test::GltfBuilder builder = test::good_scene();
+  builder.node("block")["extras"]["torsion_shape"] = "sphere";
+  builder.document.erase("animations");
+  builder.add_motion(1, "translation", {0.0F, 1.0F}, {0.0F, 0.13F, 0.0F, 0.0F, 0.107F, 0.0F});
+  const Folder folder;
+  test::write_text(folder / "cube.gltf", builder.text());
+  const Ran ran =
+      run_torsion({"export", folder / "cube.gltf", "--at", "1", "--out", folder / "out.gltf"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  tinygltf::Model model;
+  tinygltf::TinyGLTF reader;
+  std::string errors;
+  std::string warnings;
+  ASSERT_TRUE(reader.LoadASCIIFromFile(&model, &errors, &warnings, folder / "out.gltf")) << errors;
+  const auto places = rows_of<glm::vec3>(model, attribute(model, 0, "POSITION"));
+  EXPECT_GT(places.size(), 1000U);
+  EXPECT_LT(places.size(), 30'000U);
+  // The file has places in the body's frame: its top is at 50 mm, and under the ball 3 mm lower.
+  float middle = 1.0F;
+  float rim = 0.0F;
+  for (const glm::vec3& place : places) {
+    const float from_axis = std::hypot(place.x, place.z);
+    middle = from_axis < 1.5e-3F && place.y > 0.0F ? std::min(middle, place.y) : middle;
+    rim = std::max(rim, from_axis > 0.04F ? place.y : 0.0F);
+  }
+  EXPECT_NEAR(middle, 0.047F, 3e-4F);
+  EXPECT_NEAR(rim, 0.05F, 3e-4F);
 }
 
 }  // namespace

@@ -11,8 +11,8 @@ namespace torsion::engine {
 namespace {
 
 constexpr double kEverywhere = 1.0 / 16.0;  // of the longest side
-// Of the contact's radius: some six edges across, and as many beside, where the dent is steepest.
-constexpr double kInContact = 0.6;
+// Of the contact's radius: a dozen edges across, and as many beside, where the dent is steepest.
+constexpr double kInContact = 0.3;
 constexpr double kAround = 0.5;  // of the radius: as fine as in the contact
 
 DrawnDetail detail_of(const Model& model, std::uint32_t body,

@@ -8,6 +8,7 @@
 
 #include "ecs/assert.hpp"
 #include "ecs/hash.hpp"
+#include "systems/hold/virtual_coupling.hpp"
 #include "systems/surface/surface_field.hpp"
 
 namespace torsion::engine {
@@ -200,6 +201,18 @@ void LiveSession::hold(std::uint32_t tool, const Pose& handle) {
     send(
         {LiveCommandKind::kPoseFrom, tool, static_cast<std::uint64_t>(PoseFrom::kHandle), nullptr});
   }
+}
+
+Pose LiveSession::taking_handle(std::uint32_t tool) const {
+  const Snapshot& snapshot = frame().snapshot;
+  const Pose& now = snapshot.tools.at<ToolPose>(tool).now;
+  if (way_ == ToolHold::kDirect) {
+    return now;
+  }
+  Wrench contact = snapshot.tools.at<ToolWrench>(tool).total;
+  contact.torque +=
+      glm::cross(snapshot.tools.at<ToolMotion>(tool).mass_center - now.position, contact.force);
+  return balancing_handle(couplings_[tool], now, contact);
 }
 
 void LiveSession::release(std::uint32_t tool) {

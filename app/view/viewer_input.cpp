@@ -132,7 +132,7 @@ void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
   if (grab_.on_tool) {
     const std::uint32_t tool = grab_.drag.tool;
     if (!session_->held(tool)) {
-      handles_[tool] = tools.at<ToolPose>(tool).now;
+      handles_[tool] = session_->taking_handle(tool);
     }
     state_.tool = tool;
     const ContactAxes axes = axes_under(tool);
@@ -198,7 +198,7 @@ void Viewer::begin_move() {
   }
   const Snapshot& snapshot = session_->frame().snapshot;
   if (!session_->held(tool)) {
-    handles_[tool] = snapshot.tools.at<ToolPose>(tool).now;
+    handles_[tool] = session_->taking_handle(tool);
   }
   state_.let_go = false;
   const ContactAxes axes = axes_under(tool);

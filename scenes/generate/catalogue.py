@@ -144,7 +144,7 @@ def gallery(name, bin_name, size, material, depth, motion, eye, at, shown):
     gltf = start(bin_name, eye, at)
     ball = gltf.mesh("ball", shapes.grooved_ball(radius, 64), gltf.tool_material)
     half = tuple(0.5 * side for side in size)
-    body(gltf, "slab", shapes.box(half, 44), (0.0, half[1], 0.0), "box", material,
+    body(gltf, "slab", shapes.box(half, 12), (0.0, half[1], 0.0), "box", material,
          torsion_fixed="bottom_face")
     top = (0.0, size[1] + radius, 0.0)
     node = gltf.node("ball", mesh=ball, translation=top,

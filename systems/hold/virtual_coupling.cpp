@@ -1,5 +1,6 @@
 #include "systems/hold/virtual_coupling.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <tuple>
@@ -27,6 +28,39 @@ Wrench coupling_wrench(const VirtualCoupling& coupling, const MovingFrame& handl
       coupling.turn_stiffness * chord +
       coupling.turn_damping * (handle.angular_velocity - tool.angular_velocity);
   return {soft_limit(pull, coupling.largest_force), soft_limit(torque, coupling.largest_torque)};
+}
+
+namespace {
+
+/// The inverse of soft_limit(), up to nine tenths of `most`.
+glm::dvec3 before_limit(const glm::dvec3& vector, double most) {
+  constexpr double kShare = 0.9;
+  const double length = glm::length(vector);
+  if (!(length > 0.0) || !(most > 0.0)) {
+    return glm::dvec3(0.0);
+  }
+  const double share = std::min(length / most, kShare);
+  return vector / length * (share * most / std::sqrt(1.0 - share * share));
+}
+
+}  // namespace
+
+Pose balancing_handle(const VirtualCoupling& coupling, const Pose& tool, const Wrench& contact) {
+  Pose handle = tool;
+  if (coupling.stiffness > 0.0) {
+    handle.position -= before_limit(contact.force, coupling.largest_force) / coupling.stiffness;
+  }
+  if (coupling.turn_stiffness > 0.0) {
+    const glm::dvec3 chord =
+        -before_limit(contact.torque, coupling.largest_torque) / coupling.turn_stiffness;
+    const double length = glm::length(chord);
+    const double half_sine = std::min(0.5 * length, 1.0);
+    if (length > 0.0) {
+      handle.rotation = glm::normalize(glm::angleAxis(2.0 * std::asin(half_sine), chord / length) *
+                                       tool.rotation);
+    }
+  }
+  return handle;
 }
 
 namespace {

@@ -37,6 +37,12 @@ Wrench coupling_wrench(const VirtualCoupling& coupling, const MovingFrame& handl
 /// `most` is.
 glm::dvec3 soft_limit(const glm::dvec3& vector, double most);
 
+/// Where a handle keeps a tool where it is, against a wrench of its contacts: coupling_wrench()
+/// there is the opposite of `contact`, or nine tenths of the coupling's largest, if that is less.
+/// Without stiffness, where the tool is.
+/// @param contact  on the tool about its origin, world axes
+Pose balancing_handle(const VirtualCoupling& coupling, const Pose& tool, const Wrench& contact);
+
 /// What set a stiffness.
 enum class StiffnessLimit {
   kPassivity,  // b > K (T / 2 + t_d)

@@ -215,6 +215,48 @@ TEST(LiveLoopTest, AToolThatIsLetGoOfGoesBackToItsAnimationAndOnWithIt) {
   }
 }
 
+TEST(LiveLoopTest, AToolThatIsTakenWhileItPressesStaysWhereItIs) {
+  Session session = ball_session();
+  // Down by 2 mm within a second, turned by 5 degrees in the next.
+  MotionLink& link = session.scene.tools[0].script.links.back();
+  link.animated_translation = {
+      Interpolation::kLinear,
+      {0.0, 1.0},
+      {{0.0, kTouching + 1e-3, 0.0, 0.0}, {0.0, kTouching - 2e-3, 0.0, 0.0}}};
+  const glm::dquat turned = glm::angleAxis(glm::radians(5.0), glm::dvec3(0.0, 1.0, 0.0));
+  link.animated_rotation = {Interpolation::kLinear,
+                            {1.0, 2.0},
+                            {{0.0, 0.0, 0.0, 1.0}, {turned.x, turned.y, turned.z, turned.w}}};
+  HandleSlot slot;
+  LiveLoop loop;
+  reserve(loop, session, session.simulation);
+  const World& world = session.simulation.world;
+  loop.tools[0].slot = &slot;
+  loop.tools[0].smoothing.on = true;
+  for (int i = 0; i < 2100; ++i) {
+    live_tick(loop, 0.0);
+  }
+  const Pose before = world.state.tools.at<ToolPose>(0).now;
+  const Wrench held = world.state.tools.at<ToolWrench>(0).total;
+  const double force = glm::length(held.force);
+  const double torque = glm::length(held.torque);
+  ASSERT_GT(torque, 0.1 * force * 2e-3);
+  loop.tools[0].coupling = {1e3, 0.0, 5.0, 0.0, 2.0 * force, 2.0 * torque};
+  HandleSample& sample = slot.sample.back();
+  sample.pose =
+      balancing_handle(loop.tools[0].coupling, before, wrench_about_frame(world.state, 0));
+  sample.number = 1;
+  slot.sample.publish();
+  loop.commands.push(
+      {LiveCommandKind::kPoseFrom, 0, static_cast<std::uint64_t>(PoseFrom::kHandle), nullptr});
+  for (int i = 0; i < 300; ++i) {
+    live_tick(loop, 0.0);
+    const Wrench& now = world.state.tools.at<ToolWrench>(0).total;
+    ASSERT_NEAR(now.force.y, held.force.y, 1e-3 * force) << i;
+    ASSERT_NEAR(now.torque.y, held.torque.y, 1e-2 * torque) << i;
+  }
+}
+
 TEST(LiveLoopTest, PauseHoldsTheTimeAndASingleStepMovesItByOne) {
   Session session = ball_session();
   LiveLoop loop;

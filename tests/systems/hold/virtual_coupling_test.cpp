@@ -114,5 +114,24 @@ TEST(VirtualCouplingTest, DampsWhatMovesApart) {
   EXPECT_NEAR(wrench.torque.y, 0.5, 1e-15);
 }
 
+TEST(VirtualCouplingTest, ABalancingHandleAnswersTheContactsWrench) {
+  const VirtualCoupling coupling{500.0, 0.0, 0.8, 0.0, 4.0, 0.3};
+  const Pose tool{{0.1, -0.2, 0.3}, glm::angleAxis(0.7, glm::normalize(glm::dvec3(1.0, 2.0, 3.0)))};
+  for (const double share : {0.0, 0.01, 0.4, 0.89}) {
+    const Wrench contact{share * 4.0 * glm::normalize(glm::dvec3(1.0, -2.0, 0.5)),
+                         share * 0.3 * glm::normalize(glm::dvec3(-0.3, 0.1, 1.0))};
+    const Pose handle = balancing_handle(coupling, tool, contact);
+    const Wrench pull = coupling_wrench(coupling, {handle}, {tool});
+    EXPECT_LT(glm::length(pull.force + contact.force), 1e-12);
+    EXPECT_LT(glm::length(pull.torque + contact.torque), 1e-12);
+  }
+  // What is more than the coupling can do it answers with nine tenths of that.
+  const Pose handle = balancing_handle(coupling, tool, {{0.0, 50.0, 0.0}, {0.0, 0.0, -2.0}});
+  const Wrench pull = coupling_wrench(coupling, {handle}, {tool});
+  EXPECT_NEAR(pull.force.y, -0.9 * 4.0, 1e-12);
+  EXPECT_NEAR(pull.torque.z, 0.9 * 0.3, 1e-12);
+  EXPECT_EQ(balancing_handle({}, tool, {{1.0, 0.0, 0.0}, {}}).position, tool.position);
+}
+
 }  // namespace
 }  // namespace torsion::engine

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "app/round_up.hpp"
+#include "device/scripted_motion.hpp"
 #include "render/auto_camera.hpp"
 #include "systems/contact/region_wrenches.hpp"
 #include "systems/surface/surface_field.hpp"
@@ -87,7 +88,8 @@ Result<Camera> choose_camera(const Session& session, const FrameWorld& frame,
                              const std::string& node, double aspect) {
   const std::vector<CameraDescription>& cameras = session.scene.cameras;
   if (node.empty()) {
-    return cameras.empty() ? auto_camera(frame, aspect) : camera_of(cameras.front());
+    return cameras.empty() ? auto_camera(frame, aspect, expected_poses(session.scene))
+                           : camera_of(cameras.front());
   }
   const auto found = std::ranges::find(cameras, node, &CameraDescription::node);
   if (found != cameras.end()) {

@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
@@ -7,7 +8,9 @@
 #include "app/device_options.hpp"
 #include "app/live/device_words.hpp"
 #include "app/summary.hpp"
+#include "app/view/recent_scenes.hpp"
 #include "app/view/viewer.hpp"
+#include "systems/model/cache.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -50,9 +53,23 @@ nlohmann::ordered_json to_json(const ViewerOutcome& outcome) {
   return json;
 }
 
+/// Behind the gallery's scenes, those of a person's own that were opened last.
+void add_recent(const std::filesystem::path& list, std::vector<GalleryEntry>& gallery) {
+  for (const std::filesystem::path& scene : recent_scenes(list)) {
+    if (!entry_of(gallery, scene)) {
+      gallery.push_back({scene, scene.filename().string(), scene.parent_path().string(), {}});
+    }
+  }
+}
+
 int view(const ViewOptions& options) {
   ViewerOptions viewer_options = options.viewer;
   viewer_options.gallery = read_gallery();
+  const bool own = !options.scene.scene.empty() &&
+                   !entry_of(viewer_options.gallery, options.scene.scene) &&
+                   viewer_options.seconds < 0.0;  // those of scripts are nobody's own
+  const std::filesystem::path cache = cache_folder();
+  const std::filesystem::path recent = cache.empty() ? cache : cache / "recent_scenes";
   viewer_options.scene = options.scene.scene;
   if (viewer_options.scene.empty()) {
     if (viewer_options.gallery.empty()) {
@@ -62,11 +79,15 @@ int view(const ViewOptions& options) {
     }
     viewer_options.scene = viewer_options.gallery.front().file.string();
   }
+  add_recent(recent, viewer_options.gallery);
   viewer_options.prepare = options.scene.prepare_options();
   Viewer viewer(std::move(viewer_options));
   const Result<ViewerOutcome> outcome = viewer.run();
   if (!outcome) {
     return fail(outcome.error().text);
+  }
+  if (own && !recent.empty()) {
+    remember_scene(recent, options.scene.scene);
   }
   if (options.json) {
     fmt::print("{}\n", to_json(outcome.value()).dump(2));

@@ -22,6 +22,9 @@ struct ArrowMesh {
   void clear();
 };
 
+/// Of the longest arrow: so much of the bodies' largest side.
+inline constexpr double kFullArrow = 0.6;
+
 /// How long arrows are.
 struct ArrowScale {
   double length = 0.1;                  // m: of the arrow of full force

@@ -5,7 +5,9 @@
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <glm/vector_relational.hpp>
 
+#include "render/arrows.hpp"
 #include "render/box.hpp"
 
 namespace torsion::engine {
@@ -25,6 +27,42 @@ void include(const Owners& owners, const Vertices& vertices, Box& box) {
   }
 }
 
+double largest_side(const Box& box) {
+  const glm::dvec3 size = box.size();
+  return std::max({size.x, size.y, size.z});
+}
+
+/// The corners of a tool's box on its way, and the ends of arrows over its middle. A tool that
+/// comes from afar is not to make the contact small: what is farther from the bodies than their own
+/// size is left out.
+void include_way(const FrameWorld& frame, const Box& bodies,
+                 std::span<const std::vector<Pose>> poses, Box& box) {
+  const double side = largest_side(bodies);
+  const glm::dvec3 lowest = bodies.lowest - side;
+  const glm::dvec3 highest = bodies.highest + side;
+  const auto add = [&](const glm::dvec3& point) {
+    if (glm::all(glm::greaterThanEqual(point, lowest)) &&
+        glm::all(glm::lessThanEqual(point, highest))) {
+      box.add(point);
+    }
+  };
+  for (std::uint32_t tool = 0; tool < frame.tools.size(); ++tool) {
+    Box own;
+    for (const VertexRest& vertex :
+         frame.tool_vertices.rows<VertexRest>(frame.tools.at<DrawRange>(tool).vertices)) {
+      own.add(glm::dvec3(glm::vec3(vertex.position)));
+    }
+    for (const std::vector<Pose>& moment : poses) {
+      const Pose& pose = moment[tool];
+      for (int corner = 0; !own.empty() && corner < 8; ++corner) {
+        const glm::dvec3 share(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+        add(pose.position + pose.rotation * (own.lowest + share * own.size()));
+      }
+      add(pose.position + pose.rotation * own.center() + glm::dvec3(0.0, kFullArrow * side, 0.0));
+    }
+  }
+}
+
 }  // namespace
 
 Camera camera_of(const CameraDescription& description) {
@@ -32,9 +70,13 @@ Camera camera_of(const CameraDescription& description) {
           description.far_plane};
 }
 
-Camera auto_camera(const FrameWorld& frame, double aspect) {
+Camera auto_camera(const FrameWorld& frame, double aspect,
+                   std::span<const std::vector<Pose>> poses) {
   Box box;
   include(frame.bodies, frame.body_vertices, box);
+  if (!box.empty()) {
+    include_way(frame, Box(box), poses, box);
+  }
   include(frame.tools, frame.tool_vertices, box);
   Camera camera;
   if (box.empty()) {

@@ -24,7 +24,6 @@ namespace {
 
 constexpr std::uint32_t kSlots = Renderer::kFramesInFlight;
 constexpr std::uint32_t kTimestamps = 9;  // one before and after each pass of PassTimes
-constexpr double kArrowLength = 0.6;      // of the longest, as a part of the bodies' largest side
 constexpr std::uint32_t kLargestSide =
     16384;  // pixels: what every Vulkan 1.3 desktop driver allows
 
@@ -111,7 +110,7 @@ ArrowScale Renderer::Impl::arrow_scale(const FrameWorld& frame, const Snapshot& 
     return scale > 0.0 ? scale : 1.0;
   };
   const glm::dvec3 side = extent.highest - extent.lowest;
-  return {kArrowLength * std::max({side.x, side.y, side.z}),
+  return {kFullArrow * std::max({side.x, side.y, side.z}),
           scale_or(options.full_force, drawn_limits.force),
           scale_or(options.full_torque, drawn_limits.torque),
           camera.pose.position,

@@ -52,7 +52,7 @@ void draw_banners(const ViewState& state, const LiveSession& session, double now
            top, kRed);
   }
   if (state.opening) {
-    banner("##opening", "opening ...", top, IM_COL32(40, 100, 60, 255));
+    banner("##opening", "loading ...", top, IM_COL32(40, 100, 60, 255));
   }
   if (state.missed_lately > 10) {
     banner("##late",

@@ -122,9 +122,10 @@ void tell_values(ImDrawList& list, const Place& place, const PlotAxes& axes,
   if (over_time) {
     ImGui::TextUnformatted(fmt::format("{:.3g} {}", x, axes.x_title).c_str());
   }
+  const double near = 0.02 * (place.x.high - place.x.low);
   for (const Curve& curve : curves) {
     const std::size_t i = over_time ? nearest_in_x(curve, x) : nearest_seen(place, curve, mouse);
-    if (i < curve.x.size()) {
+    if (i < curve.x.size() && (!over_time || std::abs(curve.x[i] - x) < near)) {
       list.AddCircleFilled(place.of(curve.x[i], curve.y[i]), 3.0F, curve.rgba);
       const std::string at =
           over_time ? std::string() : fmt::format("{:.3g} {}: ", curve.x[i], axes.x_title);

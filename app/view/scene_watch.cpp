@@ -36,15 +36,21 @@ std::vector<fs::path> buffers_of(const fs::path& scene) {
 
 SceneWatch::SceneWatch(fs::path scene) : scene_(std::move(scene)), known_(look()), last_(known_) {}
 
-std::vector<SceneWatch::Stamp> SceneWatch::look() const {
-  std::vector<fs::path> paths = buffers_of(scene_);
-  paths.push_back(scene_);
-  std::vector<Stamp> stamps;
-  for (const fs::path& path : paths) {
+/// Reads the scene's file only where it has changed: it may be long.
+std::vector<SceneWatch::Stamp> SceneWatch::look() {
+  const auto stamp_of = [](const fs::path& path) {
     std::error_code gone;
     Stamp stamp{path, fs::last_write_time(path, gone), 0};
     stamp.size = fs::file_size(path, gone);
-    stamps.push_back(stamp);
+    return stamp;
+  };
+  std::vector<Stamp> stamps = {stamp_of(scene_)};
+  if (read_ != stamps.front()) {
+    read_ = stamps.front();
+    buffers_ = buffers_of(scene_);
+  }
+  for (const fs::path& path : buffers_) {
+    stamps.push_back(stamp_of(path));
   }
   return stamps;
 }

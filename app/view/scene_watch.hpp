@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ class SceneWatch {
   /// True once after a change, when the files have been quiet for one call since: a writer that is
   /// still at work is not read half-way.
   bool changed();
+  /// Whether the last call saw files that differ from those of the last change, or of the start.
+  [[nodiscard]] bool changing() const { return last_ != known_; }
 
  private:
   struct Stamp {
@@ -23,9 +26,11 @@ class SceneWatch {
     std::uintmax_t size = 0;
     bool operator==(const Stamp&) const = default;
   };
-  [[nodiscard]] std::vector<Stamp> look() const;
+  std::vector<Stamp> look();
 
   std::filesystem::path scene_;
+  std::optional<Stamp> read_;                   // the scene's file when its buffers were read
+  std::vector<std::filesystem::path> buffers_;  // beside it
   std::vector<Stamp> known_;
   std::vector<Stamp> last_;
 };

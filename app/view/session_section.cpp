@@ -48,11 +48,8 @@ bool card(const ViewState& state, std::size_t i) {
   const ImVec2 low = ImGui::GetItemRectMin();
   const ImVec2 high = ImGui::GetItemRectMax();
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(low, high, IM_COL32(225, 228, 233, 255));
-  if (picture.width > 0.0F) {
-    list.AddImage(ImGui::GetIO().Fonts->TexID, low, high, ImVec2(picture.u0, picture.v0),
-                  ImVec2(picture.u1, picture.v1));
-  }
+  list.AddImage(ImGui::GetIO().Fonts->TexID, low, high, ImVec2(picture.u0, picture.v0),
+                ImVec2(picture.u1, picture.v1));
   if (state.entry == i || ImGui::IsItemHovered()) {
     list.AddRect(low, high, kForceInk, 0.0F, 0, state.entry == i ? 3.0F : 1.5F);
   }
@@ -89,13 +86,29 @@ std::string who_holds(const ViewState& state, const LiveSession& session) {
                      coupling.largest_force);
 }
 
+/// One scene without a picture. @return whether it was clicked
+bool line(const ViewState& state, std::size_t i) {
+  const GalleryEntry& entry = state.gallery[i];
+  const std::string words =
+      i < 9 ? fmt::format("{}  {}", i + 1, entry.title) : fmt::format("    {}", entry.title);
+  const bool clicked = ImGui::Selectable(words.c_str(), state.entry == i);
+  if (ImGui::IsItemHovered()) {
+    ImGui::SetTooltip("%s", entry.caption.c_str());
+  }
+  return clicked;
+}
+
 }  // namespace
 
 void draw_gallery_cards(ViewState& state) {
   constexpr std::size_t kColumns = 4;
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(4.0F, 4.0F));
+  std::size_t cards = 0;
   for (std::size_t i = 0; i < state.gallery.size(); ++i) {
-    if (i % kColumns != 0) {
+    if (state.cards[i].small.width == 0.0F) {
+      continue;
+    }
+    if (cards++ % kColumns != 0) {
       ImGui::SameLine();
     }
     if (card(state, i)) {
@@ -103,6 +116,11 @@ void draw_gallery_cards(ViewState& state) {
     }
   }
   ImGui::PopStyleVar();
+  for (std::size_t i = 0; i < state.gallery.size(); ++i) {
+    if (state.cards[i].small.width == 0.0F && line(state, i)) {
+      state.wants_entry = i;
+    }
+  }
 }
 
 void draw_state_lines(const ViewState& state, const LiveSession& session) {

@@ -5,7 +5,7 @@
 
 namespace torsion::engine {
 
-/// Cards of the scenes to choose from, four in a row.
+/// The scenes to choose from: cards, four in a row, then lines for those without a picture.
 void draw_gallery_cards(ViewState& state);
 
 /// What is felt now, in numbers, and what holds the tool.

@@ -141,8 +141,8 @@ void Viewer::take_wishes() {
   if (state_.wants_saved_recording) {
     const std::string name = file_name(".rec");
     const Result<Done> saved = session_->save_recording(name);
-    say(saved ? fmt::format("{}: {:.1f} s, everything since the start; play it with torsion "
-                            "simulate --replay",
+    say(saved ? fmt::format("{}: {:.1f} s, everything since the start; torsion simulate --replay "
+                            "plays it, torsion export --replay makes it the scene's animation",
                             whole_path(name), session_->recorded_seconds())
               : saved.error().text);
   }

@@ -8,12 +8,14 @@
 
 #include "app/view/panel_layout.hpp"
 #include "app/view/viewer.hpp"
+#include "device/scripted_motion.hpp"
 #include "render/auto_camera.hpp"
 
 namespace torsion::engine {
 namespace {
 
-constexpr double kLookPeriod = 0.3;  // s: between looks at the scene's files
+constexpr double kLookPeriod = 0.06;   // s: between looks at the scene's files
+constexpr double kQuietPeriod = 0.15;  // s: for which they are quiet before they are read
 
 }  // namespace
 
@@ -21,8 +23,10 @@ void Viewer::place_camera() {
   FrameWorld& frame = session_->shown().frame;
   const double aspect = static_cast<double>(kWindowWidth) / kWindowHeight;
   const std::vector<CameraDescription>& cameras = session_->scene().cameras;
-  state_.camera = orbit_of(
-      cameras.empty() ? auto_camera(frame, aspect) : camera_of(cameras.front()), glm::dvec3(0.0));
+  state_.camera =
+      orbit_of(cameras.empty() ? auto_camera(frame, aspect, expected_poses(session_->scene()))
+                               : camera_of(cameras.front()),
+               glm::dvec3(0.0));
 }
 
 Camera Viewer::camera() const {
@@ -134,10 +138,14 @@ void Viewer::watch_scene() {
   if (now() < next_look_ || opener_.joinable()) {
     return;
   }
-  next_look_ = now() + kLookPeriod;
-  if (watch_->changed()) {
+  const bool changed = watch_->changed();
+  next_look_ = now() + (watch_->changing() ? kQuietPeriod : kLookPeriod);
+  if (changed) {
     open_in_background(options_.scene);
   }
+  const bool loading = opener_.joinable() || watch_->changing();
+  next_panels_ = loading == state_.opening ? next_panels_ : 0.0;  // says so at once
+  state_.opening = loading;
 }
 
 void Viewer::open_chosen_scene() {
@@ -151,7 +159,7 @@ void Viewer::open_chosen_scene() {
     open_in_background(state_.gallery[*state_.wants_entry].file.string());
   }
   state_.wants_entry.reset();
-  state_.opening = opener_.joinable();
+  state_.opening = opener_.joinable() || watch_->changing();
 }
 
 /// Fails where the new scene can be read but not shown: then the one before it is gone.

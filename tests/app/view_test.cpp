@@ -13,6 +13,7 @@
 #include "app/view/orbit_camera.hpp"
 #include "app/view/panel_layout.hpp"
 #include "app/view/plots.hpp"
+#include "app/view/recent_scenes.hpp"
 #include "app/view/region_history.hpp"
 #include "app/view/scene_watch.hpp"
 #include "app/view/tool_drag.hpp"
@@ -293,9 +294,12 @@ TEST(SceneWatchTest, SaysOnceThatAFileOrItsBufferHasChanged) {
   test::write_text(scene, R"({"buffers": [{"uri": "a.bin", "byteLength": 4}]})");
   SceneWatch watch(scene);
   EXPECT_FALSE(watch.changed());
+  EXPECT_FALSE(watch.changing());
   test::write_text(folder / "a.bin", "12345");
   EXPECT_FALSE(watch.changed());  // may still be written to
+  EXPECT_TRUE(watch.changing());
   EXPECT_TRUE(watch.changed());
+  EXPECT_FALSE(watch.changing());
   EXPECT_FALSE(watch.changed());
   test::write_text(scene, "{}  ");
   EXPECT_FALSE(watch.changed());
@@ -353,6 +357,32 @@ TEST(GalleryTest, HasThePicturesThatFitItsCards) {
   EXPECT_EQ(gallery[0].picture, picture(kCardWidth, kCardHeight));
   EXPECT_EQ(gallery[1].picture, Image{});
   EXPECT_EQ(gallery[2].picture, Image{});
+}
+
+TEST(RecentScenesTest, KeepsTheLastThreeThatAreStillThere) {
+  const test::Folder folder;
+  const std::filesystem::path list(folder / "cache/recent_scenes");
+  EXPECT_TRUE(recent_scenes(list).empty());
+  for (const char* name : {"a.gltf", "b.gltf", "c.gltf", "d.gltf"}) {
+    test::write_text(folder / name, "{}");
+    remember_scene(list, folder / name);
+  }
+  remember_scene(list, folder / "c.gltf");          // again
+  remember_scene(list, folder / "not there.gltf");  // changes nothing
+  const auto names = [&] {
+    std::vector<std::string> all;
+    for (const std::filesystem::path& scene : recent_scenes(list)) {
+      all.push_back(scene.filename().string());
+    }
+    return all;
+  };
+  EXPECT_EQ(names(), (std::vector<std::string>{"c.gltf", "d.gltf", "b.gltf"}));
+  std::filesystem::remove(folder / "d.gltf");
+  EXPECT_EQ(names(), (std::vector<std::string>{"c.gltf", "b.gltf"}));
+  // A list that cannot be written is left out.
+  test::write_text(folder / "file", "");
+  remember_scene(folder / "file/recent_scenes", folder / "a.gltf");
+  EXPECT_TRUE(recent_scenes(folder / "file/recent_scenes").empty());
 }
 
 TEST(GalleryTest, IsEmptyWhereNothingShips) {

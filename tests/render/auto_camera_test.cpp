@@ -25,6 +25,34 @@ TEST(AutoCameraTest, EveryVertexIsInThePicture) {
   }
 }
 
+TEST(AutoCameraTest, TheToolsWayAndItsArrowsAreInThePictureUnlessTheyAreFar) {
+  const FrameWorld frame =
+      make_frame_world({{box_mesh({0.5F, 0.1F, 0.2F}, 2), {}, {}}},
+                       {{sphere_mesh(0.1F, 4), {glm::dvec3(0.0, 0.2, 0.0), {}}, {}}});
+  const auto at = [](double x, double y) {
+    return std::vector<Pose>{{{x, y, 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)}};
+  };
+  std::vector<std::vector<Pose>> poses = {at(0.0, 0.2), at(0.7, 0.2), at(-0.6, 0.3)};
+  constexpr double kAspect = 1.5;
+  const auto seen = [&](const Camera& camera, const glm::dvec3& point) {
+    const glm::dvec4 clip =
+        projection_matrix(camera, kAspect) * view_matrix(camera) * glm::dvec4(point, 1.0);
+    return std::abs(clip.x) < clip.w && std::abs(clip.y) < clip.w;
+  };
+  const Camera camera = auto_camera(frame, kAspect, poses);
+  for (const std::vector<Pose>& moment : poses) {
+    const glm::dvec3& center = moment[0].position;
+    for (const glm::dvec3& beside :
+         {glm::dvec3(0.1, 0.0, 0.0), glm::dvec3(-0.1, 0.0, 0.0), glm::dvec3(0.0, 0.6, 0.0)}) {
+      EXPECT_TRUE(seen(camera, center + beside));
+    }
+  }
+  EXPECT_FALSE(seen(auto_camera(frame, kAspect), glm::dvec3(0.7, 0.8, 0.0)));
+  // It comes from ten metres away: that is not shown.
+  poses.push_back(at(0.0, 10.0));
+  EXPECT_EQ(auto_camera(frame, kAspect, poses).pose.position, camera.pose.position);
+}
+
 TEST(AutoCameraTest, LooksDownOnTheScene) {
   const FrameWorld frame = make_frame_world({{box_mesh(glm::vec3(1.0F), 1), {}, {}}}, {});
   const Camera camera = auto_camera(frame, 1.5);

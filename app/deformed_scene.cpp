@@ -60,6 +60,18 @@ WrittenMesh deformed_body(const Session& session, const FrameWorld& frame, std::
   return mesh;
 }
 
+WrittenMesh placed_tool(const Session& session, std::uint32_t row) {
+  const ToolDescription& from = session.scene.tools[row];
+  WrittenMesh mesh;
+  mesh.name = from.node;
+  mesh.pose = session.simulation.world.state.tools.at<ToolPose>(row).now;
+  mesh.color = from.draw.color;
+  mesh.positions = from.draw.positions;
+  mesh.normals = from.draw.normals;
+  mesh.triangles = from.draw.triangles;
+  return mesh;
+}
+
 }  // namespace
 
 std::vector<WrittenMesh> deformed_scene(const Session& session) {
@@ -74,17 +86,50 @@ std::vector<WrittenMesh> deformed_scene(const Session& session) {
     meshes.push_back(deformed_body(session, frame, body));
   }
   for (std::uint32_t tool = 0; tool < session.scene.tools.size(); ++tool) {
-    const ToolDescription& from = session.scene.tools[tool];
-    WrittenMesh mesh;
-    mesh.name = from.node;
-    mesh.pose = world.state.tools.at<ToolPose>(tool).now;
-    mesh.color = from.draw.color;
-    mesh.positions = from.draw.positions;
-    mesh.normals = from.draw.normals;
-    mesh.triangles = from.draw.triangles;
-    meshes.push_back(std::move(mesh));
+    meshes.push_back(placed_tool(session, tool));
   }
   return meshes;
+}
+
+DeformedRun::DeformedRun(const Session& session)
+    : frame_(prepare_frame(session.scene, session.simulation.world.model,
+                           session.simulation.world.state)) {
+  const World& world = session.simulation.world;
+  snapshot_.reserve(world.model, world.state);
+  for (const BodyDescription& body : session.scene.bodies) {
+    WrittenMesh mesh;
+    mesh.name = body.node;
+    mesh.pose = body.pose;
+    mesh.color = body.draw.color;
+    mesh.positions = body.draw.positions;
+    mesh.normals = body.draw.normals;
+    mesh.triangles = body.draw.triangles;
+    meshes_.push_back({std::move(mesh), {}, {}});
+  }
+  for (std::uint32_t tool = 0; tool < session.scene.tools.size(); ++tool) {
+    meshes_.push_back({placed_tool(session, tool), {}, {}});
+  }
+}
+
+void DeformedRun::add(const Session& session, double time) {
+  const World& world = session.simulation.world;
+  take_snapshot(session.simulation, snapshot_);
+  surface_field(world.model, snapshot_, frame_);
+  const auto bodies = static_cast<std::uint32_t>(session.scene.bodies.size());
+  for (std::uint32_t body = 0; body < bodies; ++body) {
+    const WrittenMesh now = deformed_body(session, frame_, body);
+    const WrittenMesh& rest = meshes_[body].rest;
+    MorphTarget target;
+    for (std::size_t i = 0; i < now.positions.size(); ++i) {
+      target.positions.push_back(now.positions[i] - rest.positions[i]);
+      target.normals.push_back(now.normals[i] - rest.normals[i]);
+    }
+    meshes_[body].targets.push_back(std::move(target));
+  }
+  for (std::uint32_t tool = 0; tool < session.scene.tools.size(); ++tool) {
+    meshes_[bodies + tool].poses.push_back(world.state.tools.at<ToolPose>(tool).now);
+  }
+  times_.push_back(static_cast<float>(time));
 }
 
 }  // namespace torsion::engine

@@ -3,11 +3,32 @@
 #include <vector>
 
 #include "app/session.hpp"
+#include "ecs/frame_world.hpp"
+#include "ecs/snapshot.hpp"
 #include "scenes/write_gltf.hpp"
 
 namespace torsion::engine {
 
 /// The bodies as they are deformed after the last step, and the tools where they are.
 std::vector<WrittenMesh> deformed_scene(const Session& session);
+
+/// A run at some of its moments, for a file of it.
+class DeformedRun {
+ public:
+  /// @param session  at its start, or anywhere: bodies are at rest in what is kept
+  explicit DeformedRun(const Session& session);
+
+  /// Keeps the state after the last step.
+  void add(const Session& session, double time);
+
+  [[nodiscard]] const std::vector<AnimatedMesh>& meshes() const { return meshes_; }
+  [[nodiscard]] const std::vector<float>& times() const { return times_; }
+
+ private:
+  FrameWorld frame_;
+  Snapshot snapshot_;
+  std::vector<AnimatedMesh> meshes_;  // bodies, then tools
+  std::vector<float> times_;          // s
+};
 
 }  // namespace torsion::engine

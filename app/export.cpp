@@ -1,3 +1,4 @@
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -17,7 +18,10 @@ struct ExportOptions {
   SceneOptions scene;
   std::string out;
   std::string replay;
-  double at = 0.0;  // s
+  double at = 0.0;        // s
+  bool animate = false;   // the whole run instead
+  double fps = 10.0;      // of it
+  double seconds = -1.0;  // s, of it; negative: to the end of its animation
   bool quiet = false;
 };
 
@@ -58,6 +62,44 @@ int export_recording(const ExportOptions& options, bool binary) {
                    fmt::format("{} moved as in {}", options.scene.scene, options.replay));
 }
 
+/// How many moments a run has; none where it has no end.
+Result<std::uint64_t> moments_of(const ExportOptions& options, const Session& session) {
+  constexpr double kMost = 500.0;
+  const double seconds = options.seconds >= 0.0 ? options.seconds : session.scene.duration;
+  if (seconds <= 0.0) {
+    return Error{options.scene.scene + ": no animation moves a tool, so --animate needs --seconds"};
+  }
+  const double moments = std::floor(seconds * options.fps + 1e-9) + 1.0;
+  if (moments > kMost) {
+    return Error{fmt::format(
+        "{}: {:.4g} s at --fps {:.4g} are {:.0f} shapes of each body; a file holds up to {:.0f}: "
+        "take fewer a second, or --seconds",
+        options.scene.scene, seconds, options.fps, moments, kMost)};
+  }
+  return static_cast<std::uint64_t>(moments);
+}
+
+int export_run(const ExportOptions& options, Session& session, OutputFile& file, bool binary) {
+  const Result<std::uint64_t> moments = moments_of(options, session);
+  if (!moments) {
+    return fail(moments.error().text);
+  }
+  DeformedRun run(session);
+  Progress progress("simulating", options.quiet);
+  std::uint64_t taken = 0;  // steps
+  for (std::uint64_t moment = 0; moment < moments.value(); ++moment) {
+    const double time = static_cast<double>(moment) / options.fps;
+    for (const std::uint64_t steps = steps_in(session, time) + 1; taken < steps; ++taken) {
+      step_scripted(session);
+    }
+    run.add(session, time);
+    progress.show(static_cast<double>(moment) / static_cast<double>(moments.value()));
+  }
+  return write_out(options, file, animated_gltf_bytes(run.meshes(), run.times(), binary),
+                   fmt::format("{}, {} moments up to {:.4g} s", options.scene.scene,
+                               moments.value(), static_cast<double>(run.times().back())));
+}
+
 int export_scene(const ExportOptions& options) {
   const std::string extension = std::filesystem::path(options.out).extension().string();
   if (extension != ".glb" && extension != ".gltf") {
@@ -78,6 +120,9 @@ int export_scene(const ExportOptions& options) {
     return fail(file.error().text);
   }
   Session& session = opened.value();
+  if (options.animate) {
+    return export_run(options, session, file.value(), extension == ".glb");
+  }
   const std::uint64_t steps = steps_in(session, options.at) + 1;
   {
     Progress progress("simulating", options.quiet);
@@ -94,8 +139,8 @@ int export_scene(const ExportOptions& options) {
 }  // namespace
 
 void add_export(CLI::App& app, Command& command) {
-  CLI::App* subcommand =
-      app.add_subcommand("export", "Write the deformed bodies at one moment as glTF");
+  CLI::App* subcommand = app.add_subcommand(
+      "export", "Write the deformed bodies at one moment, or all of a run, as glTF");
   auto options = std::make_shared<ExportOptions>();
   options->scene.add_to(*subcommand);
   CLI::Option* at =
@@ -104,13 +149,22 @@ void add_export(CLI::App& app, Command& command) {
       "--replay", options->replay,
       "A recording instead of a moment: the scene, its tools animated as they were recorded");
   replay->excludes(at);
+  CLI::Option* animate = subcommand->add_flag(
+      "--animate", options->animate, "The whole run: tools by keys, bodies by a shape a moment");
+  animate->excludes(at)->excludes(replay);
+  subcommand->add_option("--fps", options->fps, "Moments a second of --animate, 10 unless said")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->needs(animate);
+  subcommand->add_option("--seconds", options->seconds, "How long; else the animation's length")
+      ->check(CLI::Range(0.0, 1e6))
+      ->needs(animate);
   options->scene.add_settings_to(*subcommand)->excludes(replay);
   subcommand->add_option("--out", options->out, "A .glb or .gltf to write")->required();
   subcommand->add_flag("--quiet", options->quiet, "Print nothing but errors");
   subcommand->callback([options, at, replay, &command] {
     command = [options, at, replay] {
-      if (at->empty() && replay->empty()) {
-        fmt::print(stderr, "export: one of --at and --replay is required\n");
+      if (at->empty() && replay->empty() && !options->animate) {
+        fmt::print(stderr, "export: one of --at, --animate and --replay is required\n");
         return kUsage;
       }
       return export_scene(*options);

@@ -25,4 +25,27 @@ int append_rows(tinygltf::Model& model, int buffer, std::span<const std::byte> r
   return static_cast<int>(model.accessors.size()) - 1;
 }
 
+int append_times(tinygltf::Model& model, int buffer, std::span<const float> times) {
+  const int row = append_rows(model, buffer, std::as_bytes(times),
+                              {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, times.size()});
+  tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(row)];
+  accessor.minValues = {static_cast<double>(times.front())};
+  accessor.maxValues = {static_cast<double>(times.back())};
+  return row;
+}
+
+void add_channel(tinygltf::Animation& animation, int node, const char* path, int times,
+                 int values) {
+  tinygltf::AnimationSampler sampler;
+  sampler.input = times;
+  sampler.output = values;
+  sampler.interpolation = "LINEAR";
+  animation.samplers.push_back(sampler);
+  tinygltf::AnimationChannel channel;
+  channel.sampler = static_cast<int>(animation.samplers.size()) - 1;
+  channel.target_node = node;
+  channel.target_path = path;
+  animation.channels.push_back(channel);
+}
+
 }  // namespace torsion::engine

@@ -21,4 +21,14 @@ struct RowKind {
 int append_rows(tinygltf::Model& model, int buffer, std::span<const std::byte> rows,
                 const RowKind& kind);
 
+/// An accessor of keys' times, with the bounds that it must have.
+/// @pre there are some
+int append_times(tinygltf::Model& model, int buffer, std::span<const float> times);
+
+/// A channel of an animation, linear between its keys.
+/// @param path    translation, rotation or weights
+/// @param times   accessor
+/// @param values  accessor
+void add_channel(tinygltf::Animation& animation, int node, const char* path, int times, int values);
+
 }  // namespace torsion::engine

@@ -83,24 +83,95 @@ void add_mesh(tinygltf::Model& model, const WrittenMesh& mesh) {
   model.scenes[0].nodes.push_back(static_cast<int>(model.nodes.size()) - 1);
 }
 
-}  // namespace
+/// Vertices of the last mesh at each time, and the keys of their weights.
+void add_targets(tinygltf::Model& model, const AnimatedMesh& mesh, int times,
+                 tinygltf::Animation& animation) {
+  tinygltf::Mesh& written = model.meshes.back();
+  const std::size_t count = mesh.targets.size();
+  for (const MorphTarget& target : mesh.targets) {
+    const int positions = add_vectors(model, target.positions);
+    set_bounds(model.accessors[static_cast<std::size_t>(positions)], target.positions);
+    written.primitives[0].targets.push_back(
+        {{"POSITION", positions}, {"NORMAL", add_vectors(model, target.normals)}});
+  }
+  written.weights.assign(count, 0.0);
+  std::vector<float> weights(count * count, 0.0F);
+  for (std::size_t i = 0; i < count; ++i) {
+    weights[i * count + i] = 1.0F;
+  }
+  add_channel(
+      animation, static_cast<int>(model.nodes.size()) - 1, "weights", times,
+      add_accessor<float>(model, weights,
+                          {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, weights.size()}));
+}
 
-Result<std::string> gltf_bytes(const std::vector<WrittenMesh>& meshes, bool binary) {
+/// Keys of the last node.
+void add_poses(tinygltf::Model& model, const AnimatedMesh& mesh, int times,
+               tinygltf::Animation& animation) {
+  std::vector<glm::vec3> translations;
+  std::vector<glm::vec4> rotations;
+  for (const Pose& pose : mesh.poses) {
+    const glm::dquat& q = pose.rotation;
+    translations.emplace_back(pose.position);
+    rotations.emplace_back(glm::dvec4(q.x, q.y, q.z, q.w));
+  }
+  const int node = static_cast<int>(model.nodes.size()) - 1;
+  add_channel(animation, node, "translation", times,
+              add_accessor<glm::vec3>(
+                  model, translations,
+                  {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, translations.size()}));
+  add_channel(
+      animation, node, "rotation", times,
+      add_accessor<glm::vec4>(
+          model, rotations, {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC4, rotations.size()}));
+}
+
+tinygltf::Model empty_model() {
   tinygltf::Model model;
   model.asset.version = "2.0";
   model.asset.generator = "Torsion";
   model.scenes.emplace_back();
   model.defaultScene = 0;
   model.buffers.emplace_back();
-  for (const WrittenMesh& mesh : meshes) {
-    add_mesh(model, mesh);
-  }
+  return model;
+}
+
+Result<std::string> bytes_of(tinygltf::Model model, bool binary) {
   std::ostringstream stream;
   tinygltf::TinyGLTF writer;
   if (!writer.WriteGltfSceneToStream(&model, stream, true, binary) || !stream) {
     return Error{"the scene cannot be written as glTF"};
   }
   return stream.str();
+}
+
+}  // namespace
+
+Result<std::string> gltf_bytes(const std::vector<WrittenMesh>& meshes, bool binary) {
+  tinygltf::Model model = empty_model();
+  for (const WrittenMesh& mesh : meshes) {
+    add_mesh(model, mesh);
+  }
+  return bytes_of(std::move(model), binary);
+}
+
+Result<std::string> animated_gltf_bytes(const std::vector<AnimatedMesh>& meshes,
+                                        const std::vector<float>& times, bool binary) {
+  tinygltf::Model model = empty_model();
+  tinygltf::Animation animation;
+  animation.name = "run";
+  const int keys = append_times(model, 0, times);
+  for (const AnimatedMesh& mesh : meshes) {
+    add_mesh(model, mesh.rest);
+    if (!mesh.poses.empty()) {
+      add_poses(model, mesh, keys, animation);
+    }
+    if (!mesh.targets.empty()) {
+      add_targets(model, mesh, keys, animation);
+    }
+  }
+  model.animations.push_back(std::move(animation));
+  return bytes_of(std::move(model), binary);
 }
 
 }  // namespace torsion::engine

@@ -23,6 +23,25 @@ struct WrittenMesh {
   glm::vec4 color{0.8F, 0.8F, 0.8F, 1.0F};  // linear RGB and alpha
 };
 
+/// What a mesh is at one time, beside its rest: differences of each vertex's place and normal.
+struct MorphTarget {
+  std::vector<glm::vec3> positions;  // m
+  std::vector<glm::vec3> normals;
+};
+
+/// A mesh that moves as a whole, or bends, or neither.
+struct AnimatedMesh {
+  WrittenMesh rest;
+  std::vector<Pose> poses;           // (times), of the node; or empty
+  std::vector<MorphTarget> targets;  // (times); or empty
+};
+
+/// The bytes of a .glb, or of a .gltf with its buffer inside, of meshes that move: nodes by keys,
+/// vertices by one morph target a time, whose weights go linearly from one to the next.
+/// @param times  s, of the keys, strictly increasing, at least one
+Result<std::string> animated_gltf_bytes(const std::vector<AnimatedMesh>& meshes,
+                                        const std::vector<float>& times, bool binary);
+
 /// The bytes of a .glb, or of a .gltf with its buffer inside.
 Result<std::string> gltf_bytes(const std::vector<WrittenMesh>& meshes, bool binary);
 

@@ -19,20 +19,6 @@ int add_rows(tinygltf::Model& model, int buffer, std::span<const Row> rows, int 
                      {TINYGLTF_COMPONENT_TYPE_FLOAT, type, rows.size()});
 }
 
-void add_channel(tinygltf::Animation& animation, int node, const char* path, int times,
-                 int values) {
-  tinygltf::AnimationSampler sampler;
-  sampler.input = times;
-  sampler.output = values;
-  sampler.interpolation = "LINEAR";
-  animation.samplers.push_back(sampler);
-  tinygltf::AnimationChannel channel;
-  channel.sampler = static_cast<int>(animation.samplers.size()) - 1;
-  channel.target_node = node;
-  channel.target_path = path;
-  animation.channels.push_back(channel);
-}
-
 /// What moved the node before goes, and an animation of which nothing is left.
 void remove_motion(tinygltf::Model& model, int node) {
   for (tinygltf::Animation& animation : model.animations) {
@@ -54,10 +40,7 @@ void add_motion(tinygltf::Model& model, tinygltf::Animation& animation, int buff
     translations.emplace_back(pose.position);
     rotations.emplace_back(glm::dvec4(q.x, q.y, q.z, q.w));
   }
-  const int times = add_rows<float>(model, buffer, std::span(motion.times), TINYGLTF_TYPE_SCALAR);
-  tinygltf::Accessor& accessor = model.accessors.back();
-  accessor.minValues = {static_cast<double>(motion.times.front())};
-  accessor.maxValues = {static_cast<double>(motion.times.back())};
+  const int times = append_times(model, buffer, motion.times);
   add_channel(animation, node, "translation", times,
               add_rows<glm::vec3>(model, buffer, translations, TINYGLTF_TYPE_VEC3));
   add_channel(animation, node, "rotation", times,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <numbers>
 #include <sstream>
 
@@ -218,6 +219,73 @@ TEST(ExportTest, ACubeOfEightCornersShowsItsDent) {
   }
   EXPECT_NEAR(middle, 0.047F, 3e-4F);
   EXPECT_NEAR(rim, 0.05F, 3e-4F);
+}
+
+TEST(ExportTest, ARunIsAtEveryMomentWhatIsExportedAtThatMoment) {
+  const Folder folder;
+  const Ran ran = run_torsion({"export", scene("ball_on_cube_soft"), "--animate", "--fps", "4",
+                               "--seconds", "2", "--out", folder / "run.glb"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  tinygltf::Model run;
+  tinygltf::TinyGLTF reader;
+  std::string errors;
+  std::string warnings;
+  ASSERT_TRUE(reader.LoadBinaryFromFile(&run, &errors, &warnings, folder / "run.glb")) << errors;
+  EXPECT_EQ(warnings, "");
+  constexpr std::size_t kMoments = 9;  // 0, 0.25, ... 2 s
+  const tinygltf::Primitive& body = run.meshes.at(0).primitives.at(0);
+  ASSERT_EQ(body.targets.size(), kMoments);
+  ASSERT_EQ(run.animations.size(), 1U);
+  const auto channel = [&](int node, const std::string& path) {
+    const auto& channels = run.animations[0].channels;
+    const auto found = std::ranges::find_if(channels, [&](const tinygltf::AnimationChannel& one) {
+      return one.target_node == node && one.target_path == path;
+    });
+    EXPECT_NE(found, channels.end()) << path;
+    return run.animations[0].samplers.at(static_cast<std::size_t>(found->sampler));
+  };
+  const auto accessor = [&](int row) -> const tinygltf::Accessor& {
+    return run.accessors.at(static_cast<std::size_t>(row));
+  };
+  const tinygltf::AnimationSampler weights = channel(0, "weights");
+  EXPECT_EQ(weights.interpolation, "LINEAR");
+  const auto times = rows_of<float>(run, accessor(weights.input));
+  const auto keys = rows_of<float>(run, accessor(weights.output));
+  const auto places = rows_of<glm::vec3>(run, accessor(channel(1, "translation").output));
+  const auto rest = rows_of<glm::vec3>(run, attribute(run, 0, "POSITION"));
+  ASSERT_EQ(times.size(), kMoments);
+  ASSERT_EQ(keys.size(), kMoments * kMoments);
+  for (std::size_t moment = 0; moment < kMoments; ++moment) {
+    EXPECT_FLOAT_EQ(times[moment], 0.25F * static_cast<float>(moment));
+    for (std::size_t target = 0; target < kMoments; ++target) {
+      EXPECT_EQ(keys[moment * kMoments + target], target == moment ? 1.0F : 0.0F);
+    }
+  }
+  // 1.5 s, in the middle of the turn, by the other way.
+  constexpr std::size_t kMiddle = 6;
+  const tinygltf::Model once = exported("ball_on_cube_soft", "1.5", "once.gltf");
+  const auto deformed = rows_of<glm::vec3>(once, attribute(once, 0, "POSITION"));
+  const auto moved = rows_of<glm::vec3>(run, accessor(body.targets[kMiddle].at("POSITION")));
+  ASSERT_EQ(deformed.size(), rest.size());
+  float farthest = 0.0F;
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    ASSERT_LT(glm::length(rest[i] + moved[i] - deformed[i]), 1e-7F);
+    farthest = std::max(farthest, glm::length(moved[i]));
+  }
+  EXPECT_GT(farthest, 5e-3F);
+  const std::vector<double>& placed = once.nodes.at(1).translation;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(places[kMiddle][static_cast<int>(axis)], placed[axis], 1e-7);
+  }
+}
+
+TEST(ExportTest, ARunOfTooManyMomentsIsRefused) {
+  const Folder folder;
+  const Ran ran = run_torsion({"export", scene("ball_on_cube_soft"), "--animate", "--fps", "1000",
+                               "--out", folder / "run.glb"});
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_NE(ran.err.find("fewer a second"), std::string::npos) << ran.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "run.glb"));
 }
 
 }  // namespace

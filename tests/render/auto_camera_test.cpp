@@ -32,7 +32,7 @@ TEST(AutoCameraTest, TheToolsWayAndItsArrowsAreInThePictureUnlessTheyAreFar) {
   const auto at = [](double x, double y) {
     return std::vector<Pose>{{{x, y, 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)}};
   };
-  std::vector<std::vector<Pose>> poses = {at(0.0, 0.2), at(0.7, 0.2), at(-0.6, 0.3)};
+  std::vector<std::vector<Pose>> poses = {at(0.0, 0.2), at(1.2, 0.2), at(-1.0, 0.3)};
   constexpr double kAspect = 1.5;
   const auto seen = [&](const Camera& camera, const glm::dvec3& point) {
     const glm::dvec4 clip =
@@ -47,7 +47,7 @@ TEST(AutoCameraTest, TheToolsWayAndItsArrowsAreInThePictureUnlessTheyAreFar) {
       EXPECT_TRUE(seen(camera, center + beside));
     }
   }
-  EXPECT_FALSE(seen(auto_camera(frame, kAspect), glm::dvec3(0.7, 0.8, 0.0)));
+  EXPECT_FALSE(seen(auto_camera(frame, kAspect), glm::dvec3(1.3, 0.2, 0.0)));
   // It comes from ten metres away: that is not shown.
   poses.push_back(at(0.0, 10.0));
   EXPECT_EQ(auto_camera(frame, kAspect, poses).pose.position, camera.pose.position);

@@ -124,11 +124,16 @@ void DeformedRun::add(const Session& session, double time) {
       target.positions.push_back(now.positions[i] - rest.positions[i]);
       target.normals.push_back(now.normals[i] - rest.normals[i]);
     }
+    target.twist_angles = now.twist_angles;
     meshes_[body].targets.push_back(std::move(target));
   }
+  std::vector<Felt> felt;
   for (std::uint32_t tool = 0; tool < session.scene.tools.size(); ++tool) {
     meshes_[bodies + tool].poses.push_back(world.state.tools.at<ToolPose>(tool).now);
+    felt.push_back({world.state.tools.at<ToolWrench>(tool).total,
+                    world.state.tools.at<ToolMotion>(tool).mass_center});
   }
+  felt_.push_back(std::move(felt));
   times_.push_back(static_cast<float>(time));
 }
 

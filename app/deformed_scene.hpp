@@ -23,12 +23,20 @@ class DeformedRun {
 
   [[nodiscard]] const std::vector<AnimatedMesh>& meshes() const { return meshes_; }
   [[nodiscard]] const std::vector<float>& times() const { return times_; }
+  /// What a tool feels at one of the times, and where its mass centre is.
+  struct Felt {
+    Wrench wrench;           // on the tool about the centre, world
+    glm::dvec3 center{0.0};  // m, world
+  };
+  /// (times) of (tools)
+  [[nodiscard]] const std::vector<std::vector<Felt>>& felt() const { return felt_; }
 
  private:
   FrameWorld frame_;
   Snapshot snapshot_;
   std::vector<AnimatedMesh> meshes_;  // bodies, then tools
   std::vector<float> times_;          // s
+  std::vector<std::vector<Felt>> felt_;
 };
 
 }  // namespace torsion::engine

@@ -10,6 +10,9 @@
 #include "app/live/recording_file.hpp"
 #include "app/output_file.hpp"
 #include "app/progress.hpp"
+#ifdef TORSION_WITH_RENDER
+#include "app/run_page/run_page.hpp"
+#endif
 
 namespace torsion::engine {
 namespace {
@@ -79,7 +82,20 @@ Result<std::uint64_t> moments_of(const ExportOptions& options, const Session& se
   return static_cast<std::uint64_t>(moments);
 }
 
-int export_run(const ExportOptions& options, Session& session, OutputFile& file, bool binary) {
+enum class RunFormat { kGltf, kGlb, kPage };
+
+Result<std::string> run_bytes(const Session& session, const DeformedRun& run, RunFormat format) {
+#ifdef TORSION_WITH_RENDER
+  if (format == RunFormat::kPage) {
+    return run_page(session, run);
+  }
+#else
+  static_cast<void>(session);
+#endif
+  return animated_gltf_bytes(run.meshes(), run.times(), format == RunFormat::kGlb);
+}
+
+int export_run(const ExportOptions& options, Session& session, OutputFile& file, RunFormat format) {
   const Result<std::uint64_t> moments = moments_of(options, session);
   if (!moments) {
     return fail(moments.error().text);
@@ -95,15 +111,22 @@ int export_run(const ExportOptions& options, Session& session, OutputFile& file,
     run.add(session, time);
     progress.show(static_cast<double>(moment) / static_cast<double>(moments.value()));
   }
-  return write_out(options, file, animated_gltf_bytes(run.meshes(), run.times(), binary),
+  return write_out(options, file, run_bytes(session, run, format),
                    fmt::format("{}, {} moments up to {:.4g} s", options.scene.scene,
                                moments.value(), static_cast<double>(run.times().back())));
 }
 
 int export_scene(const ExportOptions& options) {
   const std::string extension = std::filesystem::path(options.out).extension().string();
-  if (extension != ".glb" && extension != ".gltf") {
-    fmt::print(stderr, "--out {}: expected a name that ends in .glb or .gltf\n", options.out);
+#ifdef TORSION_WITH_RENDER
+  const bool page = extension == ".html" && options.animate;
+#else
+  constexpr bool page = false;
+#endif
+  if (extension != ".glb" && extension != ".gltf" && !page) {
+    fmt::print(stderr,
+               "--out {}: expected a name that ends in .glb or .gltf, or with --animate in .html\n",
+               options.out);
     return kUsage;
   }
   if (!options.replay.empty()) {
@@ -121,7 +144,10 @@ int export_scene(const ExportOptions& options) {
   }
   Session& session = opened.value();
   if (options.animate) {
-    return export_run(options, session, file.value(), extension == ".glb");
+    return export_run(options, session, file.value(),
+                      page                  ? RunFormat::kPage
+                      : extension == ".glb" ? RunFormat::kGlb
+                                            : RunFormat::kGltf);
   }
   const std::uint64_t steps = steps_in(session, options.at) + 1;
   {
@@ -159,7 +185,9 @@ void add_export(CLI::App& app, Command& command) {
       ->check(CLI::Range(0.0, 1e6))
       ->needs(animate);
   options->scene.add_settings_to(*subcommand)->excludes(replay);
-  subcommand->add_option("--out", options->out, "A .glb or .gltf to write")->required();
+  subcommand
+      ->add_option("--out", options->out, "A .glb or .gltf to write, or an .html that plays a run")
+      ->required();
   subcommand->add_flag("--quiet", options->quiet, "Print nothing but errors");
   subcommand->callback([options, at, replay, &command] {
     command = [options, at, replay] {

@@ -27,6 +27,7 @@ struct WrittenMesh {
 struct MorphTarget {
   std::vector<glm::vec3> positions;  // m
   std::vector<glm::vec3> normals;
+  std::vector<float> twist_angles;  // rad, not differences; glTF has no place for them
 };
 
 /// A mesh that moves as a whole, or bends, or neither.

@@ -5,7 +5,7 @@
 #include "app/fit/fit_output.hpp"
 #include "app/report/gnuplot.hpp"
 #include "app/report/html_style.hpp"
-#include "app/report/html_text.hpp"
+#include "app/html_text.hpp"
 
 namespace torsion::engine {
 namespace {

@@ -65,7 +65,7 @@ bool card(const ViewState& state, std::size_t i) {
 }
 
 /// A force or torque in words. What is less than a ten-thousandth of `scale` is noise beside it.
-std::string shown(double value, double scale) {
+std::string in_words(double value, double scale) {
   constexpr double kNoise = 1e-4;
   return value < std::max(kNoise * scale, 1e-12) ? "0" : fmt::format("{:.3g}", value);
 }
@@ -130,13 +130,13 @@ void draw_state_lines(const ViewState& state, const LiveSession& session) {
   const History& history = state.histories[state.tool];
   const PlotPoint last = history.size() > 0 ? history[history.size() - 1] : PlotPoint{};
   const double moment = last.normal_force * last.radius;
-  text_in(kForceInk, fmt::format("force {} N", shown(glm::length(wrench.force), 0.0)));
+  text_in(kForceInk, fmt::format("force {} N", in_words(glm::length(wrench.force), 0.0)));
   ImGui::SameLine();
-  text_in(kTorqueInk, fmt::format("  torque {} N m", shown(glm::length(wrench.torque), moment)));
-  text(fmt::format("normal {} N, friction {} N", shown(last.normal_force, 0.0),
-                   shown(last.friction_force, last.normal_force)));
-  text(fmt::format("couple {} N m, r x F {} N m", shown(last.couples, moment),
-                   shown(last.arm_torque, moment)));
+  text_in(kTorqueInk, fmt::format("  torque {} N m", in_words(glm::length(wrench.torque), moment)));
+  text(fmt::format("normal {} N, friction {} N", in_words(last.normal_force, 0.0),
+                   in_words(last.friction_force, last.normal_force)));
+  text(fmt::format("couple {} N m, r x F {} N m", in_words(last.couples, moment),
+                   in_words(last.arm_torque, moment)));
   if (session.on_device(state.tool)) {
     device_part(*session.device());
   } else {

@@ -1,0 +1,267 @@
+#include "app/run_page/run_page.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <numbers>
+#include <span>
+#include <string_view>
+
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "app/base64.hpp"
+#include "app/html_text.hpp"
+#include "app/round_up.hpp"
+#include "device/scripted_motion.hpp"
+#include "render/arrows.hpp"
+#include "render/auto_camera.hpp"
+#include "render/box.hpp"
+#include "render/colormap.hpp"
+#include "render/frame_view.hpp"
+#include "systems/surface/surface_field.hpp"
+
+// The page and its scripts, in the program, so that it needs no file at run time.
+#define TORSION_EMBED(name, file)     \
+  __asm__(                            \
+      ".section .rodata\n"            \
+      ".global " #name                \
+      "_begin\n"                      \
+      ".global " #name "_end\n" #name \
+      "_begin:\n"                     \
+      ".incbin \"" file "\"\n" #name  \
+      "_end:\n"                       \
+      ".byte 0\n"                     \
+      ".text\n");                     \
+  extern "C" {                        \
+  extern const char name##_begin[];   \
+  extern const char name##_end[];     \
+  }
+TORSION_EMBED(torsion_run_page, TORSION_RUN_PAGE)
+TORSION_EMBED(torsion_run_view, TORSION_RUN_VIEW)
+TORSION_EMBED(torsion_three, TORSION_THREE)
+TORSION_EMBED(torsion_three_orbit, TORSION_THREE_ORBIT)
+#undef TORSION_EMBED
+
+namespace torsion::engine {
+namespace {
+
+using nlohmann::json;
+
+std::string_view text_between(const char* begin, const char* end) {
+  return {begin, static_cast<std::size_t>(end - begin)};
+}
+
+template <class Row>
+std::string packed(const std::vector<Row>& rows) {
+  const auto bytes = std::as_bytes(std::span(rows));
+  return base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+/// `value` as a part of `unit`, which is 32767.
+std::int16_t short_of(float value, double unit) {
+  constexpr double kMost = 32767.0;
+  return static_cast<std::int16_t>(
+      std::lround(std::clamp(static_cast<double>(value) / unit, -1.0, 1.0) * kMost));
+}
+
+json vector_json(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+json pose_json(const Pose& pose) {
+  const glm::dquat& q = pose.rotation;
+  return {pose.position.x, pose.position.y, pose.position.z, q.x, q.y, q.z, q.w};
+}
+
+double largest_side(const WrittenMesh& mesh) {
+  Box box;
+  for (const glm::vec3& position : mesh.positions) {
+    box.add(glm::dvec3(position));
+  }
+  const glm::dvec3 size = box.size();
+  return std::max({size.x, size.y, size.z});
+}
+
+/// @param limit  rad: the end of the twist's scale
+json body_json(const AnimatedMesh& body, double limit) {
+  constexpr double kNormalUnit = 2.0;  // normals differ by up to that
+  float largest = 1e-12F;
+  for (const MorphTarget& target : body.targets) {
+    for (const glm::vec3& shift : target.positions) {
+      largest = std::max({largest, std::abs(shift.x), std::abs(shift.y), std::abs(shift.z)});
+    }
+  }
+  std::vector<std::int16_t> shifts;
+  std::vector<std::int16_t> normals;
+  std::vector<std::int16_t> twists;
+  for (const MorphTarget& target : body.targets) {
+    for (std::size_t i = 0; i < target.positions.size(); ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        shifts.push_back(short_of(target.positions[i][axis], static_cast<double>(largest)));
+        normals.push_back(short_of(target.normals[i][axis], kNormalUnit));
+      }
+      twists.push_back(short_of(target.twist_angles[i], limit));
+    }
+  }
+  return {{"name", body.rest.name},
+          {"pose", pose_json(body.rest.pose)},
+          {"positions", packed(body.rest.positions)},
+          {"normals", packed(body.rest.normals)},
+          {"triangles", packed(body.rest.triangles)},
+          {"shifts", packed(shifts)},
+          {"shift_unit", static_cast<double>(largest) / 32767.0},
+          {"normal_shifts", packed(normals)},
+          {"grid", grid_spacing(largest_side(body.rest))},
+          {"twists", packed(twists)}};
+}
+
+json tool_json(const AnimatedMesh& tool, std::size_t row, const DeformedRun& run) {
+  const glm::vec4& color = tool.rest.color;
+  json poses = json::array();
+  json forces = json::array();
+  json torques = json::array();
+  json centers = json::array();
+  for (std::size_t moment = 0; moment < run.times().size(); ++moment) {
+    const DeformedRun::Felt& felt = run.felt()[moment][row];
+    poses.push_back(pose_json(tool.poses[moment]));
+    forces.push_back(vector_json(felt.wrench.force));
+    torques.push_back(vector_json(felt.wrench.torque));
+    centers.push_back(vector_json(felt.center));
+  }
+  return {{"name", tool.rest.name},
+          {"color", {color.x, color.y, color.z}},
+          {"positions", packed(tool.rest.positions)},
+          {"normals", packed(tool.rest.normals)},
+          {"triangles", packed(tool.rest.triangles)},
+          {"poses", poses},
+          {"forces", forces},
+          {"torques", torques},
+          {"centers", centers}};
+}
+
+/// Where one looks from at first, and to.
+json camera_json(const Session& session) {
+  constexpr double kAspect = 1.5;
+  const SceneDescription& scene = session.scene;
+  const World& world = session.simulation.world;
+  const FrameWorld frame = prepare_frame(scene, world.model, world.state);
+  const Camera camera = scene.cameras.empty() ? auto_camera(frame, kAspect, expected_poses(scene))
+                                              : camera_of(scene.cameras.front());
+  glm::dvec3 middle(0.0);
+  for (const BodyDescription& body : scene.bodies) {
+    middle += body.pose.position / static_cast<double>(scene.bodies.size());
+  }
+  const glm::dvec3 ahead = camera.pose.rotation * glm::dvec3(0.0, 0.0, -1.0);
+  const double distance = std::max(glm::dot(middle - camera.pose.position, ahead), 1e-3);
+  return {{"eye", vector_json(camera.pose.position)},
+          {"target", vector_json(camera.pose.position + distance * ahead)}};
+}
+
+/// The largest twist of any vertex, as the end of a scale, rad.
+double twist_limit(const DeformedRun& run) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  float largest = 0.0F;
+  for (const AnimatedMesh& mesh : run.meshes()) {
+    for (const MorphTarget& target : mesh.targets) {
+      for (const float angle : target.twist_angles) {
+        largest = std::max(largest, std::abs(angle));
+      }
+    }
+  }
+  return round_up(std::max(static_cast<double>(largest) / kDegree, 1.0)) * kDegree;
+}
+
+ArrowLimits arrow_limits(const DeformedRun& run) {
+  ArrowLimits limits;
+  for (const std::vector<DeformedRun::Felt>& moment : run.felt()) {
+    for (const DeformedRun::Felt& felt : moment) {
+      limits.force = std::max(limits.force, glm::length(felt.wrench.force));
+      limits.torque = std::max(limits.torque, glm::length(felt.wrench.torque));
+    }
+  }
+  return limits;
+}
+
+json run_json(const Session& session, const DeformedRun& run) {
+  constexpr int kColors = 129;
+  json palette = json::array();
+  for (int i = 0; i < kColors; ++i) {
+    palette.push_back(vector_json(heat_color(HeatMap::kTwist, i / (kColors - 1.0))));
+  }
+  const ArrowLimits limits = arrow_limits(run);
+  const double limit = twist_limit(run);
+  json bodies = json::array();
+  json tools = json::array();
+  for (const AnimatedMesh& mesh : run.meshes()) {
+    if (mesh.targets.empty()) {
+      tools.push_back(tool_json(mesh, tools.size(), run));
+    } else {
+      bodies.push_back(body_json(mesh, limit));
+    }
+  }
+  return {{"times", run.times()},
+          {"palette", palette},
+          {"full_force", limits.force > 0.0 ? round_up(limits.force) : 1.0},
+          {"full_torque", limits.torque > 0.0 ? round_up(limits.torque) : 1.0},
+          {"twist_limit", limit * 180.0 / std::numbers::pi},
+          {"bodies", bodies},
+          {"tools", tools},
+          {"camera", camera_json(session)}};
+}
+
+/// The page with what stands for each name between percent signs.
+std::string filled(std::string_view page,
+                   std::span<const std::pair<std::string_view, std::string>> values) {
+  std::string text;
+  while (!page.empty()) {
+    const auto next = std::ranges::find_if(values, [&](const auto& value) {
+      return page.substr(0, value.first.size()) == value.first;
+    });
+    if (next != values.end()) {
+      text += next->second;
+      page.remove_prefix(next->first.size());
+    } else {
+      text += page.front();
+      page.remove_prefix(1);
+    }
+  }
+  return text;
+}
+
+/// JSON inside of a script: nothing in it may end that.
+std::string in_script(const json& value) {
+  std::string text;
+  for (const char letter : value.dump()) {
+    if (letter == '<') {
+      text += "\\u003c";
+    } else {
+      text += letter;
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string run_page(const Session& session, const DeformedRun& run) {
+  const SceneDescription& scene = session.scene;
+  const std::string title = scene.view.title.empty()
+                                ? std::filesystem::path(scene.path).filename().string()
+                                : scene.view.title;
+  const auto script = [](const char* begin, const char* end) {
+    return std::string(text_between(begin, end));
+  };
+  const std::array<std::pair<std::string_view, std::string>, 6> values = {
+      {{"%TITLE%", html_escaped(title)},
+       {"%CAPTION%", html_escaped(scene.view.caption)},
+       {"%THREE%", script(torsion_three_begin, torsion_three_end)},
+       {"%ORBIT%", script(torsion_three_orbit_begin, torsion_three_orbit_end)},
+       {"%DATA%", in_script(run_json(session, run))},
+       {"%VIEW%", script(torsion_run_view_begin, torsion_run_view_end)}}};
+  return filled(text_between(torsion_run_page_begin, torsion_run_page_end), values);
+}
+
+}  // namespace torsion::engine

@@ -1,0 +1,86 @@
+// The page that plays a run, in headless Chromium without a network.
+
+#include <cstdlib>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "render/image_io.hpp"
+#include "tests/app/program.hpp"
+#include "tests/app/window_pictures.hpp"
+#include "tests/scenes/gltf_builder.hpp"
+
+namespace torsion::engine {
+namespace {
+
+using test::Folder;
+using test::read_text;
+using test::run_torsion;
+
+/// A ball of 10 mm that is pressed 3 mm into a soft cube within a second and turned in the next.
+/// Its words are as bad as they can be for a page.
+std::string write_scene(const Folder& folder) {
+  test::GltfBuilder builder = test::good_scene();
+  builder.node("block")["extras"]["torsion_shape"] = "sphere";
+  builder.document.erase("animations");
+  builder.add_motion(1, "translation", {0.0F, 1.0F}, {0.0F, 0.11F, 0.0F, 0.0F, 0.107F, 0.0F});
+  builder.document["scenes"][0]["extras"] = {
+      {"torsion_title", "</script><b id='broken'>%DATA%"},
+      {"torsion_caption", "<img src=x onerror='document.title=1'>"}};
+  test::write_text(folder / "scene.gltf", builder.text());
+  return folder / "scene.gltf";
+}
+
+int chromium(const Folder& folder, const std::string& words, const std::string& page,
+             const std::string& out) {
+  const std::string command =
+      "timeout 300 chromium --headless --no-sandbox --disable-gpu --use-gl=angle "
+      "--use-angle=swiftshader --enable-unsafe-swiftshader --host-resolver-rules='MAP * ~NOTFOUND' "
+      "--hide-scrollbars --window-size=640,480 --virtual-time-budget=2000 --user-data-dir=" +
+      (folder / "profile") + " " + words + " 'file://" + page + "' > " + out + " 2> " +
+      (folder / "chromium.log");
+  return std::system(command.c_str());  // NOLINT(cert-env33-c,concurrency-mt-unsafe): a browser
+}
+
+TEST(RunPageTest, PlaysInABrowserWithoutANetwork) {
+  const Folder folder;
+  const std::string page = folder / "run.html";
+  const test::Ran ran =
+      run_torsion({"export", write_scene(folder), "--animate", "--fps", "4", "--out", page});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  // What it is once its scripts have run.
+  ASSERT_EQ(chromium(folder, "--dump-dom", page, folder / "dom"), 0)
+      << read_text(folder / "chromium.log");
+  const std::string dom = read_text(folder / "dom");
+  EXPECT_EQ(dom.find("id=\"broken\""), std::string::npos);
+  EXPECT_EQ(dom.find("data-fault="), std::string::npos);
+  const std::size_t at = dom.find("data-triangles=\"");
+  ASSERT_NE(at, std::string::npos) << read_text(folder / "chromium.log");
+  // The cube alone has more: a body of eight corners is cut for its dent.
+  EXPECT_GT(std::stoi(dom.substr(at + 16)), 2000);
+  EXPECT_NE(dom.find("<h1>&lt;/script&gt;"), std::string::npos);
+
+  // Before the contact and at its deepest.
+  for (const std::string moment : {"0", "1"}) {
+    ASSERT_EQ(chromium(folder, "--screenshot=" + (folder / (moment + ".png")), page + "#" + moment,
+                       folder / "out"),
+              0);
+  }
+  const Result<Image> before = read_png(folder / "0.png");
+  const Result<Image> pressed = read_png(folder / "1.png");
+  ASSERT_TRUE(before && pressed);
+  ASSERT_EQ(pressed.value().width, 640U);
+  // The ball has come down, and the arrow of its force is there.
+  EXPECT_GT(test::changed(before.value(), pressed.value(), 200, 100, 440, 340), 0.01);
+}
+
+TEST(RunPageTest, IsOfARunNotOfAMoment) {
+  const Folder folder;
+  const test::Ran ran =
+      run_torsion({"export", write_scene(folder), "--at", "0.5", "--out", folder / "run.html"});
+  EXPECT_EQ(ran.exit_code, 2);
+  EXPECT_NE(ran.err.find("with --animate in .html"), std::string::npos) << ran.err;
+}
+
+}  // namespace
+}  // namespace torsion::engine

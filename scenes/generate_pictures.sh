@@ -17,6 +17,7 @@ picture() {
 picture gallery/1_twist_and_slip 2.4 280x190 16
 picture gallery/2_hysteresis 1.9 280x190 16
 picture gallery/3_spin_and_slide 4 260x176 8
+picture gallery/4_paper_and_truth 4.8 300x200 30
 picture ball_on_cube 1.5 360x240 10 --heat none
 picture compass_on_ellipsoid_soft 2 340x226 50
 picture mallet_on_ellipsoid_soft 2 340x226 50

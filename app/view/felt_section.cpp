@@ -17,8 +17,8 @@ namespace torsion::engine {
 namespace {
 
 constexpr double kInterrupted = std::numeric_limits<double>::quiet_NaN();
-constexpr float kTimePlot = 52.0F;  // pixels, of their height
-constexpr float kTurnPlot = 84.0F;
+constexpr float kTimePlot = 44.0F;  // pixels, of their height
+constexpr float kTurnPlot = 78.0F;
 constexpr float kTimingPlot = 44.0F;
 
 /// Curves of what `value` takes from a point, over the last seconds.
@@ -110,32 +110,54 @@ void region_lines(const RegionHistory::Moment& now) {
   }
 }
 
-/// Torque against the tool's turn: what runs now, and in grey what ran before the last switch. A
-/// contact that ends takes its curve with it.
-void turn_plot(const History& history) {
+/// Couple against the tool's turn, of the points of one generation. A contact that ends takes its
+/// curve with it.
+Curve over_turn(const History& history, std::uint64_t generation, const std::string& name,
+                ImU32 color) {
+  Curve curve{name, color, {}, {}};
+  std::uint64_t contact = 0;
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    const PlotPoint& point = history[i];
+    if (point.generation == generation) {
+      const bool goes_on = point.region != 0 && point.region == contact;
+      curve.x.push_back(point.turn * 180.0 / std::numbers::pi);
+      curve.y.push_back(goes_on ? point.couple : kInterrupted);
+      contact = point.region;
+    }
+  }
+  return curve;
+}
+
+/// What runs now; of the other tools, in lighter colours; and in grey what ran before the last
+/// switch.
+void turn_plot(const ViewState& state, const LiveSession& session) {
+  const History& history = state.histories[state.tool];
   if (history.size() == 0) {
     return;
   }
   const std::uint64_t now = history[history.size() - 1].generation;
-  Curve before{"before the switch", kGreyCurve, {}, {}};
-  Curve current{"", kDarkCurve, {}, {}};
-  std::uint64_t contact = 0;
-  for (std::size_t i = 0; i < history.size(); ++i) {
-    const PlotPoint& point = history[i];
-    if (point.generation + 1 < now) {
-      continue;
+  const std::vector<ToolDescription>& tools = session.scene().tools;
+  const auto name_of_tool = [&](std::uint32_t tool) {
+    return tools.size() > 1 ? tools[tool].node : std::string();
+  };
+  std::vector<Curve> curves;
+  if (now > 0) {
+    Curve before = over_turn(history, now - 1, "before the switch", kGreyCurve);
+    if (!before.x.empty()) {
+      curves.push_back(std::move(before));
     }
-    Curve& curve = point.generation == now ? current : before;
-    const bool goes_on = point.region != 0 && point.region == contact;
-    curve.x.push_back(point.turn * 180.0 / std::numbers::pi);
-    curve.y.push_back(goes_on ? point.couple : kInterrupted);
-    contact = point.region;
   }
-  if (before.x.empty()) {
-    before.name = "";
+  double least = least_torque(history);
+  for (std::uint32_t tool = 0; tool < tools.size(); ++tool) {
+    if (tool != state.tool) {
+      constexpr std::array kOthers = {kMiddleCurve, kLightCurve};
+      curves.push_back(over_turn(state.histories[tool], now, name_of_tool(tool),
+                                 kOthers[curves.size() % kOthers.size()]));
+      least = std::max(least, least_torque(state.histories[tool]));
+    }
   }
-  const std::array<Curve, 2> curves = {before, current};
-  draw_plot({"Couple (N m) by turn", "deg", 0.0, 0.0, least_torque(history)}, curves, kTurnPlot);
+  curves.push_back(over_turn(history, now, name_of_tool(state.tool), kDarkCurve));
+  draw_plot({"Couple (N m) by turn", "deg", 0.0, 0.0, least}, curves, kTurnPlot);
 }
 
 void choose_tool(ViewState& state, const LiveSession& session) {
@@ -173,7 +195,7 @@ void draw_felt(ViewState& state, const LiveSession& session) {
   state.contact_axes = axes == 0;
   const History& history = state.histories[state.tool];
   bool hovered = wrench_plots(state, history);
-  turn_plot(history);
+  turn_plot(state, session);
   const RegionHistory& regions = state.region_histories[state.tool];
   if (regions.size() > 0 && regions[regions.size() - 1].count > 1) {
     hovered = region_plot(state, regions, least_torque(history)) || hovered;

@@ -146,27 +146,23 @@ void draw_state_lines(const ViewState& state, const LiveSession& session) {
                   frame.snapshot.regions.size() == 1 ? "" : "s"));
 }
 
-void draw_controls(ViewState& state) {
-  if (ImGui::Button(state.paused ? "Go on (Space)" : "Pause (Space)")) {
-    state.paused = !state.paused;
+namespace {
+
+/// A button that says its key under the mouse.
+bool key_button(const char* label, const char* key) {
+  const bool clicked = ImGui::Button(label);
+  if (ImGui::IsItemHovered()) {
+    ImGui::SetTooltip("Key: %s", key);
   }
   ImGui::SameLine();
-  state.wants_step = ImGui::Button("Step (N)") || state.wants_step;
-  ImGui::SameLine();
-  state.wants_restart = ImGui::Button("Restart (R)") || state.wants_restart;
-  state.wants_screenshot = ImGui::Button("Picture (P)") || state.wants_screenshot;
-  ImGui::SameLine();
-  state.wants_video = ImGui::Button("Video (V)") || state.wants_video;
-  ImGui::SameLine();
-  state.wants_saved_recording = ImGui::Button("Recording (O)") || state.wants_saved_recording;
-  ImGui::Checkbox("Loop (L)", &state.loop);
-  ImGui::SameLine();
-  text(" Speed (S)");
-  ImGui::SameLine();
-  ImGui::PushItemWidth(70.0F);
+  return clicked;
+}
+
+void choose_speed(ViewState& state) {
   const auto name = [](std::uint32_t slowness) {
-    return slowness == 1 ? std::string("1") : fmt::format("1/{}", slowness);
+    return slowness == 1 ? std::string("speed 1") : fmt::format("speed 1/{}", slowness);
   };
+  ImGui::PushItemWidth(-1.0F);
   if (ImGui::BeginCombo("##speed", name(state.slowness).c_str())) {
     for (const std::uint32_t slowness : {1U, 5U, 20U, 100U}) {
       if (ImGui::Selectable(name(slowness).c_str(), state.slowness == slowness)) {
@@ -176,6 +172,21 @@ void draw_controls(ViewState& state) {
     ImGui::EndCombo();
   }
   ImGui::PopItemWidth();
+}
+
+}  // namespace
+
+void draw_controls(ViewState& state) {
+  if (key_button(state.paused ? "Go on##pause" : "Pause##pause", "Space")) {
+    state.paused = !state.paused;
+  }
+  state.wants_step = key_button("Step", "N") || state.wants_step;
+  state.wants_restart = key_button("Restart", "R") || state.wants_restart;
+  choose_speed(state);
+  state.wants_screenshot = key_button("Picture", "P") || state.wants_screenshot;
+  state.wants_video = key_button("Video", "V") || state.wants_video;
+  state.wants_saved_recording = key_button("Recording", "O") || state.wants_saved_recording;
+  ImGui::Checkbox("Loop", &state.loop);
 }
 
 }  // namespace torsion::engine

@@ -36,11 +36,15 @@ act
 xdotool mousedown 1
 sleep 1
 xdotool mouseup 1
-until_true title_is ball_on_cube
-name=ball_on_cube
+until_true title_is 4_paper_and_truth
+name=4_paper_and_truth
 act
 keep fourth
 # A key of no scene changes nothing.
+act key 0
+title_is 4_paper_and_truth
 act key 9
-title_is ball_on_cube
+until_true title_is two_bodies
+name=two_bodies
+act
 close_window

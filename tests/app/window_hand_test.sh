@@ -12,8 +12,8 @@ name=$(basename "$scene" .gltf)
 open_window "$scene" --seconds 3000 --record session.rec
 act
 # The panel's part about moving the tool, without the plots above it.
-click 160 234
-click 160 284
+click 160 209
+click 160 259
 act mousemove 800 250
 act mousedown 1
 act mousemove 800 270
@@ -24,7 +24,7 @@ act
 keep pressed
 act mouseup 1
 # The field of the turn. While it has the keys nothing else hears of them, so there are no pictures to wait for.
-xdotool mousemove 60 331
+xdotool mousemove 60 306
 act
 xdotool mousedown 1
 sleep 1
@@ -40,7 +40,7 @@ act
 keep typed
 # A digit was of the field, not of the gallery.
 [ "$(xdotool getwindowname "$id")" = "Torsion: $name.gltf" ]
-click 24 424
+click 24 399
 sleep 4
 act
 keep moved

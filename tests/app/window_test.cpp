@@ -58,7 +58,7 @@ TEST_F(WindowTest, TheMousePressesTheToolAndItIsFelt) {
   const auto session = nlohmann::json::parse(read_text(*folder_ / "session.json"));
   EXPECT_GT(session["pictures"].get<int>(), 10);
   // Reloaded at the end, so what was felt is in the pictures: the plots in the panel.
-  EXPECT_GT(changed(shot("before"), shot("pressed"), 70, 295, 310, 440), 0.005);
+  EXPECT_GT(changed(shot("before"), shot("pressed"), 70, 268, 310, 398), 0.005);
   // And the ball and the arrows over the body.
   EXPECT_GT(changed(shot("before"), shot("pressed"), 640, 60, 960, 400), 0.02);
 }

@@ -30,7 +30,10 @@ restore() {
 
 all_lost() { [ "$(grep -c 'surface given up' session.err)" = 4 ]; }
 until_true all_lost
-# Takes the ball off the body, then to the right.
+# The animation ends, with the ball above the body, and does not begin again.
+act key l
+sleep 6
+# Takes the ball up, then to the right.
 act key f
 act mousemove 800 200
 act mousedown 1

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "app/fit/fit_output.hpp"
+#include "app/html_text.hpp"
 #include "app/report/gnuplot.hpp"
 #include "app/report/html_style.hpp"
-#include "app/html_text.hpp"
 
 namespace torsion::engine {
 namespace {

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "app/base64.hpp"
+#include "app/html_text.hpp"
 #include "app/report/gnuplot.hpp"
 #include "app/report/html_style.hpp"
-#include "app/html_text.hpp"
 #include "app/report/report_plots.hpp"
 #include "ecs/model_names.hpp"
 #include "systems/contact/region_wrenches.hpp"

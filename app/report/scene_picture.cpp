@@ -57,9 +57,10 @@ Result<std::string> scene_picture(const ReferenceCase& reference_case) {
   }
   constexpr double kInPicture = 1.6;  // the arrow of a full force would reach beyond its top
   const Wrench& wrench = session.simulation.world.state.tools.at<ToolWrench>(0).total;
-  run.value().set_scales({std::max(farthest->abscissa, 1e-3), 1.0,
-                          std::max(kInPicture * glm::length(wrench.force), 1e-9),
-                          std::max(glm::length(wrench.torque), 1e-9)});
+  run.value().set_scales({std::max(farthest->abscissa, 1e-3),
+                          1.0,
+                          {std::max(kInPicture * glm::length(wrench.force), 1e-9),
+                           std::max(glm::length(wrench.torque), 1e-9), 1.0}});
   const Result<Image> image = run.value().draw(session);
   return image ? png_bytes(image.value()) : Result<std::string>(image.error());
 }

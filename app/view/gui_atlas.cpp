@@ -26,7 +26,8 @@ Image third(const Image& image) {
       for (std::uint32_t channel = 0; channel < 4; ++channel) {
         std::uint32_t sum = 0;
         for (std::uint32_t i = 0; i < 9; ++i) {
-          const std::size_t from = std::size_t{3 * y + i / 3} * image.width + 3 * x + i % 3;
+          const std::size_t row = std::size_t{3} * y + i / 3;
+          const std::size_t from = row * image.width + std::size_t{3} * x + i % 3;
           sum += image.rgba[4 * from + channel];
         }
         small.rgba[4 * (std::size_t{y} * small.width + x) + channel] =

@@ -71,7 +71,7 @@ void draw_sections(ViewState& state, LiveSession& session) {
 /// From top to bottom: what it hides is not drawn.
 void draw_panel(ViewState& state, LiveSession& session) {
   const ImVec2 display = ImGui::GetIO().DisplaySize;
-  const auto width = static_cast<float>(covered_columns(state, display.x, display.y));
+  const float width = covered_columns(state, display.x, display.y);
   const bool icons = folded(state, display.x, display.y);
   ImGui::SetNextWindowPos(ImVec2(0.0F, 0.0F));
   ImGui::SetNextWindowSize(ImVec2(width, display.y));
@@ -93,7 +93,7 @@ void draw_panel(ViewState& state, LiveSession& session) {
 /// What to look at, and what the mouse does now, below the scene.
 void mouse_line(const ViewState& state, const LiveSession& session) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const auto left = static_cast<float>(covered_columns(state, size.x, size.y));
+  const float left = covered_columns(state, size.x, size.y);
   ImGui::SetNextWindowPos(ImVec2(0.5F * (left + size.x), size.y), ImGuiCond_Always,
                           ImVec2(0.5F, 1.0F));
   if (ImGui::Begin("##mouse", nullptr,
@@ -133,7 +133,8 @@ bool differ(const std::vector<BodyPick>& a, const std::vector<BodyPick>& b) {
 
 void draw_panels(ViewState& state, LiveSession& session, double now) {
   draw_banners(state, session, now);
-  if (covered_columns(state, ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y) > 0.0) {
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  if (covered_columns(state, display.x, display.y) > 0.0F) {
     draw_panel(state, session);
     mouse_line(state, session);
   }

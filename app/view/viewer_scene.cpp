@@ -32,8 +32,9 @@ void Viewer::place_camera() {
 Camera Viewer::camera() const {
   const WindowInput& input = window_->input();
   Camera camera = camera_of(state_.camera);
-  camera.shift = 0.5 * covered_columns(state_, input.width, input.height) /
-                 std::max(static_cast<double>(input.width), 1.0);
+  const float covered =
+      covered_columns(state_, static_cast<float>(input.width), static_cast<float>(input.height));
+  camera.shift = 0.5 * static_cast<double>(covered) / std::max(input.width, 1U);
   return camera;
 }
 

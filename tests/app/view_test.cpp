@@ -92,14 +92,14 @@ TEST(OrbitCameraTest, AShiftedPictureIsTheSameForTheShadersAndForTheMouse) {
 
 TEST(PanelLayoutTest, TakesAQuarterAndFoldsInSmallWindows) {
   ViewState state;
-  EXPECT_LE(covered_columns(state, 1280.0, 720.0), 0.25 * 1280.0);
-  EXPECT_LE(covered_columns(state, 1920.0, 1080.0), 0.25 * 1920.0);
-  EXPECT_TRUE(folded(state, 700.0, 500.0));
-  EXPECT_LE(covered_columns(state, 700.0, 500.0), 0.1 * 700.0);
+  EXPECT_LE(covered_columns(state, 1280.0F, 720.0F), 0.25F * 1280.0F);
+  EXPECT_LE(covered_columns(state, 1920.0F, 1080.0F), 0.25F * 1920.0F);
+  EXPECT_TRUE(folded(state, 700.0F, 500.0F));
+  EXPECT_LE(covered_columns(state, 700.0F, 500.0F), 0.1F * 700.0F);
   state.folded = false;  // a person wants it
-  EXPECT_FALSE(folded(state, 700.0, 500.0));
+  EXPECT_FALSE(folded(state, 700.0F, 500.0F));
   state.show_panels = false;
-  EXPECT_EQ(covered_columns(state, 1280.0, 720.0), 0.0);
+  EXPECT_EQ(covered_columns(state, 1280.0F, 720.0F), 0.0F);
 }
 
 TEST(ToolDragTest, ARayMeetsATurnedBoxWhereItDoes) {

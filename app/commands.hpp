@@ -25,6 +25,7 @@ void add_view(CLI::App& app, Command& command);
 void add_export(CLI::App& app, Command& command);
 void add_check(CLI::App& app, Command& command);
 void add_add_physics(CLI::App& app, Command& command);
+void add_new(CLI::App& app, Command& command);
 void add_sweep(CLI::App& app, Command& command);
 void add_fit(CLI::App& app, Command& command);
 void add_devices(CLI::App& app, Command& command);

@@ -30,6 +30,7 @@ int run(int argc, const char* const* argv) {
 #endif
   torsion::engine::add_export(app, command);
   torsion::engine::add_check(app, command);
+  torsion::engine::add_new(app, command);
   torsion::engine::add_add_physics(app, command);
   torsion::engine::add_sweep(app, command);
   torsion::engine::add_fit(app, command);

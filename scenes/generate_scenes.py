@@ -6,6 +6,7 @@ import pathlib
 import sys
 
 from generate.catalogue import all_files
+from generate.templates import templates
 
 
 def main():
@@ -14,7 +15,7 @@ def main():
         print("usage: generate_scenes.py [--check]", file=sys.stderr)
         return 2
     stale = 0
-    for name, content in sorted(all_files().items()):
+    for name, content in sorted((all_files() | templates()).items()):
         path = folder / name
         if sys.argv[1:] == ["--check"]:
             if not path.is_file() or path.read_bytes() != content:

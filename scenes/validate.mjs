@@ -22,7 +22,8 @@ function shipped() {
   const isScene = (name) => name.endsWith(".gltf") || name.endsWith(".glb");
   const in_folder = (folder) => existsSync(folder)
     ? readdirSync(folder).filter(isScene).sort().map((name) => join(folder, name)) : [];
-  return [...in_folder(here), ...in_folder(join(here, "blender")), ...in_folder(join(here, "gallery"))];
+  return [...in_folder(here), ...in_folder(join(here, "blender")), ...in_folder(join(here, "gallery")),
+    ...in_folder(join(here, "templates"))];
 }
 
 async function check(path) {

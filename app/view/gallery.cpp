@@ -60,19 +60,6 @@ void add_titled(const fs::path& folder, std::vector<GalleryEntry>& gallery) {
 
 }  // namespace
 
-fs::path shipped_scenes(const fs::path& program) {
-  std::error_code missing;
-  for (fs::path folder = program.parent_path(); folder.has_relative_path();
-       folder = folder.parent_path()) {
-    for (const char* scenes : {"share/torsion/scenes", "scenes"}) {
-      if (fs::is_directory(folder / scenes / "gallery", missing)) {
-        return folder / scenes;
-      }
-    }
-  }
-  return {};
-}
-
 std::vector<GalleryEntry> read_gallery(const fs::path& scenes) {
   std::vector<GalleryEntry> gallery;
   add_titled(scenes / "gallery", gallery);
@@ -87,8 +74,7 @@ std::vector<GalleryEntry> read_gallery(const fs::path& scenes) {
 }
 
 std::vector<GalleryEntry> read_gallery() {
-  std::error_code unknown;
-  return read_gallery(shipped_scenes(fs::read_symlink("/proc/self/exe", unknown)));
+  return read_gallery(shipped_scenes());
 }
 
 std::optional<std::size_t> entry_of(const std::vector<GalleryEntry>& gallery,

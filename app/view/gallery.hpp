@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/shipped_scenes.hpp"
 #include "render/image.hpp"
 
 namespace torsion::engine {
@@ -19,11 +20,6 @@ struct GalleryEntry {
 
   bool operator==(const GalleryEntry&) const = default;
 };
-
-/// The scenes that ship: those in share/torsion/scenes beside the folder of the installed program,
-/// or in the source tree above the folder that it was built in. Empty where there are neither.
-/// @param program  its file
-std::filesystem::path shipped_scenes(const std::filesystem::path& program);
 
 // Pixels: of the picture of a scene, three times those of its card.
 inline constexpr std::uint32_t kCardWidth = 219;

@@ -99,6 +99,16 @@ class Gltf:
         self.doc["scenes"][0]["extras"] = {"torsion_title": title, "torsion_caption": caption,
                                            **keys}
 
+    def small_file(self, name):
+        """File name -> bytes, of a scene without meshes: all of it in one file."""
+        keys = bytes(self.blobs[1].data)
+        doc = {key: value for key, value in self.doc.items() if value != []}
+        for view in doc["bufferViews"]:
+            view["buffer"] = 0
+        embedded = "data:application/octet-stream;base64," + base64.b64encode(keys).decode()
+        doc["buffers"] = [{"uri": embedded, "byteLength": len(keys)}]
+        return {name + ".gltf": (json.dumps(doc, indent=1) + "\n").encode()}
+
     def files(self, name):
         """File name -> bytes; the meshes are beside the glTF."""
         meshes, keys = (bytes(blob.data) for blob in self.blobs)

@@ -354,5 +354,35 @@ TEST(RenderTest, DrawsOneMomentAFolderAndAVideo) {
 }
 #endif
 
+TEST(ProgramTest, ANewSceneRunsAsItIsWritten) {
+  const Folder folder;
+  for (const std::string from : {"ball", "disc", "drill", "fingertip", "screwdriver"}) {
+    const Ran made = run_torsion({"new", folder / from, "--from", from});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    EXPECT_NE(made.out.find("torsion view"), std::string::npos);
+    const Ran checked = run_torsion({"check", folder / (from + ".gltf")});
+    EXPECT_EQ(checked.exit_code, 0) << checked.err;
+    EXPECT_NE(checked.out.find("no problems\n"), std::string::npos) << checked.out;
+    const Ran ran = run_torsion({"simulate", folder / (from + ".gltf"), "--json"});
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    const auto summary = nlohmann::json::parse(ran.out);
+    EXPECT_GT(summary["peak_force_N"].get<double>(), 0.01) << from;
+    EXPECT_GT(summary["peak_torque_Nm"].get<double>(), 1e-6) << from;
+    EXPECT_TRUE(summary["faults"].empty()) << from;
+  }
+}
+
+TEST(ProgramTest, ANewSceneReplacesNone) {
+  const Folder folder;
+  test::write_text(folder / "mine.gltf", "{}");
+  const Ran refused = run_torsion({"new", folder / "mine"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("is there already"), std::string::npos) << refused.err;
+  EXPECT_EQ(test::read_text(folder / "mine.gltf"), "{}");
+  const Ran unknown = run_torsion({"new", folder / "other", "--from", "moon"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.err.find("screwdriver"), std::string::npos) << unknown.err;
+}
+
 }  // namespace
 }  // namespace torsion::engine

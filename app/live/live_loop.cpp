@@ -19,7 +19,6 @@ constexpr std::size_t kCommands = 256;
 // s: after a change of models contacts form anew, and their forces rise within 10 ms; a tool
 // without mass would fall through until then.
 constexpr double kSettle = 0.05;
-constexpr double kReturnTime = 1.0;   // s: a tool's way back to its script
 constexpr double kDeadline = 1000.0;  // us: later than that and a hand may feel it
 
 void take_sample(LiveTool& tool) {

@@ -27,6 +27,9 @@ enum class PoseFrom : std::uint32_t {
   kHandle,  // a mouse or a device, through the virtual coupling
 };
 
+// s, of the scene: the way of a tool that was let go of back to its script
+inline constexpr double kReturnTime = 1.0;
+
 /// What moves one tool. Written by the physics thread once that runs.
 struct LiveTool {
   PoseFrom from = PoseFrom::kScript;
@@ -62,7 +65,7 @@ enum class LiveCommandKind : std::uint32_t {
   kPause,     // number: 0 or 1
   kStepOnce,  // while paused
   kSlowness,  // number: periods of the clock to a step
-  kPoseFrom,  // index: tool, number: PoseFrom; from a handle to the script it goes in a second
+  kPoseFrom,  // index: tool, number: PoseFrom; from a handle to the script it goes in kReturnTime
   kCoupling,  // index: tool, coupling
   kSwap,      // generation; goes on where the old one was
   kRestart,   // generation; from its own start

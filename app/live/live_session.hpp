@@ -67,7 +67,7 @@ class LiveSession {
   void hold(std::uint32_t tool, const Pose& handle);
   /// Where a hand that takes the tool now is to be, so that it stays where it is.
   [[nodiscard]] Pose taking_handle(std::uint32_t tool) const;
-  /// Lets go of a tool: within a second of the scene it is back on its animation's way.
+  /// Lets go of a tool: within kReturnTime it is back on its animation's way.
   void release(std::uint32_t tool);
   [[nodiscard]] bool held(std::uint32_t tool) const { return held_[tool] != 0; }
   [[nodiscard]] const VirtualCoupling& coupling(std::uint32_t tool) const {

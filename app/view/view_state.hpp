@@ -76,9 +76,8 @@ struct ViewState {
   double message_until = 0.0;                   // s, of the window's clock
   std::string scene_error;  // why the file on disk cannot be shown; empty: it can
   double frames_per_second = 0.0;
-  double share = 1.0;  // of the window's pixels along each side in which the scene is drawn
-  bool filming = false;
-  bool grabbed = false;             // the mouse has a tool
+  double share = 1.0;    // of the window's pixels along each side in which the scene is drawn
+  bool grabbed = false;  // the mouse has a tool
   std::uint32_t missed_lately = 0;  // deadlines in the last second
 };
 

@@ -133,6 +133,7 @@ void Viewer::take_wishes() {
   if (state_.wants_restart && session_->choose(state_.picks, true)) {
     grab_ = Grab{};
     move_.reset();
+    state_.let_go = false;
     say("from the start");
   }
   if (state_.wants_choice && differ(state_.picks, session_->shown().picks)) {
@@ -150,7 +151,6 @@ void Viewer::take_wishes() {
     begin_or_end_film();
   }
   open_chosen_scene();
-  state_.filming = film_.writer.has_value();
   state_.wants_video = false;
   state_.wants_step = false;
   state_.wants_release = false;

@@ -149,7 +149,6 @@ void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
 /// where it is, without force.
 void Viewer::let_go() {
   const Snapshot& snapshot = session_->frame().snapshot;
-  constexpr double kWayBack = 1.0;  // s, as LiveSession::release() says
   move_.reset();
   grab_ = Grab{};
   grab_.spent = true;
@@ -159,7 +158,7 @@ void Viewer::let_go() {
     }
     if (session_->scene().tools[tool].script.end_time > 0.0) {
       session_->release(tool);
-      let_go_until_ = snapshot.clock.time + kWayBack;
+      let_go_until_ = snapshot.clock.time + kReturnTime;
       say("let go of: the tool goes back to the scene's animation");
     } else {
       handles_[tool] = snapshot.tools.at<ToolPose>(tool).now;

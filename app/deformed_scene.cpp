@@ -46,7 +46,7 @@ WrittenMesh deformed_body(const Session& session, const FrameWorld& frame, std::
   const BodyDescription& body = session.scene.bodies[row];
   WrittenMesh mesh;
   mesh.name = body.node;
-  mesh.pose = body.pose;
+  mesh.pose = session.simulation.world.state.bodies.at<BodyPose>(row).now;
   mesh.color = body.draw.color;
   mesh.triangles = body.draw.triangles;
   mesh.rest_positions = body.draw.positions;
@@ -126,6 +126,9 @@ void DeformedRun::add(const Session& session, double time) {
     }
     target.twist_angles = now.twist_angles;
     meshes_[body].targets.push_back(std::move(target));
+    if (world.model.moves(body)) {
+      meshes_[body].poses.push_back(now.pose);
+    }
   }
   std::vector<Felt> felt;
   for (std::uint32_t tool = 0; tool < session.scene.tools.size(); ++tool) {

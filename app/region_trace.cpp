@@ -31,7 +31,7 @@ void RegionTrace::append(const World& world) {
   const State& state = world.state;
   for (std::uint32_t row = 0; row < state.regions.size(); ++row) {
     const RegionIdentity& identity = state.regions.at<RegionIdentity>(row);
-    const WorldRegion region(world.model, state, row, state.regions.at<RegionSupport>(row));
+    const WorldRegion region(state, row, state.regions.at<RegionSupport>(row));
     const RegionFrame& frame = state.regions.at<RegionFrame>(row);
     const Contact& contact = state.regions.at<Contact>(row);
     const RegionFriction& friction = state.regions.at<RegionFriction>(row);

@@ -41,7 +41,7 @@ TraceRow trace_row(const World& world, std::uint32_t tool, double step_us) {
   row.faults = state.clock.faults;
   row.velocity = motion.velocity;
   row.angular_velocity = motion.angular_velocity;
-  row.load = tool_load(world.model, state, tool, motion.mass_center);
+  row.load = tool_load(state, tool, motion.mass_center);
   if (row.load.regions > 0) {
     const std::uint32_t region = row.load.main_region;
     row.depth = state.regions.at<Contact>(region).depth;

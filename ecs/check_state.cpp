@@ -27,6 +27,8 @@ void check_sizes(const Model& model, const State& state, Findings& findings) {
                    "there must be as many as the scene has");
   findings.require(state.tools.size() == model.tools.size(), "tools", 0,
                    "there must be as many as the scene has");
+  findings.require(state.tools_over_bodies.size() == state.tools.size() * state.bodies.size(),
+                   "tools_over_bodies", 0, "there must be one for each tool and body");
   const std::uint64_t side = model.settings.grid_side;
   const std::uint64_t regions = state.regions.capacity();
   findings.require(state.cells.size() == regions * side * side, "cells", 0,

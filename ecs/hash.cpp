@@ -36,6 +36,26 @@ void add_struct(XXH3_state_t& state, const T& value) {
   XXH3_64bits_update(&state, &value, sizeof(value));
 }
 
+template <class T>
+void add_rows(XXH3_state_t& state, const std::vector<T>& rows) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  add_number(state, static_cast<std::uint32_t>(rows.size()));
+  XXH3_64bits_update(&state, rows.data(), rows.size() * sizeof(T));
+}
+
+void add_script(XXH3_state_t& state, const MotionScript& script) {
+  for (const MotionLink& link : script.links) {
+    add_struct(state, link.translation);
+    add_struct(state, link.rotation);
+    add_struct(state, link.scale);
+    for (const KeyedChannel* channel : {&link.animated_translation, &link.animated_rotation}) {
+      add_struct(state, channel->interpolation);
+      add_rows(state, channel->times);
+      add_rows(state, channel->values);
+    }
+  }
+}
+
 }  // namespace
 
 std::uint64_t hash(const Model& model) {
@@ -45,6 +65,12 @@ std::uint64_t hash(const Model& model) {
   add_struct(state, model.settings);
   add_struct(state, model.dt);
   add_tables(state, model.tables());
+  for (std::uint32_t body = 0; body < model.body_scripts.size(); ++body) {
+    if (model.moves(body)) {
+      add_number(state, body);
+      add_script(state, model.body_scripts[body]);
+    }
+  }
   return XXH3_64bits_digest(&state);
 }
 

@@ -4,6 +4,7 @@ namespace torsion::engine {
 
 void Model::reserve(const Capacities& capacities, const Settings& chosen) {
   bodies.reserve(capacities.bodies);
+  body_scripts.clear();
   tools.reserve(capacities.tools);
   parts.reserve(capacities.parts);
   fields.reserve(capacities.fields);

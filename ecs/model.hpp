@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <tuple>
+#include <vector>
 
 #include "ecs/components.hpp"
+#include "ecs/motion_script.hpp"
 #include "ecs/table.hpp"
 
 namespace torsion::engine {
@@ -49,6 +51,7 @@ struct Model {
   Settings settings;
   double dt = 1e-3;  // s, of a step
   Table<Pose, Elasticity, Friction, FixedRegion, BodyModels, OwnedRows, Bounds> bodies;
+  std::vector<MotionScript> body_scripts;  // (bodies) what moves them; without links: they rest
   Table<MassProperties, OwnedRows, Bounds> tools;
   Table<ShapePart> parts;
   Table<DistanceField> fields;
@@ -62,6 +65,11 @@ struct Model {
   Table<Influence> influences;
   Table<CompliancePort> ports;
   Table<ComplianceValue> compliance;
+
+  /// Whether an animation moves the body.
+  [[nodiscard]] bool moves(std::uint32_t body) const {
+    return body < body_scripts.size() && !body_scripts[body].links.empty();
+  }
 
   /// Takes all memory, and empties all tables.
   void reserve(const Capacities& capacities, const Settings& chosen);

@@ -8,10 +8,11 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "ecs/components/basics.hpp"
+
 namespace torsion::engine {
 
-// A keyed motion as glTF gives it, kept as plain data so that scenes/ writes it and device/ plays
-// it.
+// A keyed motion as glTF gives it: scenes/ writes it, and whoever moves tools or bodies plays it.
 
 enum class Interpolation : std::uint32_t { kStep, kLinear, kCubicSpline };
 
@@ -39,5 +40,16 @@ struct MotionScript {
   std::vector<MotionLink> links;
   double end_time = 0.0;  // s, the last key of all channels
 };
+
+/// The frame at the end of a script's links at `time` [s], without their scale: what an animation
+/// holds the tool at. Before the first key of a channel its first value holds, after the last its
+/// last (glTF 2.0, 3.11). Allocates nothing; the same time gives the same bits.
+Pose scripted_pose(const MotionScript& script, double time);
+
+/// The value of a channel of translations at `time` [s], m. @pre the channel is not empty
+glm::dvec3 translation_at(const KeyedChannel& channel, double time);
+
+/// The value of a channel of rotations at `time` [s]. @pre the channel is not empty
+glm::dquat rotation_at(const KeyedChannel& channel, double time);
 
 }  // namespace torsion::engine

@@ -36,7 +36,8 @@ struct DrawMesh {
 
 struct BodyDescription {
   std::string node;
-  Pose pose;  // body frame in the world
+  Pose pose;            // body frame in the world, at rest
+  MotionScript script;  // links from the root to the body node; no links: nothing animates it
   Elasticity elasticity;
   Friction friction;
   FixedRegion fixed;  // `volumes` counts rows of fixed_volumes below, from 0

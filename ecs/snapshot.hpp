@@ -9,6 +9,8 @@ namespace torsion::engine {
 struct Snapshot {
   Clock clock;
   Table<ToolPose, ToolMotion, ToolWrench> tools;
+  Table<StoredEnergy, BodyPose> bodies;
+  Table<ToolOverBody> tools_over_bodies;  // as State has them
   RegionTable regions;
   // Found for who draws (systems/surface/take_snapshot.hpp), zero until then
   Table<RegionField, AnchorTurns> region_fields;  // (regions)

@@ -17,6 +17,7 @@ void State::reserve(const Capacities& capacities, const Settings& settings) {
   clock = Clock{};
   fill_with_zeros(bodies, capacities.bodies);
   fill_with_zeros(tools, capacities.tools);
+  fill_with_zeros(tools_over_bodies, capacities.tools * capacities.bodies);
   regions.reserve(capacities.regions);
   fill_with_zeros(cells, cells_of_all);
   fill_with_zeros(patch_cells, capacities.patch_bodies > 0 ? cells_of_all : 0);
@@ -24,6 +25,9 @@ void State::reserve(const Capacities& capacities, const Settings& settings) {
   fill_with_zeros(layer_influences, capacities.regions * capacities.layer_influences);
   fill_with_zeros(support_fits, footed);
   fill_with_zeros(couplings, footed > 0 ? footed * (footed - 1) / 2 : 0);
+  for (std::uint32_t row = 0; row < bodies.size(); ++row) {
+    bodies.at<BodyPose>(row) = BodyPose{};
+  }
   for (std::uint32_t row = 0; row < tools.size(); ++row) {
     tools.at<ToolPose>(row) = ToolPose{};
     tools.at<ToolMotion>(row) = ToolMotion{};

@@ -44,8 +44,9 @@ using MdrLayerTable = Table<MdrLayer>;
 /// be copied: both go on alike, and neither disturbs the other.
 struct State {
   Clock clock;
-  Table<StoredEnergy> bodies;                     // the same rows as Model::bodies
+  Table<StoredEnergy, BodyPose> bodies;           // the same rows as Model::bodies
   Table<ToolPose, ToolMotion, ToolWrench> tools;  // likewise
+  Table<ToolOverBody> tools_over_bodies;          // one for each pair: row tool x bodies + body
   RegionTable regions;
   CellTable cells;  // blocks of grid_side^2 rows, one for each row that `regions` can hold
   PatchCellTable patch_cells;  // the same rows as `cells`; none without contact model patch
@@ -56,16 +57,23 @@ struct State {
   Table<RegionCoupling>
       couplings;  // likewise, one for each two blocks: i, j < i at i (i - 1)/2 + j
 
+  [[nodiscard]] ToolOverBody& over(std::uint32_t tool, std::uint32_t body) {
+    return tools_over_bodies.at<ToolOverBody>(tool * bodies.size() + body);
+  }
+  [[nodiscard]] const ToolOverBody& over(std::uint32_t tool, std::uint32_t body) const {
+    return tools_over_bodies.at<ToolOverBody>(tool * bodies.size() + body);
+  }
+
   /// Takes all memory, and fills all tables but that of the regions with rows of zero.
   void reserve(const Capacities& capacities, const Settings& settings);
 
   [[nodiscard]] auto tables() {
-    return std::tie(bodies, tools, regions, cells, patch_cells, mdr_layers, layer_influences,
-                    support_fits, couplings);
+    return std::tie(bodies, tools, tools_over_bodies, regions, cells, patch_cells, mdr_layers,
+                    layer_influences, support_fits, couplings);
   }
   [[nodiscard]] auto tables() const {
-    return std::tie(bodies, tools, regions, cells, patch_cells, mdr_layers, layer_influences,
-                    support_fits, couplings);
+    return std::tie(bodies, tools, tools_over_bodies, regions, cells, patch_cells, mdr_layers,
+                    layer_influences, support_fits, couplings);
   }
 };
 

@@ -1,6 +1,7 @@
 #include "ecs/state_io.hpp"
 
 #define XXH_INLINE_ALL
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <fstream>
@@ -27,7 +28,7 @@ struct Header {
 };
 
 constexpr std::array<char, 8> kMagic = {'T', 'O', 'R', 'S', 'T', 'A', 'T', 'E'};
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 // Room beyond the rows that a file may ask for, bytes: the capacities are the one number in it that
 // its own length does not bound. A scene of 64 bodies needs under 40 MiB.
 constexpr std::uint64_t kLargestSpareRoom = std::uint64_t{1} << 28U;
@@ -62,7 +63,9 @@ class Writer {
   void number(std::uint32_t value) { raw(std::as_bytes(std::span(&value, 1))); }
 
   void raw(std::span<const std::byte> piece) {
-    bytes_.insert(bytes_.end(), piece.begin(), piece.end());
+    const std::size_t before = bytes_.size();
+    bytes_.resize(before + piece.size());
+    std::ranges::copy(piece, bytes_.begin() + static_cast<std::ptrdiff_t>(before));
   }
 
   template <class AnyTable>

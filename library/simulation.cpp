@@ -35,9 +35,8 @@ std::unique_ptr<Simulation::Data> make_data(const Model& model, const engine::St
 }
 
 /// As the body has moved the region's material by the end of the step.
-engine::WorldRegion world_region(const engine::Model& model, const engine::State& state,
-                                 std::uint32_t row) {
-  return {model, state, row, state.regions.at<engine::RegionSupport>(row)};
+engine::WorldRegion world_region(const engine::State& state, std::uint32_t row) {
+  return {state, row, state.regions.at<engine::RegionSupport>(row)};
 }
 
 std::uint32_t row_of(std::size_t row) {
@@ -115,8 +114,7 @@ Wrench Simulation::wrench(std::size_t tool, const Vector3& point) const noexcept
 
 LoadParts Simulation::load_parts(std::size_t tool, const Vector3& point) const noexcept {
   TORSION_ASSERT(tool < model_->tool_count());
-  const engine::ToolLoad load =
-      engine::tool_load(model_->data().model(), data_->state, row_of(tool), to_engine(point));
+  const engine::ToolLoad load = engine::tool_load(data_->state, row_of(tool), to_engine(point));
   return {from_engine(load.normal.force), from_engine(load.friction.force),
           from_engine(load.couple), from_engine(load.normal.torque + load.friction.torque)};
 }
@@ -149,7 +147,7 @@ Region Simulation::region(std::size_t region) const noexcept {
   TORSION_ASSERT(region < region_count());
   const engine::State& state = data_->state;
   const std::uint32_t row = row_of(region);
-  const engine::WorldRegion at = world_region(model_->data().model(), state, row);
+  const engine::WorldRegion at = world_region(state, row);
   const engine::RegionIdentity& identity = state.regions.at<engine::RegionIdentity>(row);
   const engine::RegionFrame& frame = state.regions.at<engine::RegionFrame>(row);
   const engine::Contact& contact = state.regions.at<engine::Contact>(row);
@@ -185,7 +183,7 @@ std::vector<Region> Simulation::regions() const {
 std::vector<Cell> Simulation::cells(std::size_t region) const {
   TORSION_ASSERT(region < region_count());
   const engine::State& state = data_->state;
-  const engine::WorldRegion at = world_region(model_->data().model(), state, row_of(region));
+  const engine::WorldRegion at = world_region(state, row_of(region));
   const engine::RegionIdentity& identity = state.regions.at<engine::RegionIdentity>(row_of(region));
   const engine::RegionFrame& frame = state.regions.at<engine::RegionFrame>(row_of(region));
   const std::uint32_t side = model_->data().model().settings.grid_side;

@@ -54,17 +54,21 @@ std::vector<FixedNode> fixed_nodes(const SceneReader& reader, std::size_t owner,
   return nodes;
 }
 
-/// A body stays where it is, whole.
-void check_body_rests(const SceneReader& reader, std::size_t body) {
+/// What moves a body: its own node or one above. Nothing below it moves on its own.
+MotionScript read_body_motion(const SceneReader& reader, std::size_t body) {
+  bool moves = false;
   for (std::size_t node = 0; node < reader.nodes.size(); ++node) {
-    const bool moves_it = is_below(reader.nodes, node, body) || is_below(reader.nodes, body, node);
-    if (moves_it && is_animated(reader.model, reader.nodes[node].row)) {
+    if (!is_animated(reader.model, reader.nodes[node].row)) {
+      continue;
+    }
+    moves = moves || is_below(reader.nodes, body, node);
+    if (node != body && is_below(reader.nodes, node, body)) {
       reader.problems.add(reader.name(node), "animation", "",
-                          "moves " + (node == body ? "it" : reader.name(body)) +
-                              ", but an elastic body stays where it is",
-                          "delete the animation, or move the tool instead");
+                          "moves a part of the body " + reader.name(body),
+                          "animate the body's own node");
     }
   }
+  return moves ? read_motion(reader.model, reader.nodes, body, reader.problems) : MotionScript{};
 }
 
 BodyDescription read_body(const SceneReader& reader, std::size_t node) {
@@ -88,7 +92,7 @@ BodyDescription read_body(const SceneReader& reader, std::size_t node) {
       body_model_named(keys.text("torsion_body_model").value_or("auto")).value_or(BodyModel::kAuto);
   body.models.tolerance = keys.number("torsion_tolerance").value_or(body.models.tolerance);
   body.models.region_threshold = keys.number("torsion_region_threshold").value_or(0.0);
-  check_body_rests(reader, node);
+  body.script = read_body_motion(reader, node);
   if (!body.parts.empty()) {
     const glm::dvec3 up = glm::conjugate(body.pose.rotation) * glm::dvec3(0.0, 1.0, 0.0);
     set_fixed_region(keys.text("torsion_fixed").value_or(""),
@@ -179,6 +183,7 @@ SceneDescription read_scene(const SceneReader& reader, const std::string& path) 
   for (std::size_t node = 0; node < reader.nodes.size(); ++node) {
     if (reader.nodes[node].role == Role::kElastic) {
       scene.bodies.push_back(read_body(reader, node));
+      scene.duration = std::max(scene.duration, scene.bodies.back().script.end_time);
     } else if (reader.nodes[node].role == Role::kTool) {
       scene.tools.push_back(read_tool(reader, node));
       scene.duration = std::max(scene.duration, scene.tools.back().script.end_time);

@@ -56,6 +56,8 @@ std::vector<System<StepContext>> step_systems() {
   std::vector<System<StepContext>> systems{
       {"couple_tools", "takes the tools' poses and their motion", "a tool", nullptr, couple_tools,
        columns<ToolPose, ToolMotion>()},
+      {"move_bodies", "moves the bodies that an animation moves", "a tool and a body",
+       any_tool_and_body, move_bodies, columns<BodyPose, ToolOverBody>()},
       {"detect_contacts", "finds the tool's surface points inside a body", "a tool and a body",
        any_tool_and_body, detect_contacts},
       {"group_contact_points", "groups contact points closer than r_th", "a tool and a body",

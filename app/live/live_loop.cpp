@@ -206,7 +206,7 @@ LiveRow live_row(const LiveLoop& loop, std::uint32_t tool, double step_us, doubl
   for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
     const RegionIdentity& identity = world.state.regions.at<RegionIdentity>(region);
     if (identity.tool == tool) {
-      const glm::dquat& to_world = world.model.bodies.at<Pose>(identity.body).rotation;
+      const glm::dquat& to_world = world.state.bodies.at<BodyPose>(identity.body).now.rotation;
       row.normal = to_world * world.state.regions.at<RegionFrame>(region).normal;
       row.tangent_x = to_world * world.state.regions.at<RegionFrame>(region).tangent_x;
       row.turn = world.state.regions.at<RegionMotion>(region).turn;
@@ -226,7 +226,7 @@ void mark_cells(const World& world, std::vector<CellMark>& marks) {
   for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
     const RegionIdentity& identity = world.state.regions.at<RegionIdentity>(region);
     const RegionFrame& frame = world.state.regions.at<RegionFrame>(region);
-    const Pose& body = world.model.bodies.at<Pose>(identity.body);
+    const Pose& body = world.state.bodies.at<BodyPose>(identity.body).now;
     const auto tractions = world.state.cells.rows<CellTraction>(identity.cells);
     const auto geometry = world.state.cells.rows<CellGeometry>(identity.cells);
     for (std::uint32_t i = 0; i < tractions.size() && marks.size() < kMostCellMarks; ++i) {

@@ -106,8 +106,13 @@ json body_json(const AnimatedMesh& body, double limit) {
       twists.push_back(short_of(target.twist_angles[i], limit));
     }
   }
+  json poses = json::array();
+  for (const Pose& pose : body.poses) {
+    poses.push_back(pose_json(pose));
+  }
   return {{"name", body.rest.name},
           {"pose", pose_json(body.rest.pose)},
+          {"poses", poses},
           {"positions", packed(body.rest.positions)},
           {"normals", packed(body.rest.normals)},
           {"triangles", packed(body.rest.triangles)},

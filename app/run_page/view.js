@@ -85,7 +85,7 @@ float line(float at, float width, float gap, float pixels) {
     scene.add(mesh);
     mesh.updateMatrixWorld();
     box.expandByObject(mesh);
-    return { mesh, rest, shifts: shorts(body.shifts), unit: body.shift_unit, twists: shorts(body.twists),
+    return { mesh, poses: body.poses, rest, shifts: shorts(body.shifts), unit: body.shift_unit, twists: shorts(body.twists),
       normals: floats(body.normals), normalShifts: shorts(body.normal_shifts) };
   });
 
@@ -148,6 +148,15 @@ float line(float at, float width, float gap, float pixels) {
     };
   }
 
+  // A thing's pose between two moments.
+  function move(mesh, poses, row, after, share) {
+    const next = new THREE.Object3D();
+    place(mesh, poses[row]);
+    place(next, poses[after]);
+    mesh.position.lerp(next.position, share);
+    mesh.quaternion.slerp(next.quaternion, share);
+  }
+
   const tools = run.tools.map((tool) => {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(floats(tool.positions), 3));
@@ -201,6 +210,7 @@ float line(float at, float width, float gap, float pixels) {
     const share = last > 0 ? Math.min(Math.max((time - run.times[row]) / span, 0), 1) : 0;
     const after = Math.min(row + 1, last);
     for (const body of bodies) {
+      if (body.poses.length > 0) move(body.mesh, body.poses, row, after, share);
       const attributes = body.mesh.geometry.attributes;
       const count = body.rest.length;
       for (let i = 0; i < count; ++i) {
@@ -227,11 +237,7 @@ float line(float at, float width, float gap, float pixels) {
     let force = 0;
     let torque = 0;
     for (const tool of tools) {
-      place(tool.mesh, tool.poses[row]);
-      const next = new THREE.Object3D();
-      place(next, tool.poses[after]);
-      tool.mesh.position.lerp(next.position, share);
-      tool.mesh.quaternion.slerp(next.quaternion, share);
+      move(tool.mesh, tool.poses, row, after, share);
       const f = new THREE.Vector3().fromArray(blend(tool.forces, row, share));
       force = Math.max(force, f.length());
       torque = Math.max(torque, new THREE.Vector3().fromArray(blend(tool.torques, row, share)).length());

@@ -56,11 +56,11 @@ glm::dvec3 in_world(const Pose& pose, const glm::dvec3& point) {
 }
 
 /// A ring around the contact with a stroke along the normal, and one that shows the turn.
-void draw_region(const Pencil& pencil, const LiveFrame& frame, const World& world,
-                 std::uint32_t region) {
+void draw_region(const Pencil& pencil, const LiveFrame& frame, std::uint32_t region) {
   constexpr int kSides = 32;
   const RegionTable& regions = frame.snapshot.regions;
-  const Pose& body = world.model.bodies.at<Pose>(regions.at<RegionIdentity>(region).body);
+  const Pose& body =
+      frame.snapshot.bodies.at<BodyPose>(regions.at<RegionIdentity>(region).body).now;
   const RegionFrame& axes = regions.at<RegionFrame>(region);
   const Contact& contact = regions.at<Contact>(region);
   const auto on_ring = [&](double angle) {
@@ -97,7 +97,7 @@ void draw_fixed(const Pencil& pencil, const FrameWorld& frame) {
 
 void draw_anchors(const Pencil& pencil, const LiveFrame& frame, const World& world) {
   for (std::uint32_t body = 0; body < world.model.bodies.size(); ++body) {
-    const Pose& pose = world.model.bodies.at<Pose>(body);
+    const Pose& pose = frame.snapshot.bodies.at<BodyPose>(body).now;
     const Range rows = world.model.bodies.at<OwnedRows>(body).anchors;
     const auto rest = world.model.anchors.rows<AnchorRest>(rows);
     const auto moved = frame.snapshot.anchors.rows<AnchorMotion>(rows);
@@ -153,7 +153,7 @@ void draw_marks(const ViewState& state, LiveSession& session, const Camera& came
   }
   for (std::uint32_t region = 0; state.show_regions && region < frame.snapshot.regions.size();
        ++region) {
-    draw_region(pencil, frame, shown.simulation.world, region);
+    draw_region(pencil, frame, region);
   }
   if (state.show_legend && state.show_panels) {
     draw_legend(state, picture);

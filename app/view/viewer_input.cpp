@@ -85,7 +85,8 @@ Viewer::ContactAxes Viewer::axes_under(std::uint32_t tool) const {
   const Snapshot& snapshot = session_->frame().snapshot;
   const Model& model = session_->shown().simulation.world.model;
   if (const auto region = region_of(snapshot, tool)) {
-    const Pose& body = model.bodies.at<Pose>(snapshot.regions.at<RegionIdentity>(*region).body);
+    const Pose& body =
+        snapshot.bodies.at<BodyPose>(snapshot.regions.at<RegionIdentity>(*region).body).now;
     const RegionFrame& frame = snapshot.regions.at<RegionFrame>(*region);
     return {to_outer(body, snapshot.regions.at<Contact>(*region).equivalent_point),
             body.rotation * frame.normal, body.rotation * frame.tangent_x};
@@ -94,7 +95,7 @@ Viewer::ContactAxes Viewer::axes_under(std::uint32_t tool) const {
   axes.pivot = snapshot.tools.at<ToolMotion>(tool).mass_center;
   double nearest = 1e300;
   for (std::uint32_t row = 0; row < model.bodies.size(); ++row) {
-    const Pose& body = model.bodies.at<Pose>(row);
+    const Pose& body = snapshot.bodies.at<BodyPose>(row).now;
     const Distance distance =
         signed_distance(model, model.bodies.at<OwnedRows>(row).parts, to_inner(body, axes.pivot));
     const double length = glm::length(distance.gradient);

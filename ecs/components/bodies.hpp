@@ -8,6 +8,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include "ecs/components/basics.hpp"
 #include "ecs/contact_models.hpp"
 #include "ecs/range.hpp"
 
@@ -25,6 +26,21 @@ struct Elasticity {
   [[nodiscard]] double contact_modulus() const {  // E* = E / (1 - nu^2) against a rigid tool, Pa
     return youngs_modulus / (1.0 - poisson_ratio * poisson_ratio);
   }
+};
+
+/// The body node's frame in the world, now and one step ago. Written by: move_bodies.
+struct BodyPose {
+  Pose now;
+  Pose before;
+};
+
+/// How a tool moves over a body in a step, seen from the body: body axes. Written by: move_bodies.
+struct ToolOverBody {
+  glm::dvec3 shift{0.0};   // m, of the tool's mass centre
+  glm::dvec3 turn{0.0};    // rad, rotation vector
+  glm::dvec3 center{0.0};  // m: where the mass centre is now
+  glm::dvec3 axis{0.0};    // unit once it has turned: the rotation axis with a short memory
+  double axis_turn = 0.0;  // rad, how much turning that memory holds
 };
 
 /// Coulomb coefficients, static_friction >= dynamic_friction >= 0. Written by: load.

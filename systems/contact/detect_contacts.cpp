@@ -332,7 +332,7 @@ void detect_contacts(StepContext& context) {
       const auto first = static_cast<std::uint32_t>(scratch.points.size());
       ContactSearch search{
           model, scratch, model.bodies.at<OwnedRows>(body).parts, model.tools.at<OwnedRows>(tool),
-          relative(model.bodies.at<Pose>(body), state.tools.at<ToolPose>(tool).now)};
+          relative(state.bodies.at<BodyPose>(body).now, state.tools.at<ToolPose>(tool).now)};
       find_points(search);
       const Range points{first, static_cast<std::uint32_t>(scratch.points.size()) - first};
       const auto first_near = static_cast<std::uint32_t>(scratch.near_pairs.size());

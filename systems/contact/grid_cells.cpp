@@ -262,7 +262,7 @@ Pose moved_grid_in_body(const RegionFrame& frame, const RegionCarrier& carrier,
 }
 
 Pose grid_in_tool(const Grid& grid) {
-  const Pose tool_in_body = relative(grid.model.bodies.at<Pose>(grid.identity.body),
+  const Pose tool_in_body = relative(grid.state.bodies.at<BodyPose>(grid.identity.body).now,
                                      grid.state.tools.at<ToolPose>(grid.identity.tool).now);
   return relative(tool_in_body, moved_grid_in_body(grid.frame, grid.carrier, grid.support));
 }

@@ -373,7 +373,7 @@ void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoin
 
 void follow_overlap(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const Grid grid = grid_of(context, region);
-  const MotionOverBody motion = motion_over_body(context.model, context.state, region);
+  const MotionOverBody motion = motion_over_body(context.state, region);
   const bool moves = motion.shift != glm::dvec3(0.0) || motion.turn != glm::dvec3(0.0);
   if (law_of(context.model, grid.identity.body).follows_material) {
     follow_material(context.state, region);

@@ -234,7 +234,7 @@ Wrench computed_wrench(const StepContext& context, std::uint32_t region) {
   const State& state = context.state;
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const RegionFriction& friction = state.regions.at<RegionFriction>(region);
-  const WorldRegion seen(context.model, state, region, support_now(context, region));
+  const WorldRegion seen(state, region, support_now(context, region));
   const glm::dvec3 force =
       seen.direction(frame.normal * state.regions.at<RegionNormal>(region).force +
                      tangent_to_body(frame, friction.force));
@@ -247,10 +247,10 @@ Wrench computed_wrench(const StepContext& context, std::uint32_t region) {
 /// The share of a new region's force that comes from the tool's motion in this step: all of it if
 /// the tool reached the body within the step. A greater depth was there when the run began, or
 /// samples had missed it. By Hertz, F ~ d^(3/2).
-double share_by_motion(const Model& model, const State& state, std::uint32_t region) {
+double share_by_motion(const State& state, std::uint32_t region) {
   constexpr double kMore = 1.2;  // times the way: depths are told by cells
-  const glm::dvec3 shift = shift_at(motion_over_body(model, state, region),
-                                    state.regions.at<Contact>(region).equivalent_point);
+  const glm::dvec3 shift =
+      shift_at(motion_over_body(state, region), state.regions.at<Contact>(region).equivalent_point);
   const double way = -glm::dot(shift, state.regions.at<RegionFrame>(region).normal);
   const double share =
       kMore * way / std::max(state.regions.at<Overlap>(region).largest_depth, 1e-300);
@@ -291,10 +291,30 @@ void fade_event(RegionWrench& wrench, const Wrench& computed, double extrapolate
   }
 }
 
+/// Turns what a region keeps from the last step with its body.
+void carry(RegionWrench& wrench, const BodyPose& body) {
+  const glm::dquat turn = body.now.rotation * glm::conjugate(body.before.rotation);
+  for (Wrench* kept : {&wrench.on_tool, &wrench.event_change}) {
+    *kept = {turn * kept->force, turn * kept->torque};
+  }
+}
+
 /// Work that the tool's holder, who balances the wrench, does in a step, J.
 double work_against(const Wrench& wrench, const ToolMotion& motion, double dt) {
   return -dt * (glm::dot(wrench.force, motion.velocity) +
                 glm::dot(wrench.torque, motion.angular_velocity));
+}
+
+/// The same as far as it is done on a body, J: one that moves does some of it itself.
+double work_on_body(const Model& model, const State& state, const RegionIdentity& region,
+                    const Wrench& wrench) {
+  if (!model.moves(region.body)) {
+    return work_against(wrench, state.tools.at<ToolMotion>(region.tool), model.dt);
+  }
+  const glm::dquat& to_world = state.bodies.at<BodyPose>(region.body).now.rotation;
+  const ToolOverBody& over = state.over(region.tool, region.body);
+  return -glm::dot(wrench.force, to_world * over.shift) -
+         glm::dot(wrench.torque, to_world * over.turn);
 }
 
 /// The output for a computed wrench of a tool, given whether this step had a fault.
@@ -337,13 +357,16 @@ void region_wrenches(StepContext& context) {
   for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
     RegionWrench& wrench = state.regions.at<RegionWrench>(region);
     const bool begins = wrench.event_now == static_cast<std::uint32_t>(RegionEvent::kBegins);
+    const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+    if (model.moves(identity.body)) {
+      carry(wrench, state.bodies.at<BodyPose>(identity.body));
+    }
     const Wrench before = wrench.on_tool;
     fade_event(wrench, computed_wrench(context, region),
                state.regions.at<PatchState>(region).along_last,
-               begins ? share_by_motion(model, state, region) : 0.0, dt / kEventFade);
-    const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
-    state.bodies.at<StoredEnergy>(identity.body).work += work_against(
-        (before + wrench.on_tool) * 0.5, state.tools.at<ToolMotion>(identity.tool), dt);
+               begins ? share_by_motion(state, region) : 0.0, dt / kEventFade);
+    state.bodies.at<StoredEnergy>(identity.body).work +=
+        work_on_body(model, state, identity, (before + wrench.on_tool) * 0.5);
   }
   bound_forces(context);
 }

@@ -6,15 +6,14 @@
 
 namespace torsion::engine {
 
-ToolLoad tool_load(const Model& model, const State& state, std::uint32_t tool,
-                   const glm::dvec3& about) {
+ToolLoad tool_load(const State& state, std::uint32_t tool, const glm::dvec3& about) {
   ToolLoad load;
   double largest = 0.0;
   for (std::uint32_t row = 0; row < state.regions.size(); ++row) {
     if (state.regions.at<RegionIdentity>(row).tool != tool) {
       continue;
     }
-    const WorldRegion region(model, state, row, state.regions.at<RegionSupport>(row));
+    const WorldRegion region(state, row, state.regions.at<RegionSupport>(row));
     const RegionFrame& frame = state.regions.at<RegionFrame>(row);
     const RegionFriction& tangential = state.regions.at<RegionFriction>(row);
     const double force = state.regions.at<RegionNormal>(row).force;

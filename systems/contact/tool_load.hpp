@@ -20,7 +20,6 @@ struct ToolLoad {
 
 /// @param about  m, world: what the torques are about
 /// Allocates nothing.
-ToolLoad tool_load(const Model& model, const State& state, std::uint32_t tool,
-                   const glm::dvec3& about);
+ToolLoad tool_load(const State& state, std::uint32_t tool, const glm::dvec3& about);
 
 }  // namespace torsion::engine

@@ -13,6 +13,14 @@ namespace torsion::engine {
 /// without motion; both set a fault.
 void couple_tools(StepContext& context);
 
+/// Moves the bodies to where their scripts have them at the step's time (they stay at rest without
+/// one), and finds how each tool moves over each body, seen from the body. Together faster than a
+/// hand moves a tool: taken without motion, with a fault.
+void move_bodies(StepContext& context);
+
+/// Puts the bodies where they are at time 0.
+void place_bodies(const Model& model, State& state);
+
 /// How the tool moves over the material under a region in a step, as a rigid body, body axes.
 struct MotionOverBody {
   glm::dvec3 shift{0.0};         // m, of the tool's mass centre
@@ -23,7 +31,7 @@ struct MotionOverBody {
   glm::dvec3 carried_about{0.0};
 };
 
-MotionOverBody motion_over_body(const Model& model, const State& state, std::uint32_t region);
+MotionOverBody motion_over_body(const State& state, std::uint32_t region);
 
 /// Displacement of the tool over the material that is at `point`, m, body axes. Its turn is about
 /// where the mass centre is halfway through the step: then it does not matter whether it turns or

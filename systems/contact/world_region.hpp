@@ -13,9 +13,8 @@ namespace torsion::engine {
 class WorldRegion {
  public:
   /// @param support  how the body as a whole has moved the material
-  WorldRegion(const Model& model, const State& state, std::uint32_t region,
-              const RegionSupport& support)
-      : body_(model.bodies.at<Pose>(state.regions.at<RegionIdentity>(region).body)),
+  WorldRegion(const State& state, std::uint32_t region, const RegionSupport& support)
+      : body_(state.bodies.at<BodyPose>(state.regions.at<RegionIdentity>(region).body).now),
         support_(support) {
     const double turn = glm::length(support.rotation);
     turned_ = turn > 0.0;

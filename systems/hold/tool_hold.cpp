@@ -68,7 +68,7 @@ constexpr double kWidestFreeTurn = 0.2;    // rad
 Matrix6 contact_stiffness(const Model& model, const State& state, std::uint32_t region,
                           const glm::dvec3& center) {
   const Contact& contact = state.regions.at<Contact>(region);
-  const Pose& body = model.bodies.at<Pose>(state.regions.at<RegionIdentity>(region).body);
+  const Pose& body = state.bodies.at<BodyPose>(state.regions.at<RegionIdentity>(region).body).now;
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const StuckStiffness stuck = stuck_stiffness(model, state, region, contact.radius);
   const Eigen::Vector3d axis = eigen(body.rotation * frame.normal);

@@ -6,6 +6,7 @@
 
 #include "systems/contact/law.hpp"
 #include "systems/contact/support/support_fit.hpp"
+#include "systems/contact/tool_motion.hpp"
 #include "systems/geometry/bounds.hpp"
 #include "systems/geometry/distance_field.hpp"
 #include "systems/geometry/sample_surface.hpp"
@@ -170,6 +171,7 @@ void append_body(Model& model, const BodyDescription& body, const Built& built,
   fixed.volumes = append_rows<FixedVolume>(model.fixed_volumes, body.fixed_volumes);
   const std::uint32_t row = model.bodies.append()->first;
   model.bodies.at<Pose>(row) = body.pose;
+  model.body_scripts.push_back(body.script);
   model.bodies.at<Elasticity>(row) = body.elasticity;
   model.bodies.at<Friction>(row) = body.friction;
   model.bodies.at<FixedRegion>(row) = fixed;
@@ -348,6 +350,7 @@ Result<Done> append_choices(PreparedWorld& prepared, const SceneDescription& sce
     append_models(model, row, scene.bodies[row], compliances.value()[row], prepared.choices[row]);
   }
   prepared.world.state.reserve(capacities, settings);
+  place_bodies(model, prepared.world.state);
   model.dt = 1.0 / options.rate;
   return Done{};
 }

@@ -161,9 +161,9 @@ void note_forces(const State& state, std::uint32_t region, PatchEnergy& energy) 
 /// The tool's motion over the material that the region holds. Where the material's motion is also
 /// the body's motion under the region's own load, only the other regions' share of it carries the
 /// material.
-MotionOverBody motion_over_held(const Model& model, const State& state, std::uint32_t region,
-                                bool holds_body, const PatchEnergy& before) {
-  MotionOverBody motion = motion_over_body(model, state, region);
+MotionOverBody motion_over_held(const State& state, std::uint32_t region, bool holds_body,
+                                const PatchEnergy& before) {
+  MotionOverBody motion = motion_over_body(state, region);
   if (holds_body) {
     const RegionSupport& support = state.regions.at<RegionSupport>(region);
     motion.carried_about = before.point;
@@ -214,7 +214,7 @@ void settle_energy(const Model& model, State& state, std::uint32_t region,
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const PatchEnergy before = state.regions.at<PatchEnergy>(region);
   const MotionOverBody motion =
-      motion_over_held(model, state, region, solution.problem.support.response != nullptr, before);
+      motion_over_held(state, region, solution.problem.support.response != nullptr, before);
   PatchEnergy now;
   note_forces(state, region, now);
   now.held = held_energy(solution, cell_area(frame, solution.problem.influences.side));

@@ -273,10 +273,10 @@ void lay_frame(const Grid& grid, const RegionPoints& contact, const GridFit& fit
 
 /// Sticking cells follow the tool in this step already. If they followed a step later, they would
 /// be at other depths in between, by a motion that nobody has done work for.
-void extrapolate_carrier(const Model& model, State& state, std::uint32_t region) {
+void extrapolate_carrier(State& state, std::uint32_t region) {
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   const double share = state.regions.at<RegionFriction>(region).stick_share;
-  const MotionOverBody motion = motion_over_body(model, state, region);
+  const MotionOverBody motion = motion_over_body(state, region);
   // As a rigid body about the contact's middle, so that the place of the grid's origin does not
   // matter.
   const glm::dvec3 middle = state.regions.at<Contact>(region).equivalent_point;
@@ -350,7 +350,7 @@ void find_patch_cells(StepContext& context, std::uint32_t region, const RegionPo
     center_patch(grid, contact, deepest_of_cluster(grid, contact).depth);
     return;
   }
-  extrapolate_carrier(context.model, context.state, region);
+  extrapolate_carrier(context.state, region);
   find_cells(grid, contact);
   if (state.resized != 0) {
     look_along_normal(grid, contact);

@@ -65,7 +65,7 @@ ExtrapolationShares extrapolation_shares(const Patch& patch) {
 /// Whether the contact rolls in this step (kRolls).
 bool rolls(const Patch& patch) {
   const Overlap& overlap = patch.state.regions.at<Overlap>(patch.region);
-  const glm::dvec3 turn = turn_of(motion_over_body(patch.model, patch.state, patch.region));
+  const glm::dvec3 turn = turn_of(motion_over_body(patch.state, patch.region));
   const glm::dvec3 tilt = turn - patch.frame.normal * glm::dot(turn, patch.frame.normal);
   return glm::length(tilt) * overlap.radius > kRolls * overlap.mean_depth;
 }

@@ -19,10 +19,9 @@ constexpr std::uint32_t kRoundsOnSoftBody = 3;  // at most: pressing moves it si
 constexpr double kSettledOnBody = 0.01;  // PatchProblem::settled
 
 /// The tool's motion over cells that stay in place, while RegionMotion's pivot moves with the tool.
-RegionMotion motion_over_cells(const Model& model, const State& state, std::uint32_t region,
-                               const RegionFrame& frame) {
+RegionMotion motion_over_cells(const State& state, std::uint32_t region, const RegionFrame& frame) {
   RegionMotion motion = state.regions.at<RegionMotion>(region);
-  const MotionOverBody over = motion_over_body(model, state, region);
+  const MotionOverBody over = motion_over_body(state, region);
   motion.slide +=
       glm::dvec2(body_to_grid_direction(frame, 0.5 * glm::cross(over.turn, over.shift)));
   return motion;
@@ -67,7 +66,7 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
           region,
           settings.grid_side,
           frame,
-          motion_over_cells(model, state, region, frame),
+          motion_over_cells(state, region, frame),
           patch_rows(state, identity.cells),
           state.regions.at<PatchState>(region),
           problem};

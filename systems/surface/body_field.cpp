@@ -82,7 +82,7 @@ void limit_past_turns(const Snapshot& snapshot, BodyField& field) {
 }
 
 void fill_touchers(const Snapshot& snapshot, BodyField& field) {
-  const Pose& pose = field.model.bodies.at<Pose>(field.body);
+  const Pose& pose = snapshot.bodies.at<BodyPose>(field.body).now;
   for (const Slot& slot : field.slots) {
     const bool known =
         std::any_of(field.touchers.begin(), field.touchers.end(),

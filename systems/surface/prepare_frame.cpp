@@ -133,8 +133,8 @@ void reserve(const SceneDescription& scene, const Model& model,
   frame.interpolation.reserve(rows(interpolation));
 }
 
-void append_body(const BodyDescription& body, const Model& model, const BodyCenters& centers,
-                 FrameWorld& frame) {
+void append_body(const BodyDescription& body, const Model& model, const State& state,
+                 const BodyCenters& centers, FrameWorld& frame) {
   const std::uint32_t row = append_rows(frame.bodies, 1).first;
   const DrawRange drawn = append_mesh(body.draw, frame.body_vertices, frame.body_triangles);
   FrameBody data;
@@ -148,7 +148,7 @@ void append_body(const BodyDescription& body, const Model& model, const BodyCent
                     frame.interpolation.rows<InterpolationRow>(data.interpolation).begin());
   data.twist = append_rows(frame.twist, std::size_t{drawn.vertices.count} * kMaxRegionsPerBody);
   data.axes = append_rows(frame.axes, kMaxRegionsPerBody);
-  frame.bodies.at<Pose>(row) = model.bodies.at<Pose>(row);
+  frame.bodies.at<Pose>(row) = state.bodies.at<BodyPose>(row).now;
   frame.bodies.at<DrawRange>(row) = drawn;
   frame.bodies.at<FrameBody>(row) = data;
 }
@@ -166,7 +166,7 @@ FrameWorld prepare_frame(const SceneDescription& scene, const Model& model, cons
   std::ranges::copy(model.anchors.column<AnchorRest>(),
                     frame.anchor_rest.rows<AnchorRest>(anchors).begin());
   for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
-    append_body(scene.bodies[body], model, centers[body], frame);
+    append_body(scene.bodies[body], model, state, centers[body], frame);
   }
   for (const ToolDescription& tool : scene.tools) {
     const std::uint32_t row = append_rows(frame.tools, 1).first;

@@ -335,6 +335,7 @@ void surface_field(const Model& model, const Snapshot& snapshot, FrameWorld& fra
     frame.tools.at<Pose>(tool) = snapshot.tools.at<ToolPose>(tool).now;
   }
   for (std::uint32_t body = 0; body < frame.bodies.size(); ++body) {
+    frame.bodies.at<Pose>(body) = snapshot.bodies.at<BodyPose>(body).now;
     FrameBody& data = frame.bodies.at<FrameBody>(body);
     const Range vertices = frame.bodies.at<DrawRange>(body).vertices;
     const BodyField field = body_field(model, snapshot, frame, body);

@@ -246,14 +246,15 @@ RegionTwist region_twist(const Model& model, const Snapshot& snapshot, std::uint
   twist.direction = frame.normal;
   const double past = 1.0 - motion.axis_share;
   if (past > 0.0 && glm::dot(motion.axis, motion.axis) > 0.0) {
-    const Pose& pose = model.bodies.at<Pose>(identity.body);
-    const ToolMotion& tool = snapshot.tools.at<ToolMotion>(identity.tool);
+    const Pose& pose = snapshot.bodies.at<BodyPose>(identity.body).now;
+    const ToolOverBody& tool = snapshot.tools_over_bodies.at<ToolOverBody>(
+        identity.tool * snapshot.bodies.size() + identity.body);
     const glm::dvec3 torque =
         glm::conjugate(pose.rotation) * snapshot.regions.at<RegionWrench>(region).on_tool.torque;
     // The sense of the axis is arbitrary: it is chosen along the normal, so that both branches turn
     // alike.
     const glm::dvec3 axis = glm::dot(motion.axis, frame.normal) < 0.0 ? -motion.axis : motion.axis;
-    const glm::dvec3 center = to_inner(pose, tool.mass_center);
+    const glm::dvec3& center = tool.center;
     // A turn of less than a hundredth of a radian hardly has an axis: it is faded in. A tool that
     // goes on turning about one axis soon has twice as much (systems/contact/tool_motion.cpp).
     constexpr double kFirstTurn = 0.01;

@@ -131,9 +131,16 @@ const std::vector<BadInput>& bad_scenes() {
          s.add_motion(1, "scale", {0.0F, 1.0F}, {1.0F, 1.0F, 1.0F, 2.0F, 2.0F, 2.0F});
        },
        {"node \"block\"", "scale", "rigid"}},
-      {"AnimatedBody",
-       [](GltfBuilder& s) { s.document["animations"][0]["channels"][0]["target"]["node"] = 0; },
-       {"node \"cube\"", "animation", "stays where it is"}},
+      {"AnimatedPartOfABody",
+       [](GltfBuilder& s) {
+         const int mesh = s.add_mesh(box_mesh(glm::dvec3(0.01)));
+         const int part = s.add_node({{"name", "lump"}, {"mesh", mesh}});
+         json& roots = s.document["scenes"][0]["nodes"];
+         roots.erase(roots.size() - 1);
+         s.node("cube")["children"] = {part};
+         s.add_motion(part, "translation", {0.0F, 1.0F}, {0.0F, 0.05F, 0.0F, 0.0F, 0.06F, 0.0F});
+       },
+       {"node \"lump\"", "animation", "moves a part of the body"}},
       {"TwoToolsOfOneName",
        [](GltfBuilder& s) {
          const int mesh = s.add_mesh(box_mesh(glm::dvec3(0.01)));

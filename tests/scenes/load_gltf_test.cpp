@@ -313,5 +313,19 @@ TEST(LoadGltfTest, EveryFaultOfAFileIsListedAtOnce) {
   EXPECT_EQ(loaded.problems.size(), 4U) << to_text(loaded.problems);
 }
 
+TEST(LoadGltfTest, AnAnimationMayMoveABody) {
+  test::GltfBuilder builder = test::good_scene();
+  builder.add_motion(0, "translation", {0.0F, 4.0F}, {0.0F, 0.05F, 0.0F, 0.0F, 0.09F, 0.0F});
+  const LoadedScene loaded = test::load_text(builder.text());
+  ASSERT_TRUE(loaded.scene) << to_text(loaded.problems);
+  const BodyDescription& body = loaded.scene->bodies[0];
+  EXPECT_EQ(loaded.scene->duration, 4.0);
+  EXPECT_LT(glm::length(scripted_pose(body.script, 1.0).position - glm::dvec3(0.0, 0.06, 0.0)),
+            1e-8);
+  EXPECT_TRUE(expected_poses(*loaded.scene).empty());
+  // One that nothing moves has no script.
+  EXPECT_TRUE(test::load_text(test::good_scene().text()).scene->bodies[0].script.links.empty());
+}
+
 }  // namespace
 }  // namespace torsion::engine::test

@@ -145,6 +145,7 @@ World body_world(const BodyDescription& body) {
 
   world.model.bodies.append();
   world.model.bodies.at<Pose>(0) = body.pose;
+  world.state.bodies.at<BodyPose>(0) = {body.pose, body.pose};
   world.model.bodies.at<Elasticity>(0) = body.elasticity;
   world.model.bodies.at<Friction>(0) = body.friction;
   world.model.bodies.at<FixedRegion>(0) = fixed;

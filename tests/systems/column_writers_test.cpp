@@ -67,6 +67,13 @@ SceneDescription two_balls_over(ShapeKind kind, const glm::dvec3& half_extent,
   scene.bodies[0].friction = {0.5, 0.4};
   scene.bodies[0].models = models;
   scene.bodies[0].models.region_threshold = 0.004;
+  if (kind == ShapeKind::kBox && half_extent.y < half_extent.x / 2.0) {
+    // A layer that moves.
+    MotionLink link;
+    link.animated_translation = {
+        Interpolation::kLinear, {0.0, 1.0}, {glm::dvec4(0.0), {1e-4, 0.0, 0.0, 0.0}}};
+    scene.bodies[0].script = {{link}, 1.0};
+  }
   scene.tools[0] = test::make_tool(
       {test::make_part(ShapeKind::kSphere, glm::dvec3(0.02), {{0.011, 0.0, 0.0}}),
        test::make_part(ShapeKind::kSphere, glm::dvec3(0.02), {{-0.011, 0.0, 0.0}})});

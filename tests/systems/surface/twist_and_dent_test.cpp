@@ -123,10 +123,9 @@ TEST(RegionTwistTest, TorqueOfAnAxisThatMissesTheRegionTwistsBarsAsSaintVenantSa
         add_region(drawn.world, {.point = {0.0, bar.half.y, 0.0}, .radius = 0.005});
     drawn.world.state.regions.at<RegionMotion>(region).axis = kUp;
     drawn.world.state.regions.at<RegionWrench>(region).on_tool.torque = -bar.torque * kUp;
-    drawn.world.state.tools.at<ToolMotion>(0).axis = kUp;
-    drawn.world.state.tools.at<ToolMotion>(0).axis_turn =
-        0.02;  // what is remembered of a long turn
-    drawn.world.state.tools.at<ToolMotion>(0).mass_center = glm::dvec3(0.0, 0.3, 0.0);
+    drawn.world.state.over(0, 0).axis = kUp;
+    drawn.world.state.over(0, 0).axis_turn = 0.02;  // what is remembered of a long turn
+    drawn.world.state.over(0, 0).center = glm::dvec3(0.0, 0.3, 0.0);
     drawn.draw();
     for (std::uint32_t v = 0; v < drawn.vertices(); ++v) {
       const double share = (drawn.rest(v).y + bar.half.y) / (2.0 * bar.half.y);
@@ -149,8 +148,8 @@ TEST(RegionTwistTest, TorqueAgainstTheAxisTurnsTheSameWayAsAlongTheFlippedAxis) 
         add_region(drawn.world, {.point = {0.0, 0.05, 0.0}, .radius = 0.005});
     drawn.world.state.regions.at<RegionMotion>(region).axis = axis;
     drawn.world.state.regions.at<RegionWrench>(region).on_tool.torque = -0.1 * kUp;
-    drawn.world.state.tools.at<ToolMotion>(0).axis = axis;
-    drawn.world.state.tools.at<ToolMotion>(0).axis_turn = 0.02;
+    drawn.world.state.over(0, 0).axis = axis;
+    drawn.world.state.over(0, 0).axis_turn = 0.02;
     drawn.draw();
     const std::uint32_t v = 4 * 21 * 21;  // a corner of the top face
     ASSERT_NEAR(drawn.rest(v).y, 0.05, 1e-9);
@@ -164,8 +163,8 @@ TEST(RegionTwistTest, SharesOfTheAxisBlendWithoutAJump) {
   Drawn drawn(exact_body(ShapeKind::kBox, glm::dvec3(0.05), FixedKind::kFace, 2));
   const std::uint32_t region = twisting_region(drawn.world, 0.3, 0.01, 0.02);
   drawn.world.state.regions.at<RegionWrench>(region).on_tool.torque = -0.5 * kUp;
-  drawn.world.state.tools.at<ToolMotion>(0).axis_turn = 0.02;
-  drawn.world.state.tools.at<ToolMotion>(0).mass_center = glm::dvec3(0.02, 0.1, 0.0);
+  drawn.world.state.over(0, 0).axis_turn = 0.02;
+  drawn.world.state.over(0, 0).center = glm::dvec3(0.02, 0.1, 0.0);
   double before = 0.0;
   for (int i = 0; i <= 100; ++i) {
     drawn.world.state.regions.at<RegionMotion>(region).axis_share = i / 100.0;

@@ -54,21 +54,37 @@ std::vector<FixedNode> fixed_nodes(const SceneReader& reader, std::size_t owner,
   return nodes;
 }
 
+/// Whether an animation moves a node, or one above it.
+bool is_moved(const SceneReader& reader, std::size_t node) {
+  for (std::size_t above = 0; above < reader.nodes.size(); ++above) {
+    if (is_below(reader.nodes, node, above) && is_animated(reader.model, reader.nodes[above].row)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool any_body_moves(const SceneReader& reader) {
+  for (std::size_t node = 0; node < reader.nodes.size(); ++node) {
+    if (reader.nodes[node].role == Role::kElastic && is_moved(reader, node)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// What moves a body: its own node or one above. Nothing below it moves on its own.
 MotionScript read_body_motion(const SceneReader& reader, std::size_t body) {
-  bool moves = false;
   for (std::size_t node = 0; node < reader.nodes.size(); ++node) {
-    if (!is_animated(reader.model, reader.nodes[node].row)) {
-      continue;
-    }
-    moves = moves || is_below(reader.nodes, body, node);
-    if (node != body && is_below(reader.nodes, node, body)) {
+    if (node != body && is_below(reader.nodes, node, body) &&
+        is_animated(reader.model, reader.nodes[node].row)) {
       reader.problems.add(reader.name(node), "animation", "",
                           "moves a part of the body " + reader.name(body),
                           "animate the body's own node");
     }
   }
-  return moves ? read_motion(reader.model, reader.nodes, body, reader.problems) : MotionScript{};
+  return is_moved(reader, body) ? read_motion(reader.model, reader.nodes, body, reader.problems)
+                                : MotionScript{};
 }
 
 BodyDescription read_body(const SceneReader& reader, std::size_t node) {
@@ -126,9 +142,10 @@ ToolDescription read_tool(const SceneReader& reader, std::size_t node) {
     return !link.animated_translation.empty() || !link.animated_rotation.empty();
   });
   tool.device = keys.text("torsion_device").value_or("animation");
-  if (tool.device == "animation" && !moves) {
-    reader.problems.add(reader.name(node), "animation", "", "is missing: the tool never moves",
-                        R"(animate the node, or set torsion_device to "mouse" or "usb")");
+  if (tool.device == "animation" && !moves && !any_body_moves(reader)) {
+    reader.problems.add(
+        reader.name(node), "animation", "", "is missing: neither the tool nor a body ever moves",
+        R"(animate the node, or a body's, or set torsion_device to "mouse" or "usb")");
   }
   const PhysicsExtension physics = read_physics_extension(reader.model, reader.file_node(node));
   tool.mass =

@@ -37,6 +37,10 @@ void carry_over(const World& from, World& to) {
   std::ranges::copy(from.state.tools.column<ToolPose>(), to.state.tools.column<ToolPose>().begin());
   std::ranges::copy(from.state.tools.column<ToolMotion>(),
                     to.state.tools.column<ToolMotion>().begin());
+  std::ranges::copy(from.state.bodies.column<BodyPose>(),
+                    to.state.bodies.column<BodyPose>().begin());
+  std::ranges::copy(from.state.tools_over_bodies.column<ToolOverBody>(),
+                    to.state.tools_over_bodies.column<ToolOverBody>().begin());
   for (std::uint32_t tool = 0; tool < to.model.tools.size(); ++tool) {
     to.state.tools.at<ToolWrench>(tool).work = from.state.tools.at<ToolWrench>(tool).work;
   }

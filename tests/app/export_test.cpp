@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
 
 #include "tests/app/program.hpp"
@@ -277,6 +278,42 @@ TEST(ExportTest, ARunIsAtEveryMomentWhatIsExportedAtThatMoment) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(places[kMiddle][static_cast<int>(axis)], placed[axis], 1e-7);
   }
+}
+
+TEST(ExportTest, ABodyThatTurnsUnderAToolThatStaysTurnsInTheFileToo) {
+  // A ball stands 2 mm deep in a cube that turns by 30 degrees in a second.
+  test::GltfBuilder builder = test::good_scene();
+  builder.node("block")["extras"]["torsion_shape"] = "sphere";
+  builder.node("block")["translation"] = {0.0, 0.108, 0.0};
+  builder.document.erase("animations");
+  const auto s = static_cast<float>(std::sin(std::numbers::pi / 12.0));
+  const auto c = static_cast<float>(std::cos(std::numbers::pi / 12.0));
+  builder.add_motion(0, "rotation", {0.0F, 1.0F}, {0.0F, 0.0F, 0.0F, 1.0F, 0.0F, s, 0.0F, c});
+  const Folder folder;
+  test::write_text(folder / "turns.gltf", builder.text());
+  const Ran summary = run_torsion({"simulate", folder / "turns.gltf", "--json"});
+  ASSERT_EQ(summary.exit_code, 0) << summary.err;
+  const auto felt = nlohmann::json::parse(summary.out);
+  EXPECT_TRUE(felt["faults"].empty());
+  EXPECT_GT(felt["peak_torque_Nm"].get<double>(), 1e-3);
+  const Ran ran = run_torsion(
+      {"export", folder / "turns.gltf", "--animate", "--fps", "4", "--out", folder / "run.gltf"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  tinygltf::Model run;
+  tinygltf::TinyGLTF reader;
+  std::string errors;
+  std::string warnings;
+  ASSERT_TRUE(reader.LoadASCIIFromFile(&run, &errors, &warnings, folder / "run.gltf")) << errors;
+  const auto& channels = run.animations.at(0).channels;
+  const auto turns = std::ranges::find_if(channels, [](const tinygltf::AnimationChannel& channel) {
+    return channel.target_node == 0 && channel.target_path == "rotation";
+  });
+  ASSERT_NE(turns, channels.end());
+  const int output = run.animations[0].samplers.at(static_cast<std::size_t>(turns->sampler)).output;
+  const auto keys = rows_of<glm::vec4>(run, run.accessors.at(static_cast<std::size_t>(output)));
+  ASSERT_EQ(keys.size(), 5U);
+  EXPECT_NEAR(keys[4].y, s, 1e-6F);
+  EXPECT_NEAR(keys[2].y, std::sin(std::numbers::pi / 24.0), 1e-6);
 }
 
 TEST(ExportTest, ARunOfTooManyMomentsIsRefused) {

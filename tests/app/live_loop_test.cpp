@@ -319,6 +319,43 @@ TEST(LiveLoopTest, ASwitchOfModelsGoesOnWhereTheToolIs) {
   EXPECT_GT(world.state.tools.at<ToolWrench>(0).total.force.y, 0.1);
 }
 
+TEST(LiveLoopTest, ASwitchOfModelsGoesOnWhereAMovingBodyIs) {
+  Session session = ball_session();
+  // The cube comes up to the ball by 3 mm within half a second, and 0.2 m aside with it.
+  const Pose rest = session.scene.bodies[0].pose;
+  MotionLink link;
+  link.animated_translation = {
+      Interpolation::kLinear,
+      {0.0, 0.5},
+      {{rest.position, 0.0}, {rest.position + glm::dvec3(0.2, 3e-3, 0.0), 0.0}}};
+  session.scene.bodies[0].script = {{link}, 0.5};
+  MotionLink& tool = session.scene.tools[0].script.links.back();
+  tool.animated_translation = {
+      Interpolation::kLinear,
+      {0.0, 0.5},
+      {{0.0, kTouching + 1e-3, 0.0, 0.0}, {0.2, kTouching + 1e-3, 0.0, 0.0}}};
+  session.simulation = prepare(session.scene, test::ball_options()).value();
+  LiveLoop loop;
+  reserve(loop, session, session.simulation);
+  for (int i = 0; i < 480; ++i) {
+    live_tick(loop, 0.0);
+  }
+  const double force = session.simulation.world.state.tools.at<ToolWrench>(0).total.force.y;
+  EXPECT_GT(force, 0.1);
+  Generation next;
+  next.number = 1;
+  next.picks = picks_of(session.scene, test::ball_options());
+  next.simulation = prepare(session.scene, test::ball_options()).value();
+  loop.commands.push({LiveCommandKind::kSwap, 0, 0, &next});
+  for (int i = 0; i < 200; ++i) {
+    live_tick(loop, 0.0);
+  }
+  const State& state = next.simulation.world.state;
+  EXPECT_EQ(state.clock.faults_ever, 0U);
+  EXPECT_NEAR(state.bodies.at<BodyPose>(0).now.position.x, rest.position.x + 0.2, 1e-12);
+  EXPECT_GT(state.tools.at<ToolWrench>(0).total.force.y, force);
+}
+
 /// The step of the frame that is taken after so many ticks of which none was.
 std::uint64_t step_of_next_frame(LiveLoop& loop, int ticks) {
   for (int tick = 0; tick < ticks; ++tick) {

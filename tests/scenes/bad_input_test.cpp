@@ -116,7 +116,7 @@ const std::vector<BadInput>& bad_scenes() {
        {"no tool", "torsion_role"}},
       {"ToolWithoutMotion",
        [](GltfBuilder& s) { s.document.erase("animations"); },
-       {"node \"block\"", "never moves", "torsion_device"}},
+       {"node \"block\"", "ever moves", "torsion_device"}},
       {"AnimationWithoutKeys",
        [](GltfBuilder& s) {
          s.document["accessors"][4]["count"] = 0;

@@ -242,7 +242,13 @@ engine::BodyDescription describe_body(const Scene& scene, const Body& body,
   }
   const std::size_t problems_before = problems.problems.size();
   check_pose(where, body.pose, problems);
-  made.pose = to_engine(body.pose);
+  const engine::Pose pose = to_engine(body.pose);
+  if (!made.script.links.empty() &&
+      (pose.position != made.pose.position || pose.rotation != made.pose.rotation)) {
+    problems.add(where, "pose", "", "was set, but the file's animation moves the body",
+                 "leave it as it is, or take a file without that animation");
+  }
+  made.pose = pose;
   for (const Part& part : body.parts) {
     append_part(where, part, made.parts, made.draw, problems);
   }

@@ -99,6 +99,26 @@ TEST(LibrarySceneTest, AFilesMaterialsMayBeChanged) {
   EXPECT_NEAR(forces[1], 2.0 * forces[0], 1e-6 * forces[1]);
 }
 
+TEST(LibrarySceneTest, AFilesBodyMovesAsItsAnimationSaysAndNowhereElse) {
+  Result<Scene> loaded =
+      load_scene(engine::test::source_folder() + "/tests/library/rising_pad.gltf");
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  Scene& scene = loaded.value();
+  EXPECT_EQ(scene.duration, 1.0);
+  // The pad comes up under a ball that stands still, by 1 mm from 0.5 mm below it.
+  Simulation simulation = simulation_of(scene);
+  const Pose still = animated_pose(scene, 0, 0.0);
+  std::vector<double> forces;
+  while (simulation.time() < scene.duration) {
+    simulation.step({&still, 1});
+    forces.push_back(length(simulation.wrench(0).force));
+  }
+  EXPECT_EQ(forces[forces.size() / 4], 0.0);
+  EXPECT_GT(forces.back(), 0.1);
+  scene.bodies[0].pose.position[0] += 0.01;
+  says(refusal(scene), {"pose", "animation moves the body"});
+}
+
 TEST(LibrarySceneTest, AFilesBodyMayBeMovedAndHeldElsewhere) {
   Result<Scene> loaded = load_scene(engine::test::shipped_scene("ball_on_cube_soft"));
   ASSERT_TRUE(loaded) << loaded.error().message;

@@ -60,16 +60,21 @@ WrittenMesh deformed_body(const Session& session, const FrameWorld& frame, std::
   return mesh;
 }
 
-WrittenMesh placed_tool(const Session& session, std::uint32_t row) {
-  const ToolDescription& from = session.scene.tools[row];
+WrittenMesh rest_mesh(const std::string& name, const Pose& pose, const DrawMesh& draw) {
   WrittenMesh mesh;
-  mesh.name = from.node;
-  mesh.pose = session.simulation.world.state.tools.at<ToolPose>(row).now;
-  mesh.color = from.draw.color;
-  mesh.positions = from.draw.positions;
-  mesh.normals = from.draw.normals;
-  mesh.triangles = from.draw.triangles;
+  mesh.name = name;
+  mesh.pose = pose;
+  mesh.color = draw.color;
+  mesh.positions = draw.positions;
+  mesh.normals = draw.normals;
+  mesh.triangles = draw.triangles;
   return mesh;
+}
+
+WrittenMesh placed_tool(const Session& session, std::uint32_t row) {
+  const ToolDescription& tool = session.scene.tools[row];
+  return rest_mesh(tool.node, session.simulation.world.state.tools.at<ToolPose>(row).now,
+                   tool.draw);
 }
 
 }  // namespace
@@ -96,15 +101,10 @@ DeformedRun::DeformedRun(const Session& session)
                            session.simulation.world.state)) {
   const World& world = session.simulation.world;
   snapshot_.reserve(world.model, world.state);
-  for (const BodyDescription& body : session.scene.bodies) {
-    WrittenMesh mesh;
-    mesh.name = body.node;
-    mesh.pose = body.pose;
-    mesh.color = body.draw.color;
-    mesh.positions = body.draw.positions;
-    mesh.normals = body.draw.normals;
-    mesh.triangles = body.draw.triangles;
-    meshes_.push_back({std::move(mesh), {}, {}});
+  for (std::uint32_t row = 0; row < session.scene.bodies.size(); ++row) {
+    const BodyDescription& body = session.scene.bodies[row];
+    meshes_.push_back(
+        {rest_mesh(body.node, world.state.bodies.at<BodyPose>(row).now, body.draw), {}, {}});
   }
   for (std::uint32_t tool = 0; tool < session.scene.tools.size(); ++tool) {
     meshes_.push_back({placed_tool(session, tool), {}, {}});
@@ -137,6 +137,7 @@ void DeformedRun::add(const Session& session, double time) {
                     world.state.tools.at<ToolMotion>(tool).mass_center});
   }
   felt_.push_back(std::move(felt));
+  widen(limits_, world.state.tools, world.state.regions);
   times_.push_back(static_cast<float>(time));
 }
 

@@ -5,6 +5,7 @@
 #include "app/session.hpp"
 #include "ecs/frame_world.hpp"
 #include "ecs/snapshot.hpp"
+#include "render/arrows.hpp"
 #include "scenes/write_gltf.hpp"
 
 namespace torsion::engine {
@@ -28,6 +29,8 @@ class DeformedRun {
     Wrench wrench;           // on the tool about the centre, world
     glm::dvec3 center{0.0};  // m, world
   };
+  /// What the longest arrows have to stand for.
+  [[nodiscard]] const ArrowLimits& limits() const { return limits_; }
   /// (times) of (tools)
   [[nodiscard]] const std::vector<std::vector<Felt>>& felt() const { return felt_; }
 
@@ -37,6 +40,7 @@ class DeformedRun {
   std::vector<AnimatedMesh> meshes_;  // bodies, then tools
   std::vector<float> times_;          // s
   std::vector<std::vector<Felt>> felt_;
+  ArrowLimits limits_;
 };
 
 }  // namespace torsion::engine

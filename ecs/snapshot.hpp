@@ -16,6 +16,11 @@ struct Snapshot {
   Table<RegionField, AnchorTurns> region_fields;  // (regions)
   Table<AnchorMotion> anchors;                    // (Model::anchors)
 
+  /// As State::over.
+  [[nodiscard]] const ToolOverBody& over(std::uint32_t tool, std::uint32_t body) const {
+    return tools_over_bodies.at<ToolOverBody>(tool * bodies.size() + body);
+  }
+
   /// Takes memory for whatever a step of the scene can leave, with any models of its bodies.
   void reserve(const Model& model, const State& state);
 };

@@ -46,13 +46,15 @@ struct ArrowLimits {
   bool operator==(const ArrowLimits&) const = default;
 };
 
-/// Widens the limits by what a step has. Torques get no smaller a scale than a hundredth of what
-/// the largest force does at the rim of the widest contact: less is noise beside it.
+/// Of a force times the radius of its contact: no scale of torques ends below, for less is noise.
+inline constexpr double kLeastTorqueShare = 0.01;
+
+/// Widens the limits by what a step has. Torques get no smaller a scale than kLeastTorqueShare of
+/// what the largest force does at the rim of the widest contact.
 /// @param tools    of a Snapshot or State
 /// @param regions  likewise
 template <class Tools, class Regions>
 void widen(ArrowLimits& limits, const Tools& tools, const Regions& regions) {
-  constexpr double kLeastShare = 0.01;
   double force = 0.0;
   double radius = 0.0;
   for (const ToolWrench& wrench : tools.template column<ToolWrench>()) {
@@ -66,8 +68,8 @@ void widen(ArrowLimits& limits, const Tools& tools, const Regions& regions) {
     limits.couple = std::max(limits.couple, std::abs(friction.couple));
   }
   limits.force = std::max(limits.force, force);
-  limits.torque = std::max(limits.torque, kLeastShare * force * radius);
-  limits.couple = std::max(limits.couple, kLeastShare * force * radius);
+  limits.torque = std::max(limits.torque, kLeastTorqueShare * force * radius);
+  limits.couple = std::max(limits.couple, kLeastTorqueShare * force * radius);
 }
 
 /// A straight arrow from `tail` along `vector` (length included, m). Nothing below a thousandth of

@@ -1,6 +1,10 @@
 #include "scenes/gltf_rows.hpp"
 
 #include <cstring>
+#include <vector>
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 namespace torsion::engine {
 
@@ -46,6 +50,23 @@ void add_channel(tinygltf::Animation& animation, int node, const char* path, int
   channel.target_node = node;
   channel.target_path = path;
   animation.channels.push_back(channel);
+}
+
+void add_pose_channels(tinygltf::Model& model, tinygltf::Animation& animation, int buffer, int node,
+                       int times, std::span<const Pose> poses) {
+  std::vector<glm::vec3> translations;
+  std::vector<glm::vec4> rotations;
+  for (const Pose& pose : poses) {
+    const glm::dquat& q = pose.rotation;
+    translations.emplace_back(pose.position);
+    rotations.emplace_back(glm::dvec4(q.x, q.y, q.z, q.w));
+  }
+  const auto append = [&](const auto& rows, int type) {
+    return append_rows(model, buffer, std::as_bytes(std::span(rows)),
+                       {TINYGLTF_COMPONENT_TYPE_FLOAT, type, rows.size()});
+  };
+  add_channel(animation, node, "translation", times, append(translations, TINYGLTF_TYPE_VEC3));
+  add_channel(animation, node, "rotation", times, append(rotations, TINYGLTF_TYPE_VEC4));
 }
 
 }  // namespace torsion::engine

@@ -5,6 +5,8 @@
 
 #include <tiny_gltf.h>
 
+#include "ecs/components.hpp"
+
 namespace torsion::engine {
 
 /// What an accessor's rows are.
@@ -30,5 +32,10 @@ int append_times(tinygltf::Model& model, int buffer, std::span<const float> time
 /// @param times   accessor
 /// @param values  accessor
 void add_channel(tinygltf::Animation& animation, int node, const char* path, int times, int values);
+
+/// The two channels of a node's translation and rotation, and their keys.
+/// @param times  accessor, as many as poses
+void add_pose_channels(tinygltf::Model& model, tinygltf::Animation& animation, int buffer, int node,
+                       int times, std::span<const Pose> poses);
 
 }  // namespace torsion::engine

@@ -105,27 +105,6 @@ void add_targets(tinygltf::Model& model, const AnimatedMesh& mesh, int times,
                           {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, weights.size()}));
 }
 
-/// Keys of the last node.
-void add_poses(tinygltf::Model& model, const AnimatedMesh& mesh, int times,
-               tinygltf::Animation& animation) {
-  std::vector<glm::vec3> translations;
-  std::vector<glm::vec4> rotations;
-  for (const Pose& pose : mesh.poses) {
-    const glm::dquat& q = pose.rotation;
-    translations.emplace_back(pose.position);
-    rotations.emplace_back(glm::dvec4(q.x, q.y, q.z, q.w));
-  }
-  const int node = static_cast<int>(model.nodes.size()) - 1;
-  add_channel(animation, node, "translation", times,
-              add_accessor<glm::vec3>(
-                  model, translations,
-                  {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, translations.size()}));
-  add_channel(
-      animation, node, "rotation", times,
-      add_accessor<glm::vec4>(
-          model, rotations, {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC4, rotations.size()}));
-}
-
 tinygltf::Model empty_model() {
   tinygltf::Model model;
   model.asset.version = "2.0";
@@ -164,7 +143,8 @@ Result<std::string> animated_gltf_bytes(const std::vector<AnimatedMesh>& meshes,
   for (const AnimatedMesh& mesh : meshes) {
     add_mesh(model, mesh.rest);
     if (!mesh.poses.empty()) {
-      add_poses(model, mesh, keys, animation);
+      add_pose_channels(model, animation, 0, static_cast<int>(model.nodes.size()) - 1, keys,
+                        mesh.poses);
     }
     if (!mesh.targets.empty()) {
       add_targets(model, mesh, keys, animation);

@@ -1,23 +1,13 @@
 #include "scenes/write_motion.hpp"
 
 #include <algorithm>
-#include <span>
 #include <sstream>
-
-#include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
 
 #include "scenes/gltf_file.hpp"
 #include "scenes/gltf_rows.hpp"
 
 namespace torsion::engine {
 namespace {
-
-template <class Row>
-int add_rows(tinygltf::Model& model, int buffer, std::span<const Row> rows, int type) {
-  return append_rows(model, buffer, std::as_bytes(rows),
-                     {TINYGLTF_COMPONENT_TYPE_FLOAT, type, rows.size()});
-}
 
 /// What moved the node before goes, and an animation of which nothing is left.
 void remove_motion(tinygltf::Model& model, int node) {
@@ -33,18 +23,8 @@ void remove_motion(tinygltf::Model& model, int node) {
 
 void add_motion(tinygltf::Model& model, tinygltf::Animation& animation, int buffer, int node,
                 const NodeMotion& motion) {
-  std::vector<glm::vec3> translations;
-  std::vector<glm::vec4> rotations;
-  for (const Pose& pose : motion.poses) {
-    const glm::dquat& q = pose.rotation;
-    translations.emplace_back(pose.position);
-    rotations.emplace_back(glm::dvec4(q.x, q.y, q.z, q.w));
-  }
   const int times = append_times(model, buffer, motion.times);
-  add_channel(animation, node, "translation", times,
-              add_rows<glm::vec3>(model, buffer, translations, TINYGLTF_TYPE_VEC3));
-  add_channel(animation, node, "rotation", times,
-              add_rows<glm::vec4>(model, buffer, rotations, TINYGLTF_TYPE_VEC4));
+  add_pose_channels(model, animation, buffer, node, times, motion.poses);
   // An animated node may have no matrix (glTF 2.0, 3.5.3).
   tinygltf::Node& rest = model.nodes[static_cast<std::size_t>(node)];
   const Pose& first = motion.poses.front();

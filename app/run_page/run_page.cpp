@@ -16,7 +16,6 @@
 #include "app/html_text.hpp"
 #include "app/round_up.hpp"
 #include "device/scripted_motion.hpp"
-#include "render/arrows.hpp"
 #include "render/auto_camera.hpp"
 #include "render/box.hpp"
 #include "render/colormap.hpp"
@@ -179,24 +178,13 @@ double twist_limit(const DeformedRun& run) {
   return round_up(std::max(static_cast<double>(largest) / kDegree, 1.0)) * kDegree;
 }
 
-ArrowLimits arrow_limits(const DeformedRun& run) {
-  ArrowLimits limits;
-  for (const std::vector<DeformedRun::Felt>& moment : run.felt()) {
-    for (const DeformedRun::Felt& felt : moment) {
-      limits.force = std::max(limits.force, glm::length(felt.wrench.force));
-      limits.torque = std::max(limits.torque, glm::length(felt.wrench.torque));
-    }
-  }
-  return limits;
-}
-
 json run_json(const Session& session, const DeformedRun& run) {
   constexpr int kColors = 129;
   json palette = json::array();
   for (int i = 0; i < kColors; ++i) {
     palette.push_back(vector_json(heat_color(HeatMap::kTwist, i / (kColors - 1.0))));
   }
-  const ArrowLimits limits = arrow_limits(run);
+  const ArrowLimits& limits = run.limits();
   const double limit = twist_limit(run);
   json bodies = json::array();
   json tools = json::array();

@@ -168,8 +168,8 @@ float line(float at, float width, float gap, float pixels) {
     }));
     mesh.castShadow = true;
     scene.add(mesh);
-    const box = new THREE.Box3().setFromBufferAttribute(geometry.attributes.position);
-    const radius = Math.min(Math.max(0.62 * Math.min(...box.getSize(new THREE.Vector3()).toArray()), 0.25 * side),
+    const own = new THREE.Box3().setFromBufferAttribute(geometry.attributes.position);
+    const radius = Math.min(Math.max(0.62 * Math.min(...own.getSize(new THREE.Vector3()).toArray()), 0.25 * side),
       0.75 * side);
     return { mesh, arrow: straightArrow(0x276fc4), arc: bentArrow(radius, 0xcc7300), poses: tool.poses, forces: tool.forces, torques: tool.torques, centers: tool.centers };
   });

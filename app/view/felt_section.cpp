@@ -12,6 +12,7 @@
 
 #include "app/view/panel_style.hpp"
 #include "app/view/plots.hpp"
+#include "render/arrows.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -35,12 +36,12 @@ Curve over_time(const History& history, double seconds, const char* name, ImU32 
   return curve;
 }
 
-/// N m: a torque beside which the axis of a plot is empty. A hundredth of what the largest force
-/// does at the edge of its contact.
+/// N m: how far the axis of a plot goes at least, as the arcs do.
 double least_torque(const History& history) {
   double least = 1e-9;
   for (std::size_t i = 0; i < history.size(); ++i) {
-    least = std::max(least, 0.01 * glm::length(history[i].world.force) * history[i].radius);
+    least = std::max(least,
+                     kLeastTorqueShare * glm::length(history[i].world.force) * history[i].radius);
   }
   return least;
 }

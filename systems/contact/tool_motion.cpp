@@ -125,10 +125,6 @@ void over_moving(const BodyPose& body, const ToolPose& tool, const glm::dvec3& t
   }
 }
 
-}  // namespace
-
-namespace {
-
 Pose body_pose_at(const Model& model, std::uint32_t body, double time) {
   return model.moves(body) ? scripted_pose(model.body_scripts[body], time)
                            : model.bodies.at<Pose>(body);

@@ -247,8 +247,7 @@ RegionTwist region_twist(const Model& model, const Snapshot& snapshot, std::uint
   const double past = 1.0 - motion.axis_share;
   if (past > 0.0 && glm::dot(motion.axis, motion.axis) > 0.0) {
     const Pose& pose = snapshot.bodies.at<BodyPose>(identity.body).now;
-    const ToolOverBody& tool = snapshot.tools_over_bodies.at<ToolOverBody>(
-        identity.tool * snapshot.bodies.size() + identity.body);
+    const ToolOverBody& tool = snapshot.over(identity.tool, identity.body);
     const glm::dvec3 torque =
         glm::conjugate(pose.rotation) * snapshot.regions.at<RegionWrench>(region).on_tool.torque;
     // The sense of the axis is arbitrary: it is chosen along the normal, so that both branches turn

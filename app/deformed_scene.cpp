@@ -42,13 +42,20 @@ std::vector<glm::vec3> deformed_normals(const WrittenMesh& mesh, const DrawMesh&
   return normals;
 }
 
+/// Triangles, and what is on them.
+void set_look(const DrawMesh& draw, WrittenMesh& mesh) {
+  mesh.triangles = draw.triangles;
+  mesh.texcoords = draw.texcoords;
+  mesh.materials = draw.materials;
+  mesh.triangle_materials = draw.triangle_materials;
+}
+
 WrittenMesh deformed_body(const Session& session, const FrameWorld& frame, std::uint32_t row) {
   const BodyDescription& body = session.scene.bodies[row];
   WrittenMesh mesh;
   mesh.name = body.node;
   mesh.pose = session.simulation.world.state.bodies.at<BodyPose>(row).now;
-  mesh.color = body.draw.color;
-  mesh.triangles = body.draw.triangles;
+  set_look(body.draw, mesh);
   mesh.rest_positions = body.draw.positions;
   std::vector<glm::vec4> deformed(body.draw.positions.size());
   deform_vertices(frame, row, deformed);
@@ -64,10 +71,9 @@ WrittenMesh rest_mesh(const std::string& name, const Pose& pose, const DrawMesh&
   WrittenMesh mesh;
   mesh.name = name;
   mesh.pose = pose;
-  mesh.color = draw.color;
+  set_look(draw, mesh);
   mesh.positions = draw.positions;
   mesh.normals = draw.normals;
-  mesh.triangles = draw.triangles;
   return mesh;
 }
 

@@ -128,6 +128,7 @@ Result<PictureRun> PictureRun::create(const Session& session, const Options& opt
   }
   Options as_shown = options;
   as_shown.draw.torque_parts = session.scene.view.torque_parts;
+  as_shown.draw.grid = as_shown.draw.grid && session.scene.view.lines;
   OverlayFont font(overlay_text_height(options.height));
   RendererOptions renderer_options;
   renderer_options.width = options.width;

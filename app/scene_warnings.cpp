@@ -5,12 +5,14 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "render/image_io.hpp"
 #include "systems/geometry/distance.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/model/choose_models.hpp"
@@ -153,6 +155,25 @@ bool has_exact_part(const std::vector<PartDescription>& parts) {
       parts, [](const PartDescription& part) { return part.shape.kind != ShapeKind::kMesh; });
 }
 
+/// Of textures that cannot be decoded.
+void warn_of_textures(const std::string& node, const std::vector<DrawMaterial>& materials,
+                      std::vector<std::string>& warnings) {
+  constexpr std::uint32_t kLargestSide = 16384;  // pixels, as of what renders on a processor
+  std::set<const EncodedImage*> seen;
+  for (const DrawMaterial& material : materials) {
+    const EncodedImage* texture = material.texture.get();
+    if (texture == nullptr || !seen.insert(texture).second) {
+      continue;
+    }
+    const Result<Image> image = decode_image(texture->bytes, kLargestSide);
+    if (!image) {
+      warnings.push_back(
+          fmt::format("\"{}\" is drawn without its texture \"{}\": {}; save it as PNG or JPEG",
+                      node, texture->name, image.error().text));
+    }
+  }
+}
+
 /// Of what is drawn of a tool or body.
 void warn_of_drawing(const World& world, const std::string& node, Range rows,
                      const std::vector<PartDescription>& parts, const DrawMesh& draw,
@@ -162,13 +183,10 @@ void warn_of_drawing(const World& world, const std::string& node, Range rows,
   if (has_exact_part(parts) && apart > kApart) {
     warnings.push_back(fmt::format(
         "\"{}\" is felt as an exact shape but drawn as another: vertices are up to {:.2g} % of its "
-        "size off; take torsion_shape mesh, or a mesh of the shape",
+        "size off; take torsion_draw shape, torsion_shape mesh, or a mesh of the shape",
         node, 100.0 * apart));
   }
-  if (draw.textured) {
-    warnings.push_back(fmt::format(
-        "\"{}\" has a texture, which is not drawn: only its material's base colour is", node));
-  }
+  warn_of_textures(node, draw.materials, warnings);
 }
 
 /// Of meshes whose facets are longer than the contact is wide.

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "ecs/components.hpp"
+#include "ecs/draw_material.hpp"
 #include "ecs/table.hpp"
 
 namespace torsion::engine {
@@ -29,12 +32,15 @@ struct FrameBody {
 struct FrameWorld {
   Table<Pose, DrawRange, FrameBody> bodies;  // row = row of Model::bodies
   Table<Pose, DrawRange> tools;  // row = row of Model::tools; pose written by surface_field
-  Table<VertexRest, VertexNormal, VertexDisplacement> body_vertices;
+  Table<VertexRest, VertexNormal, VertexTexcoord, VertexDisplacement> body_vertices;
   Table<TwistAngle> twist;
   Table<TwistAxis> axes;
   Table<Triangle> body_triangles;
-  Table<VertexRest, VertexNormal> tool_vertices;  // tool frame
+  Table<DrawGroup> body_groups;
+  Table<VertexRest, VertexNormal, VertexTexcoord> tool_vertices;  // tool frame
   Table<Triangle> tool_triangles;
+  Table<DrawGroup> tool_groups;
+  std::vector<DrawMaterial> materials;
   Table<AnchorRest> anchor_rest;
   Table<InterpolationRow> interpolation;
 };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ecs/components.hpp"
+#include "ecs/draw_material.hpp"
 #include "ecs/motion_script.hpp"
 #include "ecs/surface.hpp"
 
@@ -28,10 +29,12 @@ struct PartDescription {
 struct DrawMesh {
   std::vector<glm::vec3> positions;  // m
   std::vector<glm::vec3> normals;    // unit; one for each position
+  std::vector<glm::vec2> texcoords;  // of the base colour's texture; one for each position, or none
   std::vector<glm::uvec3> triangles;
   std::vector<bool> fixed;  // bodies only: vertices of the fixed region; one for each position
-  glm::vec4 color{0.8F, 0.8F, 0.8F, 1.0F};  // linear RGB and alpha of the first material
-  bool textured = false;  // a material has a texture of its base colour, which is not drawn
+  std::vector<DrawMaterial> materials{1};         // at least one
+  std::vector<std::uint32_t> triangle_materials;  // rows of materials, rising; one for each
+                                                  // triangle, or none: all are of the first
 };
 
 struct BodyDescription {
@@ -72,6 +75,7 @@ struct SceneView {
   double speed = 1.0;               // of real time, up to 1
   std::string colors = "material";  // material, twist or pressure
   bool torque_parts = false;        // contact couples apart from what the forces' arms make
+  bool lines = true;                // that are fixed to the bodies and to the tools
   bool stick_slip = false;          // marks where the contact sticks and where it slips
 };
 

@@ -75,7 +75,7 @@ inline void image_barrier(const vk::raii::CommandBuffer& commands, vk::Image ima
       .image = image,
       .subresourceRange = {depth ? vk::ImageAspectFlagBits::eDepth
                                  : vk::ImageAspectFlagBits::eColor,
-                           0, 1, 0, 1},
+                           0, VK_REMAINING_MIP_LEVELS, 0, 1},
   };
   commands.pipelineBarrier2(
       vk::DependencyInfo{.imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &barrier});

@@ -8,18 +8,17 @@
 #include <glm/geometric.hpp>
 
 #include "render/box.hpp"
+#include "render/studio_light.hpp"
 
 namespace torsion::engine {
 namespace {
 
-// The light's colours, linear. A white surface that faces the key light reaches 1 with the sky's
+// The light's colours, linear. A white surface that faces the key light reaches 1 with the studio's
 // part.
 constexpr glm::vec3 kKeyLight(0.62F, 0.60F, 0.57F);
-constexpr glm::vec3 kSkyLight(0.42F, 0.44F, 0.47F);
-constexpr glm::vec3 kGroundLight(0.26F, 0.25F, 0.24F);
-constexpr float kEyeLight = 0.14F;
+constexpr float kEyeLight = 0.10F;
 constexpr double kShadowStep = 2.5;      // texels: half the width of a shadow's edge
-constexpr double kClearToolShade = 0.4;  // share of the key light that a transparent tool takes
+constexpr double kClearToolShade = 0.4;  // share of the key light that a glass tool takes
 constexpr glm::vec3 kBackground(0.78F, 0.80F, 0.83F);
 
 // The arc of a tool's torque goes around the tool, within these parts of the bodies' largest side.
@@ -130,13 +129,14 @@ shared::FrameUniforms frame_uniforms(const SceneExtent& extent, const Camera& ca
   uniforms.to_key_light = glm::vec4(glm::vec3(kToKeyLight), 0.0F);
   uniforms.key_light =
       glm::vec4(kKeyLight, static_cast<float>(kShadowStep * 2.0 * extent.radius / shadow_size));
-  uniforms.sky_light = glm::vec4(kSkyLight, kEyeLight);
-  uniforms.ground_light = glm::vec4(kGroundLight, 0.0F);
+  static const std::array<glm::dvec3, 9> kIrradiance = studio_irradiance();
+  for (std::size_t i = 0; i < kIrradiance.size(); ++i) {
+    uniforms.irradiance[i] = glm::vec4(glm::vec3(kIrradiance[i]), i == 0 ? kEyeLight : 0.0F);
+  }
   uniforms.background = glm::vec4(kBackground, 1.0F);
   uniforms.floor_box = glm::vec4(glm::dvec4(middle.x, middle.z, 0.5 * size.x, 0.5 * size.z));
-  uniforms.floor_level =
-      glm::vec4(glm::dvec4(extent.lowest.y, std::max(size.y, 1e-6), 2.5 * extent.radius,
-                           options.transparent_tools ? kClearToolShade : 1.0));
+  uniforms.floor_level = glm::vec4(
+      glm::dvec4(extent.lowest.y, std::max(size.y, 1e-6), 2.5 * extent.radius, kClearToolShade));
   uniforms.heat_scale = glm::vec4(glm::dvec4(is_signed ? -heat_range : 0.0,
                                              is_signed ? 0.5 / heat_range : 1.0 / heat_range,
                                              is_signed ? 0.25 : 0.75, is_signed ? 1.0 : 0.0));

@@ -69,7 +69,7 @@ namespace {
 
 Image2d make_viewed_image(const Gpu& gpu, vk::Extent2D extent, vk::Format format,
                           vk::Format view_format, vk::SampleCountFlagBits samples,
-                          vk::ImageUsageFlags usage) {
+                          vk::ImageUsageFlags usage, std::uint32_t levels = 1) {
   const vk::ImageCreateFlags flags =
       format == view_format ? vk::ImageCreateFlags{} : vk::ImageCreateFlagBits::eMutableFormat;
   Image2d image;
@@ -79,7 +79,7 @@ Image2d make_viewed_image(const Gpu& gpu, vk::Extent2D extent, vk::Format format
                                   .imageType = vk::ImageType::e2D,
                                   .format = format,
                                   .extent = {extent.width, extent.height, 1},
-                                  .mipLevels = 1,
+                                  .mipLevels = levels,
                                   .arrayLayers = 1,
                                   .samples = samples,
                                   .usage = usage,
@@ -90,7 +90,7 @@ Image2d make_viewed_image(const Gpu& gpu, vk::Extent2D extent, vk::Format format
                                 .image = *image.handle,
                                 .viewType = vk::ImageViewType::e2D,
                                 .format = view_format,
-                                .subresourceRange = {aspect_of(format), 0, 1, 0, 1},
+                                .subresourceRange = {aspect_of(format), 0, levels, 0, 1},
                             }};
   return image;
 }
@@ -128,20 +128,31 @@ Buffer make_constant_buffer(const Gpu& gpu, std::span<const std::byte> bytes,
 }
 
 Image2d make_constant_image(const Gpu& gpu, vk::Extent2D extent, vk::Format format,
-                            std::span<const std::byte> bytes) {
+                            std::span<const std::span<const std::byte>> levels) {
   Image2d image =
-      make_image(gpu, extent, format, vk::SampleCountFlagBits::e1,
-                 vk::ImageUsageFlagBits::eSampled | vk::ImageUsageFlagBits::eTransferDst);
+      make_viewed_image(gpu, extent, format, format, vk::SampleCountFlagBits::e1,
+                        vk::ImageUsageFlagBits::eSampled | vk::ImageUsageFlagBits::eTransferDst,
+                        static_cast<std::uint32_t>(levels.size()));
+  std::vector<vk::BufferImageCopy> copies;
+  vk::DeviceSize size = 0;
+  for (std::uint32_t level = 0; level < levels.size(); ++level) {
+    copies.push_back({
+        .bufferOffset = size,
+        .imageSubresource = {vk::ImageAspectFlagBits::eColor, level, 0, 1},
+        .imageExtent = {std::max(extent.width >> level, 1U), std::max(extent.height >> level, 1U),
+                        1},
+    });
+    size += levels[level].size();
+  }
   const Buffer staging =
-      make_buffer(gpu, bytes.size(), vk::BufferUsageFlagBits::eTransferSrc, Home::kUpload);
-  std::memcpy(staging.mapped, bytes.data(), bytes.size());
+      make_buffer(gpu, size, vk::BufferUsageFlagBits::eTransferSrc, Home::kUpload);
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    std::ranges::copy(levels[level], staging.mapped + copies[level].bufferOffset);
+  }
   run_once(gpu, [&](const vk::raii::CommandBuffer& commands) {
     new_to_copy_target(commands, *image.handle);
     commands.copyBufferToImage(*staging.handle, *image.handle, vk::ImageLayout::eTransferDstOptimal,
-                               vk::BufferImageCopy{
-                                   .imageSubresource = {vk::ImageAspectFlagBits::eColor, 0, 0, 1},
-                                   .imageExtent = {extent.width, extent.height, 1},
-                               });
+                               copies);
     copy_target_to_sampled(commands, *image.handle);
   });
   return image;

@@ -16,7 +16,7 @@ struct Buffer {
   std::byte* mapped = nullptr;  // null where the CPU cannot see it
 };
 
-/// An image with memory of its own, one mip level, and a view of all of it.
+/// An image with memory of its own, and a view of all of it.
 struct Image2d {
   vk::raii::DeviceMemory memory = nullptr;
   vk::raii::Image handle = nullptr;
@@ -66,9 +66,11 @@ void run_once(const Gpu& gpu, Record&& record) {
 Buffer make_constant_buffer(const Gpu& gpu, std::span<const std::byte> bytes,
                             vk::BufferUsageFlags usage);
 
-/// A sampled image that holds `bytes` (rows from the top, tightly packed) for good.
+/// A sampled image that holds these bytes for good.
+/// @param levels  mip levels, each half as large as the one before; rows from the top, tightly
+/// packed
 Image2d make_constant_image(const Gpu& gpu, vk::Extent2D extent, vk::Format format,
-                            std::span<const std::byte> bytes);
+                            std::span<const std::span<const std::byte>> levels);
 
 /// What the CPU rewrites every frame: mapped device memory, or a staging buffer that is copied in
 /// the frame.

@@ -9,6 +9,7 @@
 #include "ecs/frame_world.hpp"
 #include "render/draw_options.hpp"
 #include "render/frame_view.hpp"
+#include "render/material_textures.hpp"
 #include "render/memory.hpp"
 #include "render/overlay_draw_list.hpp"
 #include "render/pipelines.hpp"
@@ -24,6 +25,7 @@ struct FrameInputs {
   const Pipelines& pipelines;
   const SceneBuffers& buffers;
   const Surfaces& surfaces;
+  const MaterialTextures& textures;
   const SceneExtent& extent;
   const FrameWorld& frame;
   const DrawOptions& options;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "ecs/components.hpp"
 #include "render/overlay_draw_list.hpp"
 #include "shaders/arrow.frag.hpp"
 #include "shaders/arrow.vert.hpp"
@@ -207,12 +208,14 @@ void make_layouts(const Gpu& gpu, Pipelines& pipelines) {
   pipelines.compute_layout = make_layout(gpu, pipelines.compute_bindings, Stage::eCompute,
                                          sizeof(shared::DeformConstants));
 
-  const std::array<vk::DescriptorSetLayoutBinding, 5> draw = {{
+  const std::array<vk::DescriptorSetLayoutBinding, 7> draw = {{
       {draw_binding::kUniforms, Type::eUniformBuffer, 1, Stage::eVertex | Stage::eFragment},
       {draw_binding::kShadowMap, Type::eCombinedImageSampler, 1, Stage::eFragment},
       {draw_binding::kColorMaps, Type::eCombinedImageSampler, 1, Stage::eFragment},
       {draw_binding::kContacts, Type::eStorageBuffer, 1, Stage::eVertex | Stage::eFragment},
       {draw_binding::kGlyphs, Type::eCombinedImageSampler, 1, Stage::eFragment},
+      {draw_binding::kStudio, Type::eCombinedImageSampler, 1, Stage::eVertex | Stage::eFragment},
+      {draw_binding::kBaseColor, Type::eCombinedImageSampler, 1, Stage::eFragment},
   }};
   pipelines.draw_bindings = make_bindings(gpu, draw);
   pipelines.draw_layout =
@@ -220,12 +223,17 @@ void make_layouts(const Gpu& gpu, Pipelines& pipelines) {
                   sizeof(shared::DrawConstants));
 }
 
-/// `count` vertex buffers of one vec4 each: binding i is location i.
+/// `count` vertex buffers of one vec4 each, perhaps one more of texture coordinates: binding i is
+/// location i.
 struct RowInput {
-  explicit RowInput(std::uint32_t count) {
+  explicit RowInput(std::uint32_t count, bool texcoords = false) {
     for (std::uint32_t i = 0; i < count; ++i) {
       bindings.push_back({i, sizeof(shared::vec4), vk::VertexInputRate::eVertex});
       attributes.push_back({i, i, vk::Format::eR32G32B32A32Sfloat, 0});
+    }
+    if (texcoords) {
+      bindings.push_back({count, sizeof(VertexTexcoord), vk::VertexInputRate::eVertex});
+      attributes.push_back({count, count, vk::Format::eR32G32Sfloat, 0});
     }
   }
   std::vector<vk::VertexInputBindingDescription> bindings;
@@ -280,8 +288,9 @@ Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCoun
       make_compute_pipeline(gpu, *pipelines.compute_layout, k_normals_comp, constants);
 
   const RowInput positions(1);
-  const RowInput positions_normals(2);
-  const RowInput three_rows(3);
+  const RowInput tool_rows(2, true);
+  const RowInput body_rows(3, true);
+  const RowInput arrow_rows(3);
   const vk::PipelineLayout layout = *pipelines.draw_layout;
   pipelines.shadow = make_graphics_pipeline(gpu, layout,
                                             {.vertex = k_shadow_vert,
@@ -295,17 +304,19 @@ Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCoun
                 .quick = quick};
   pipelines.ground = make_graphics_pipeline(gpu, layout, recipe);
 
-  recipe.bindings = three_rows.bindings;
-  recipe.attributes = three_rows.attributes;
+  recipe.bindings = body_rows.bindings;
+  recipe.attributes = body_rows.attributes;
   recipe.vertex = k_body_vert;
   recipe.fragment = k_body_frag;
   pipelines.body = make_graphics_pipeline(gpu, layout, recipe);
+  recipe.bindings = arrow_rows.bindings;
+  recipe.attributes = arrow_rows.attributes;
   recipe.vertex = k_arrow_vert;
   recipe.fragment = k_arrow_frag;
   pipelines.arrow = make_graphics_pipeline(gpu, layout, recipe);
 
-  recipe.bindings = positions_normals.bindings;
-  recipe.attributes = positions_normals.attributes;
+  recipe.bindings = tool_rows.bindings;
+  recipe.attributes = tool_rows.attributes;
   recipe.vertex = k_tool_vert;
   recipe.fragment = k_tool_frag;
   recipe.blend = true;

@@ -14,6 +14,8 @@ inline constexpr std::uint32_t kShadowMap = 1;
 inline constexpr std::uint32_t kColorMaps = 2;
 inline constexpr std::uint32_t kContacts = 3;
 inline constexpr std::uint32_t kGlyphs = 4;
+inline constexpr std::uint32_t kStudio = 5;
+inline constexpr std::uint32_t kBaseColor = 6;
 }  // namespace draw_binding
 
 /// Bindings of either compute shader: storage buffers, then texel buffers.

@@ -15,7 +15,8 @@ void push_draw_bindings(const vk::raii::CommandBuffer& commands, const FrameInpu
   const Surfaces& surfaces = inputs.surfaces;
   const std::array images = {sampled(surfaces.shadow_sampler, surfaces.shadow_map),
                              sampled(surfaces.linear_sampler, surfaces.color_maps),
-                             sampled(surfaces.linear_sampler, surfaces.glyphs)};
+                             sampled(surfaces.linear_sampler, surfaces.glyphs),
+                             sampled(surfaces.linear_sampler, inputs.textures.studio)};
   std::vector<vk::WriteDescriptorSet> writes;
   const auto add_buffer = [&](std::uint32_t binding, vk::DescriptorType type,
                               const vk::DescriptorBufferInfo& info) {
@@ -35,12 +36,28 @@ void push_draw_bindings(const vk::raii::CommandBuffer& commands, const FrameInpu
   if (with_shadow_map) {
     add_image(draw_binding::kShadowMap, images[0]);
     add_image(draw_binding::kColorMaps, images[1]);
+    add_image(draw_binding::kStudio, images[3]);
     if (*surfaces.glyphs.view) {
       add_image(draw_binding::kGlyphs, images[2]);
     }
   }
   commands.pushDescriptorSetKHR(vk::PipelineBindPoint::eGraphics, *inputs.pipelines.draw_layout, 0,
                                 writes);
+}
+
+void push_base_color(const vk::raii::CommandBuffer& commands, const FrameInputs& inputs,
+                     std::uint32_t material) {
+  const MaterialTextures& textures = inputs.textures;
+  const vk::DescriptorImageInfo image{*textures.samplers[material],
+                                      *textures.images[textures.image_of[material]].view,
+                                      vk::ImageLayout::eShaderReadOnlyOptimal};
+  commands.pushDescriptorSetKHR(vk::PipelineBindPoint::eGraphics, *inputs.pipelines.draw_layout, 0,
+                                vk::WriteDescriptorSet{
+                                    .dstBinding = draw_binding::kBaseColor,
+                                    .descriptorCount = 1,
+                                    .descriptorType = vk::DescriptorType::eCombinedImageSampler,
+                                    .pImageInfo = &image,
+                                });
 }
 
 void bind(const vk::raii::CommandBuffer& commands, const vk::raii::Pipeline& pipeline) {

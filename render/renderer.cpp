@@ -12,6 +12,7 @@
 #include "render/arrows.hpp"
 #include "render/barriers.hpp"
 #include "render/frame_view.hpp"
+#include "render/material_textures.hpp"
 #include "render/offscreen_target.hpp"
 #include "render/passes.hpp"
 #include "render/pipelines.hpp"
@@ -59,6 +60,7 @@ struct Renderer::Impl {
   SceneExtent extent;
   SceneBuffers buffers;
   Surfaces surfaces;
+  MaterialTextures textures;
   Pipelines pipelines;
   std::vector<vk::raii::QueryPool> timestamps;  // one for each slot
   vk::raii::Pipeline window_overlay = nullptr;
@@ -209,9 +211,9 @@ void Renderer::Impl::draw(const Frame& target, const FrameWorld& frame, const Sn
   write_overlay(overlay, slot);
   const vk::Rect2D part = window ? window->visible() : vk::Rect2D{{0, 0}, target.extent};
   record(target,
-         {gpu, pipelines, buffers, surfaces, extent, frame, draw_options, slot, uniforms.background,
-          contact_ranges, static_cast<std::uint32_t>(arrows.positions.size()), overlay,
-          window.has_value(), part},
+         {gpu, pipelines, buffers, surfaces, textures, extent, frame, draw_options, slot,
+          uniforms.background, contact_ranges, static_cast<std::uint32_t>(arrows.positions.size()),
+          overlay, window.has_value(), part},
          slot);
   this->target().submit(target);
   ++drawn;
@@ -261,6 +263,7 @@ Result<Renderer> Renderer::create(const RendererOptions& options, const FrameWor
                       ? vk::SampleCountFlagBits::e4
                       : vk::SampleCountFlagBits::e1;
   impl->surfaces = make_surfaces(impl->gpu, options.shadow_size, options.overlay_atlas);
+  impl->textures = make_material_textures(impl->gpu, frame.materials);
   if (options.window != nullptr) {
     impl->window.emplace(impl->gpu, *options.window, kSlots);
   } else {

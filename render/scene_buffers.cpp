@@ -11,7 +11,7 @@
 namespace torsion::engine {
 namespace {
 
-using Usage = vk::BufferUsageFlagBits;
+using BufferUsage = vk::BufferUsageFlagBits;
 
 template <class T>
 std::span<const std::byte> bytes_of(const std::vector<T>& rows) {
@@ -44,18 +44,18 @@ SlotBuffers make_slot(const Gpu& gpu, const FrameWorld& frame) {
   const vk::DeviceSize regions = vk::DeviceSize{frame.bodies.size()} * kMaxRegionsPerBody;
   SlotBuffers slot;
   slot.displacement = {gpu, vertices * sizeof(VertexDisplacement),
-                       Usage::eStorageBuffer | Usage::eUniformTexelBuffer};
+                       BufferUsage::eStorageBuffer | BufferUsage::eUniformTexelBuffer};
   slot.displacement_texels = make_texels(gpu, slot.displacement.handle(), slot.displacement.size(),
                                          kRowFormat, sizeof(VertexDisplacement));
-  slot.twist = {gpu, frame.twist.size() * sizeof(TwistAngle), Usage::eStorageBuffer};
-  slot.axes = {gpu, frame.axes.size() * sizeof(TwistAxis), Usage::eStorageBuffer};
-  slot.uniforms = {gpu, sizeof(shared::FrameUniforms), Usage::eUniformBuffer};
-  slot.contacts = {gpu, regions * sizeof(shared::ContactSpot), Usage::eStorageBuffer};
-  slot.arrow_positions = {gpu, 0, Usage::eVertexBuffer};
-  slot.arrow_normals = {gpu, 0, Usage::eVertexBuffer};
-  slot.arrow_colors = {gpu, 0, Usage::eVertexBuffer};
-  slot.overlay_vertices = {gpu, 0, Usage::eVertexBuffer};
-  slot.overlay_indices = {gpu, 0, Usage::eIndexBuffer};
+  slot.twist = {gpu, frame.twist.size() * sizeof(TwistAngle), BufferUsage::eStorageBuffer};
+  slot.axes = {gpu, frame.axes.size() * sizeof(TwistAxis), BufferUsage::eStorageBuffer};
+  slot.uniforms = {gpu, sizeof(shared::FrameUniforms), BufferUsage::eUniformBuffer};
+  slot.contacts = {gpu, regions * sizeof(shared::ContactSpot), BufferUsage::eStorageBuffer};
+  slot.arrow_positions = {gpu, 0, BufferUsage::eVertexBuffer};
+  slot.arrow_normals = {gpu, 0, BufferUsage::eVertexBuffer};
+  slot.arrow_colors = {gpu, 0, BufferUsage::eVertexBuffer};
+  slot.overlay_vertices = {gpu, 0, BufferUsage::eVertexBuffer};
+  slot.overlay_indices = {gpu, 0, BufferUsage::eIndexBuffer};
   return slot;
 }
 
@@ -82,19 +82,25 @@ Result<SceneBuffers> make_scene_buffers(const Gpu& gpu, const FrameWorld& frame,
     normals =
         make_constant_buffer(gpu, std::as_bytes(table.template column<VertexNormal>()), usage);
   };
-  const auto both = Usage::eStorageBuffer | Usage::eUniformTexelBuffer | Usage::eVertexBuffer;
+  const auto both =
+      BufferUsage::eStorageBuffer | BufferUsage::eUniformTexelBuffer | BufferUsage::eVertexBuffer;
   vertex_columns(frame.body_vertices, both, buffers.rest, buffers.rest_normals);
   vertex_columns(frame.tool_vertices, both, buffers.tool_positions, buffers.tool_normals);
+  buffers.texcoords = make_constant_buffer(
+      gpu, std::as_bytes(frame.body_vertices.column<VertexTexcoord>()), BufferUsage::eVertexBuffer);
+  buffers.tool_texcoords = make_constant_buffer(
+      gpu, std::as_bytes(frame.tool_vertices.column<VertexTexcoord>()), BufferUsage::eVertexBuffer);
   buffers.body_indices = make_constant_buffer(
-      gpu, std::as_bytes(frame.body_triangles.column<Triangle>()), Usage::eIndexBuffer);
+      gpu, std::as_bytes(frame.body_triangles.column<Triangle>()), BufferUsage::eIndexBuffer);
   buffers.tool_indices = make_constant_buffer(
-      gpu, std::as_bytes(frame.tool_triangles.column<Triangle>()), Usage::eIndexBuffer);
-  buffers.ring_ranges = make_constant_buffer(gpu, bytes_of(rings.ranges), Usage::eStorageBuffer);
-  buffers.ring_entries = make_constant_buffer(gpu, bytes_of(rings.entries),
-                                              Usage::eStorageBuffer | Usage::eUniformTexelBuffer);
+      gpu, std::as_bytes(frame.tool_triangles.column<Triangle>()), BufferUsage::eIndexBuffer);
+  buffers.ring_ranges =
+      make_constant_buffer(gpu, bytes_of(rings.ranges), BufferUsage::eStorageBuffer);
+  buffers.ring_entries = make_constant_buffer(
+      gpu, bytes_of(rings.entries), BufferUsage::eStorageBuffer | BufferUsage::eUniformTexelBuffer);
 
   const vk::DeviceSize rows = vk::DeviceSize{frame.body_vertices.size()} * sizeof(shared::vec4);
-  const auto computed = both | Usage::eTransferSrc;
+  const auto computed = both | BufferUsage::eTransferSrc;
   buffers.positions = make_buffer(gpu, rows, computed, Home::kDevice);
   buffers.normals = make_buffer(gpu, rows, computed, Home::kDevice);
   const auto texels = [&](const Buffer& buffer, vk::Format format, vk::DeviceSize row_size) {

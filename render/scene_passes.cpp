@@ -1,5 +1,6 @@
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "render/barriers.hpp"
 #include "render/recording.hpp"
@@ -9,29 +10,54 @@ namespace {
 
 using Commands = vk::raii::CommandBuffer;
 
-constexpr float kOpaqueTool = 1.0F;
 constexpr float kClearTool = 0.13F;  // alpha of a tool where one looks straight through it
 
-void draw_range(const Commands& commands, const DrawRange& drawn) {
-  commands.drawIndexed(3 * drawn.triangles.count, 1, 3 * drawn.triangles.first,
+/// Groups of tools in the order of their drawing.
+enum class ToolGroups : std::uint8_t { kOpaque, kGlass };
+
+bool is_glass(const DrawMaterial& material, ToolLook look) {
+  switch (look) {
+    case ToolLook::kGlass:
+      return true;
+    case ToolLook::kOpaque:
+      return false;
+    case ToolLook::kAuthored:
+      break;
+  }
+  return material.alpha_mode != AlphaMode::kOpaque;
+}
+
+/// Alpha of a material that is drawn as glass: its own where it was made to be seen through.
+float glass_alpha(const DrawMaterial& material) {
+  return material.alpha_mode == AlphaMode::kBlend ? material.color.w : kClearTool;
+}
+
+void draw_triangles(const Commands& commands, const DrawRange& drawn, Range triangles) {
+  commands.drawIndexed(3 * triangles.count, 1, 3 * triangles.first,
                        static_cast<std::int32_t>(drawn.vertices.first), 0);
 }
 
-/// Placement and colour of each row of `things`, then `f(row, constants)` may add to it before the
-/// draw.
+/// Placement and look of each group of triangles of each row of `things`. `f(row, material,
+/// constants)` may add to it before the draw; where it returns false, nothing is drawn.
 template <class Things, class F>
-void draw_each(const Commands& commands, const FrameInputs& inputs, const Things& things, F&& f) {
+void draw_each(const Commands& commands, const FrameInputs& inputs, const Things& things,
+               const Table<DrawGroup>& groups, F&& f) {
   for (std::uint32_t row = 0; row < things.size(); ++row) {
     const auto& drawn = things.template at<DrawRange>(row);
-    if (drawn.triangles.count == 0) {
-      continue;
+    for (const DrawGroup& group : groups.rows<DrawGroup>(drawn.groups)) {
+      const DrawMaterial& material = inputs.frame.materials[group.material];
+      shared::DrawConstants constants{};
+      set_pose(things.template at<Pose>(row), constants);
+      constants.color = material.color;
+      constants.surface = {material.metallic, material.roughness, material.scattering, 0.0F};
+      const bool textured = inputs.textures.image_of[group.material] != 0;
+      constants.rows.w = textured ? shared::kTextured : 0U;
+      if (group.triangles.count > 0 && f(row, material, constants)) {
+        push_base_color(commands, inputs, group.material);
+        push_constants(commands, inputs.pipelines.draw_layout, kDrawStages, constants);
+        draw_triangles(commands, drawn, group.triangles);
+      }
     }
-    shared::DrawConstants constants{};
-    set_pose(things.template at<Pose>(row), constants);
-    constants.color = drawn.color;
-    f(row, constants);
-    push_constants(commands, inputs.pipelines.draw_layout, kDrawStages, constants);
-    draw_range(commands, drawn);
   }
 }
 
@@ -41,37 +67,49 @@ void draw_bodies(const Commands& commands, const FrameInputs& inputs) {
   }
   bind(commands, inputs.pipelines.body);
   const SceneBuffers& buffers = inputs.buffers;
-  bind_vertices(commands,
-                {*buffers.positions.handle, *buffers.normals.handle, *buffers.rest.handle});
+  bind_vertices(commands, {*buffers.positions.handle, *buffers.normals.handle, *buffers.rest.handle,
+                           *buffers.texcoords.handle});
   commands.bindIndexBuffer(*buffers.body_indices.handle, 0, vk::IndexType::eUint32);
-  draw_each(commands, inputs, inputs.frame.bodies,
-            [&](std::uint32_t row, shared::DrawConstants& constants) {
-              constants.grid = inputs.extent.grids[row];
-              if (!inputs.options.grid) {
-                constants.grid.w = 0.0F;
-              }
-              const Range spots = inputs.contacts[row];
-              constants.rows = {spots.first, spots.count,
-                                static_cast<std::uint32_t>(inputs.options.heat_map), 0U};
-            });
+  draw_each(
+      commands, inputs, inputs.frame.bodies, inputs.frame.body_groups,
+      [&](std::uint32_t row, const DrawMaterial& /*material*/, shared::DrawConstants& constants) {
+        constants.grid = inputs.extent.grids[row];
+        if (!inputs.options.grid) {
+          constants.grid.w = 0.0F;
+        }
+        const Range spots = inputs.contacts[row];
+        constants.rows.x = spots.first;
+        constants.rows.y = spots.count;
+        constants.rows.z = static_cast<std::uint32_t>(inputs.options.heat_map);
+        return true;
+      });
 }
 
-void draw_tools(const Commands& commands, const FrameInputs& inputs) {
+void draw_tools(const Commands& commands, const FrameInputs& inputs, ToolGroups wanted) {
   if (inputs.frame.tools.empty()) {
     return;
   }
-  bind_vertices(commands,
-                {*inputs.buffers.tool_positions.handle, *inputs.buffers.tool_normals.handle});
-  commands.bindIndexBuffer(*inputs.buffers.tool_indices.handle, 0, vk::IndexType::eUint32);
-  for (const vk::raii::Pipeline* pipeline :
-       {&inputs.pipelines.tool_depth, &inputs.pipelines.tool}) {
-    bind(commands, *pipeline);
-    draw_each(commands, inputs, inputs.frame.tools,
-              [&](std::uint32_t row, shared::DrawConstants& constants) {
-                constants.color.w *= inputs.options.transparent_tools ? kClearTool : kOpaqueTool;
-                constants.grid = inputs.extent.tool_centers[row];
-              });
+  const SceneBuffers& buffers = inputs.buffers;
+  bind_vertices(commands, {*buffers.tool_positions.handle, *buffers.tool_normals.handle,
+                           *buffers.tool_texcoords.handle});
+  commands.bindIndexBuffer(*buffers.tool_indices.handle, 0, vk::IndexType::eUint32);
+  const auto draw_with = [&](const vk::raii::Pipeline& pipeline) {
+    bind(commands, pipeline);
+    draw_each(
+        commands, inputs, inputs.frame.tools, inputs.frame.tool_groups,
+        [&](std::uint32_t row, const DrawMaterial& material, shared::DrawConstants& constants) {
+          const bool glass = is_glass(material, inputs.options.tools);
+          constants.grid = inputs.extent.tool_centers[row];
+          constants.color.w = glass ? glass_alpha(material) : 1.0F;
+          constants.rows.w |= glass ? shared::kGlass : 0U;
+          constants.rows.w |= inputs.options.grid ? shared::kMarks : 0U;
+          return glass == (wanted == ToolGroups::kGlass);
+        });
+  };
+  if (wanted == ToolGroups::kGlass) {
+    draw_with(inputs.pipelines.tool_depth);
   }
+  draw_with(inputs.pipelines.tool);
 }
 
 void draw_arrows(const Commands& commands, const FrameInputs& inputs) {
@@ -125,21 +163,29 @@ void record_shadow(const Commands& commands, const FrameInputs& inputs) {
       .renderArea = {{0, 0}, map.extent}, .layerCount = 1, .pDepthAttachment = &depth});
   bind(commands, inputs.pipelines.shadow);
   push_draw_bindings(commands, inputs, false);
-  const auto as_it_is = [](std::uint32_t /*row*/, shared::DrawConstants& /*constants*/) {
-  };
-  // Bodies left, tools right: light.glsl says why.
+  // What is opaque left, glass right: light.glsl says why.
   const std::uint32_t side = map.extent.height;
+  const vk::Rect2D left{{0, 0}, {side, side}};
+  const vk::Rect2D right{{static_cast<std::int32_t>(side), 0}, {side, side}};
   if (!inputs.frame.bodies.empty()) {
-    set_view(commands, {{0, 0}, {side, side}});
+    set_view(commands, left);
     bind_vertices(commands, {*inputs.buffers.positions.handle});
     commands.bindIndexBuffer(*inputs.buffers.body_indices.handle, 0, vk::IndexType::eUint32);
-    draw_each(commands, inputs, inputs.frame.bodies, as_it_is);
+    draw_each(commands, inputs, inputs.frame.bodies, inputs.frame.body_groups,
+              [](std::uint32_t /*row*/, const DrawMaterial& /*material*/,
+                 shared::DrawConstants& /*constants*/) { return true; });
   }
   if (!inputs.frame.tools.empty()) {
-    set_view(commands, {{static_cast<std::int32_t>(side), 0}, {side, side}});
     bind_vertices(commands, {*inputs.buffers.tool_positions.handle});
     commands.bindIndexBuffer(*inputs.buffers.tool_indices.handle, 0, vk::IndexType::eUint32);
-    draw_each(commands, inputs, inputs.frame.tools, as_it_is);
+    for (const bool glass : {false, true}) {
+      set_view(commands, glass ? right : left);
+      draw_each(commands, inputs, inputs.frame.tools, inputs.frame.tool_groups,
+                [&](std::uint32_t /*row*/, const DrawMaterial& material,
+                    shared::DrawConstants& /*constants*/) {
+                  return is_glass(material, inputs.options.tools) == glass;
+                });
+    }
   }
   commands.endRendering();
   shadow_target_to_sampled(commands, *map.handle);
@@ -167,12 +213,13 @@ void record_draw(const Frame& target, const FrameInputs& inputs) {
   commands.setScissor(0, inputs.part);
   push_draw_bindings(commands, inputs, true);
   draw_bodies(commands, inputs);
+  draw_tools(commands, inputs, ToolGroups::kOpaque);
   draw_arrows(commands, inputs);
   if (inputs.options.ground) {
     bind(commands, inputs.pipelines.ground);
     commands.draw(6, 1, 0, 0);
   }
-  draw_tools(commands, inputs);
+  draw_tools(commands, inputs, ToolGroups::kGlass);
   if (!inputs.overlay_apart) {
     const std::span<const OverlayClip> all = inputs.overlay == nullptr
                                                  ? std::span<const OverlayClip>{}

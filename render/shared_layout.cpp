@@ -19,11 +19,13 @@ constexpr std::size_t kLeastPushConstants = 128;  // bytes that every Vulkan dev
 static_assert(sizeof(shared::vec4) == kVec4 && sizeof(shared::mat4) == kMat4);
 static_assert(offsetof(FrameUniforms, shadow_from_world) == kMat4);
 static_assert(offsetof(FrameUniforms, eye) == 2 * kMat4);
-static_assert(offsetof(FrameUniforms, heat_scale) == 2 * kMat4 + 8 * kVec4);
-static_assert(sizeof(FrameUniforms) == 2 * kMat4 + 9 * kVec4);
+static_assert(offsetof(FrameUniforms, irradiance) == 2 * kMat4 + 3 * kVec4);
+static_assert(offsetof(FrameUniforms, heat_scale) == 2 * kMat4 + 15 * kVec4);
+static_assert(sizeof(FrameUniforms) == 2 * kMat4 + 16 * kVec4);
 static_assert(offsetof(DrawConstants, color) == 3 * kVec4);
 static_assert(offsetof(DrawConstants, grid) == 4 * kVec4);
-static_assert(offsetof(DrawConstants, rows) == 5 * kVec4);
+static_assert(offsetof(DrawConstants, surface) == 5 * kVec4);
+static_assert(offsetof(DrawConstants, rows) == 6 * kVec4);
 static_assert(sizeof(DrawConstants) <= kLeastPushConstants);
 static_assert(sizeof(shared::DeformConstants) == 6 * sizeof(shared::uint));
 static_assert(sizeof(shared::NormalConstants) == 2 * sizeof(shared::uint));

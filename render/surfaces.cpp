@@ -1,5 +1,6 @@
 #include "render/surfaces.hpp"
 
+#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -24,8 +25,8 @@ Image2d make_color_maps(const Gpu& gpu) {
       }
     }
   }
-  return make_constant_image(gpu, {kColorMapWidth, 2}, vk::Format::eR8G8B8A8Srgb,
-                             std::as_bytes(std::span(texels)));
+  const std::array level = {std::as_bytes(std::span(texels))};
+  return make_constant_image(gpu, {kColorMapWidth, 2}, vk::Format::eR8G8B8A8Srgb, level);
 }
 
 }  // namespace
@@ -49,9 +50,9 @@ Surfaces make_surfaces(const Gpu& gpu, std::uint32_t shadow_size, const OverlayA
                  ImageUsage::eDepthStencilAttachment | ImageUsage::eSampled);
   surfaces.color_maps = make_color_maps(gpu);
   if (glyphs != nullptr) {
-    surfaces.glyphs =
-        make_constant_image(gpu, {glyphs->width, glyphs->height}, vk::Format::eR8G8B8A8Unorm,
-                            std::as_bytes(std::span(glyphs->rgba)));
+    const std::array level = {std::as_bytes(std::span(glyphs->rgba))};
+    surfaces.glyphs = make_constant_image(gpu, {glyphs->width, glyphs->height},
+                                          vk::Format::eR8G8B8A8Unorm, level);
   }
   vk::SamplerCreateInfo sampler{
       .magFilter = vk::Filter::eLinear,

@@ -90,7 +90,7 @@ BodyExtent extent_of(const tinygltf::Model& model, const std::vector<SceneNode>&
     if (in_file.mesh >= 0 && is_below(nodes, node, body)) {
       const MeshTriangles mesh =
           read_mesh(model, model.meshes[static_cast<std::size_t>(in_file.mesh)],
-                    nodes[node].to_world, "node \"" + in_file.name + '"', problems);
+                    nodes[node].to_world, {}, "node \"" + in_file.name + '"', problems);
       positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
     }
   }

@@ -94,6 +94,8 @@ inline constexpr std::array kSceneKeys = {
              "a number above 0 (m)", 0.0, 1e3, false},
     SceneKey{"torsion_shape", (Role::kElastic | Role::kTool) | bits(Role::kPart), KeyKind::kWord,
              "mesh box sphere ellipsoid cylinder capsule"},
+    SceneKey{"torsion_draw", (Role::kElastic | Role::kTool) | bits(Role::kPart), KeyKind::kWord,
+             "shape mesh"},
     SceneKey{"torsion_size", (Role::kElastic | Role::kTool) | bits(Role::kPart), KeyKind::kVector,
              "3 numbers above 0 (m, along the node's x, y, z)", 1e-6, 1e6},
     SceneKey{"torsion_mass", bits(Role::kTool), KeyKind::kNumber, "a number above 0 (kg)", 0.0, 1e6,
@@ -108,6 +110,7 @@ inline constexpr std::array kSceneKeys = {
              1.0},
     SceneKey{"torsion_colors", bits(Role::kScene), KeyKind::kWord, "material twist pressure"},
     SceneKey{"torsion_stick_slip", bits(Role::kScene), KeyKind::kFlag, "true or false"},
+    SceneKey{"torsion_lines", bits(Role::kScene), KeyKind::kFlag, "true or false"},
     SceneKey{"torsion_torque", bits(Role::kScene), KeyKind::kWord, "total parts"},
 };
 

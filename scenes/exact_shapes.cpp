@@ -9,7 +9,6 @@ namespace torsion::engine {
 namespace {
 
 constexpr double kSameWithin = 0.01;  // relative difference of extents that count as equal
-constexpr int kFineness = 24;         // quads along an edge of the cube that is bent into the shape
 
 bool same(double a, double b) {
   return std::abs(a - b) <= kSameWithin * std::max(a, b);
@@ -91,22 +90,23 @@ std::optional<ShapePart> fit_shape(ShapeKind kind, const glm::dvec3& lowest,
   return shape;
 }
 
-SurfaceMesh tessellate(const ShapePart& shape) {
+SurfaceMesh tessellate(const ShapePart& shape, int fineness) {
   SurfaceMesh mesh;
   std::map<std::array<int, 3>, std::uint32_t> rows;
   const auto vertex = [&](const std::array<int, 3>& key) {
     const auto [entry, fresh] =
         rows.try_emplace(key, static_cast<std::uint32_t>(mesh.positions.size()));
     if (fresh) {
-      const glm::dvec3 point = 2.0 * glm::dvec3(key[0], key[1], key[2]) / double{kFineness} - 1.0;
+      const glm::dvec3 point =
+          2.0 * glm::dvec3(key[0], key[1], key[2]) / static_cast<double>(fineness) - 1.0;
       mesh.positions.push_back(shape.pose.rotation * onto(shape, point) + shape.pose.position);
     }
     return entry->second;
   };
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const int side : {0, kFineness}) {
-      for (int i = 0; i < kFineness; ++i) {
-        for (int j = 0; j < kFineness; ++j) {
+    for (const int side : {0, fineness}) {
+      for (int i = 0; i < fineness; ++i) {
+        for (int j = 0; j < fineness; ++j) {
           const auto corner = [&](int a, int b) {
             std::array<int, 3> key{};
             key[axis] = side;

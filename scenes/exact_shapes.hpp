@@ -22,7 +22,8 @@ std::optional<ShapePart> fit_shape(ShapeKind kind, const glm::dvec3& lowest,
                                    const std::string& where, const ProblemList& problems);
 
 /// A closed mesh of the surface of an exact shape, in its owner's frame; extremes lie on it.
-SurfaceMesh tessellate(const ShapePart& shape);
+/// @param fineness  facets along each side of the cube whose faces are bent to the shape, even
+SurfaceMesh tessellate(const ShapePart& shape, int fineness = 24);
 
 /// The same for drawing: where faces meet at more than 40 degrees, as at the sides of a box, each
 /// has vertices of its own, so that the edge looks sharp.

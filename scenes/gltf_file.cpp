@@ -214,9 +214,12 @@ tinygltf::FsCallbacks callbacks_for(std::filesystem::path& folder) {
   return callbacks;
 }
 
-/// Textures are not drawn, and image decoders are where hostile files aim.
-bool pass_over_image(tinygltf::Image*, const int, std::string*, std::string*, int, int,
-                     const unsigned char*, int, void*) {
+/// Image decoders are where hostile files aim: what only simulates never runs one. Bytes are kept
+/// as they are.
+bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+                  const unsigned char* bytes, int size, void*) {
+  image->image.assign(bytes, bytes + size);
+  image->as_is = true;
   return true;
 }
 
@@ -225,7 +228,7 @@ std::optional<tinygltf::Model> parse_gltf(const Bytes& bytes, bool binary, std::
                                           const ProblemList& problems) {
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(callbacks_for(folder));
-  loader.SetImageLoader(pass_over_image, nullptr);
+  loader.SetImageLoader(keep_encoded, nullptr);
   tinygltf::Model model;
   std::string errors;
   std::string warnings;

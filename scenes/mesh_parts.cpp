@@ -86,6 +86,14 @@ void append_attributes(const tinygltf::Model& model, const tinygltf::Primitive& 
   } else {
     mesh.normals.clear();
   }
+  const std::vector<glm::vec2> texcoords = read_texcoords(model, primitive);
+  if (texcoords.size() == mesh.positions.size() - first) {
+    mesh.texcoords.resize(first, glm::vec2(0.0F));
+    mesh.texcoords.insert(mesh.texcoords.end(), texcoords.begin(), texcoords.end());
+  }
+  if (!mesh.texcoords.empty()) {
+    mesh.texcoords.resize(mesh.positions.size(), glm::vec2(0.0F));
+  }
   for (const auto& [name, accessor] : primitive.attributes) {
     if (is_called_fixed(name) &&
         model.accessors[static_cast<std::size_t>(accessor)].type == TINYGLTF_TYPE_SCALAR) {
@@ -97,24 +105,6 @@ void append_attributes(const tinygltf::Model& model, const tinygltf::Primitive& 
   if (!mesh.fixed.empty()) {
     mesh.fixed.resize(mesh.positions.size(), 0.0);
   }
-}
-
-glm::vec4 color_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
-  if (primitive.material < 0) {
-    return {0.8F, 0.8F, 0.8F, 1.0F};
-  }
-  const auto& factor = model.materials[static_cast<std::size_t>(primitive.material)]
-                           .pbrMetallicRoughness.baseColorFactor;
-  glm::vec4 color(0.8F, 0.8F, 0.8F, 1.0F);
-  for (int i = 0; i < 4 && factor.size() == 4; ++i) {
-    color[i] = static_cast<float>(std::clamp(factor[static_cast<std::size_t>(i)], 0.0, 1.0));
-  }
-  return color;
-}
-
-bool is_textured(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
-  return primitive.material >= 0 && model.materials[static_cast<std::size_t>(primitive.material)]
-                                            .pbrMetallicRoughness.baseColorTexture.index >= 0;
 }
 
 /// Faces' normals weighted by area, summed at each vertex.
@@ -134,10 +124,26 @@ std::vector<glm::dvec3> averaged_normals(const MeshTriangles& mesh) {
   return normals;
 }
 
+/// The materials of a mesh after those that are there; the first mesh's replace the default.
+void append_materials(const MeshTriangles& mesh, DrawMesh& draw) {
+  if (draw.triangles.empty()) {
+    draw.materials.clear();
+  }
+  const auto first = static_cast<std::uint32_t>(draw.materials.size());
+  draw.materials.insert(draw.materials.end(), mesh.materials.begin(), mesh.materials.end());
+  if (mesh.materials.empty()) {
+    draw.materials.emplace_back();
+    draw.triangle_materials.resize(draw.triangles.size() + mesh.triangles.size(), first);
+  }
+  for (const std::uint32_t material : mesh.triangle_materials) {
+    draw.triangle_materials.push_back(first + material);
+  }
+}
+
 }  // namespace
 
 MeshTriangles read_mesh(const tinygltf::Model& model, const tinygltf::Mesh& mesh,
-                        const glm::dmat4& to_owner, const std::string& where,
+                        const glm::dmat4& to_owner, const MeshLook& look, const std::string& where,
                         const ProblemList& problems) {
   MeshTriangles read;
   const bool mirrored = glm::determinant(glm::dmat3(to_owner)) < 0.0;
@@ -150,30 +156,31 @@ MeshTriangles read_mesh(const tinygltf::Model& model, const tinygltf::Mesh& mesh
                    "delete loose points and edges, then export again");
       continue;
     }
-    if (part == 0) {
-      read.color = color_of(model, primitive);
-    }
-    read.textured = read.textured || is_textured(model, primitive);
     const std::size_t before = read.positions.size();
     append_attributes(model, primitive, to_owner, read);
     append_triangles(model, primitive, static_cast<std::uint32_t>(read.positions.size() - before),
                      mirrored, read);
+    read.triangle_materials.resize(read.triangles.size(),
+                                   static_cast<std::uint32_t>(read.materials.size()));
+    read.materials.push_back(read_material(model, primitive, look));
   }
   return read;
 }
 
 void append_draw_mesh(const MeshTriangles& mesh, DrawMesh& draw) {
   const auto first = static_cast<std::uint32_t>(draw.positions.size());
-  if (first == 0) {
-    draw.color = mesh.color;
-  }
-  draw.textured = draw.textured || mesh.textured;
+  append_materials(mesh, draw);
   const bool has_normals = mesh.normals.size() == mesh.positions.size();
   const std::vector<glm::dvec3> normals = has_normals ? mesh.normals : averaged_normals(mesh);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     draw.positions.emplace_back(mesh.positions[i]);
     draw.normals.emplace_back(normals[i]);
     draw.fixed.push_back(!mesh.fixed.empty() && mesh.fixed[i] > 0.5);
+  }
+  if (!mesh.texcoords.empty() || !draw.texcoords.empty()) {
+    draw.texcoords.resize(first, glm::vec2(0.0F));
+    draw.texcoords.insert(draw.texcoords.end(), mesh.texcoords.begin(), mesh.texcoords.end());
+    draw.texcoords.resize(draw.positions.size(), glm::vec2(0.0F));
   }
   for (const glm::uvec3& triangle : mesh.triangles) {
     draw.triangles.push_back(triangle + first);

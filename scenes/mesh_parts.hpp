@@ -6,6 +6,7 @@
 #include <tiny_gltf.h>
 
 #include "ecs/scene_description.hpp"
+#include "scenes/materials.hpp"
 #include "scenes/problem.hpp"
 
 namespace torsion::engine {
@@ -15,16 +16,17 @@ struct MeshTriangles {
   std::vector<glm::dvec3> positions;  // m
   std::vector<glm::dvec3> normals;    // unit; as many as positions, or none where the file has none
   std::vector<double> fixed;          // the _FIXED attribute, as many as positions, or none
+  std::vector<glm::vec2> texcoords;   // as many as positions, or none
   std::vector<glm::uvec3> triangles;  // counter-clockwise seen from outside
-  glm::vec4 color{0.8F, 0.8F, 0.8F, 1.0F};  // of the first primitive's material
-  bool textured = false;                    // one of their materials has a texture
+  std::vector<DrawMaterial> materials;            // one for each primitive
+  std::vector<std::uint32_t> triangle_materials;  // one for each triangle
 };
 
 /// All primitives of a mesh: lists, strips and fans of triangles. Points and lines are problems. A
 /// mirroring `to_owner` turns the triangles about.
 /// @param to_owner  mesh to owner's frame, scale included
 MeshTriangles read_mesh(const tinygltf::Model& model, const tinygltf::Mesh& mesh,
-                        const glm::dmat4& to_owner, const std::string& where,
+                        const glm::dmat4& to_owner, const MeshLook& look, const std::string& where,
                         const ProblemList& problems);
 
 /// Appends to what is drawn; normals that the file lacks are averaged from the faces.

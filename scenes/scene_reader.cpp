@@ -78,7 +78,20 @@ std::optional<PartDescription> part_of_box(const SceneReader& reader, std::size_
   return exact_part(reader, node, kind, low, high, to_owner);
 }
 
-/// A part without a mesh: a shape of the size that the node's keys say, which draws itself.
+/// Draws an exact shape as it is felt.
+void append_shape(const PartDescription& part, const DrawMaterial& material, OwnerShape& owner) {
+  constexpr int kRoundTool = 12;  // facets: 48 around
+  constexpr int kFlatTool = 2;
+  const bool flat = part.shape.kind == ShapeKind::kBox;
+  MeshTriangles drawn = drawn_mesh(
+      owner.rigid ? tessellate(part.shape, flat ? kFlatTool : kRoundTool) : part.surface);
+  drawn.materials = {material};
+  drawn.materials.front().texture = nullptr;  // its place on the shape is not known
+  drawn.triangle_materials.assign(drawn.triangles.size(), 0);
+  append_draw_mesh(drawn, owner.draw);
+}
+
+/// A part without a mesh: a shape of the size that the node's keys say.
 void add_meshless_part(const SceneReader& reader, std::size_t node, const glm::dmat4& to_owner,
                        OwnerShape& owner) {
   const ShapeKind kind = shape_kind(reader.keys[node].text("torsion_shape").value_or("mesh"));
@@ -91,11 +104,26 @@ void add_meshless_part(const SceneReader& reader, std::size_t node, const glm::d
   const glm::dvec3 half = 0.5 * *reader.keys[node].vector("torsion_size");
   std::optional<PartDescription> part = exact_part(reader, node, kind, -half, half, to_owner);
   if (part) {
-    MeshTriangles drawn = drawn_mesh(part->surface);
-    drawn.color = owner.color;
-    append_draw_mesh(drawn, owner.draw);
+    append_shape(*part, owner.look.plain, owner);
     owner.parts.push_back(std::move(*part));
   }
+}
+
+/// A part with a mesh that is felt as an exact shape: it is drawn so too, unless its keys want the
+/// mesh, or that says which vertices are fixed.
+void add_exact_part(const SceneReader& reader, std::size_t node, ShapeKind kind,
+                    const MeshTriangles& triangles, const glm::dmat4& to_owner, OwnerShape& owner) {
+  std::optional<PartDescription> part = part_of_box(reader, node, kind, triangles, to_owner);
+  if (!part) {
+    return;
+  }
+  const bool as_mesh = reader.keys[node].text("torsion_draw") == "mesh";
+  if (as_mesh || !triangles.fixed.empty()) {
+    append_draw_mesh(triangles, owner.draw);
+  } else {
+    append_shape(*part, triangles.materials.front(), owner);
+  }
+  owner.parts.push_back(std::move(*part));
 }
 
 /// One mesh of an owner: what is drawn, and the part that is felt.
@@ -111,19 +139,17 @@ void add_part(const SceneReader& reader, std::size_t node, OwnerShape& owner) {
                         "take it out: the mesh's bounding box says the size; or take out the mesh");
   }
   const MeshTriangles triangles =
-      read_mesh(reader.model, *reader.mesh(node), to_owner, where, reader.problems);
+      read_mesh(reader.model, *reader.mesh(node), to_owner, owner.look, where, reader.problems);
   if (triangles.triangles.empty()) {
     reader.problems.add(where, "mesh", "", "has no triangles");
     return;
   }
-  append_draw_mesh(triangles, owner.draw);
   const ShapeKind kind = shape_kind(reader.keys[node].text("torsion_shape").value_or("mesh"));
   if (kind != ShapeKind::kMesh) {
-    if (auto part = part_of_box(reader, node, kind, triangles, to_owner)) {
-      owner.parts.push_back(std::move(*part));
-    }
+    add_exact_part(reader, node, kind, triangles, to_owner, owner);
     return;
   }
+  append_draw_mesh(triangles, owner.draw);
   PartDescription part;
   part.node = reader.file_node(node).name;
   part.shape.kind = ShapeKind::kMesh;
@@ -134,7 +160,7 @@ void add_part(const SceneReader& reader, std::size_t node, OwnerShape& owner) {
 }  // namespace
 
 SceneReader make_reader(const tinygltf::Model& model, const ProblemList& problems) {
-  SceneReader reader{model, problems, list_scene_nodes(model), {}, {}};
+  SceneReader reader{model, problems, list_scene_nodes(model), {}, {}, read_images(model)};
   if (!model.scenes.empty()) {
     const std::size_t shown = shown_scene(model);
     const tinygltf::Scene& scene = model.scenes[shown];
@@ -176,7 +202,9 @@ OwnerShape read_owner_shape(const SceneReader& reader, std::size_t owner) {
   // Without a material, bodies and tools must be told apart.
   constexpr glm::vec4 kBodyColor(0.80F, 0.42F, 0.22F, 1.0F);
   constexpr glm::vec4 kToolColor(0.25F, 0.38F, 0.55F, 1.0F);
-  shape.color = reader.nodes[owner].role == Role::kTool ? kToolColor : kBodyColor;
+  shape.rigid = reader.nodes[owner].role == Role::kTool;
+  shape.look.images = reader.images;
+  shape.look.plain.color = shape.rigid ? kToolColor : kBodyColor;
   shape.pose = {transform->translation, transform->rotation};
   shape.from_world = glm::inverse(glm::translate(glm::dmat4(1.0), shape.pose.position) *
                                   glm::mat4_cast(shape.pose.rotation));

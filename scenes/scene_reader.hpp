@@ -5,6 +5,7 @@
 
 #include "ecs/scene_description.hpp"
 #include "scenes/extras.hpp"
+#include "scenes/materials.hpp"
 #include "scenes/node_tree.hpp"
 
 namespace torsion::engine {
@@ -16,6 +17,7 @@ struct SceneReader {
   std::vector<SceneNode> nodes;
   std::vector<NodeKeys> keys;  // one for each of `nodes`
   NodeKeys scene_keys;         // of the scene that is shown
+  SceneImages images;
 
   [[nodiscard]] const tinygltf::Node& file_node(std::size_t node) const {
     return model.nodes[nodes[node].row];
@@ -38,7 +40,8 @@ SceneReader make_reader(const tinygltf::Model& model, const ProblemList& problem
 struct OwnerShape {
   Pose pose;  // owner's frame in the world
   glm::dmat4 from_world{1.0};
-  glm::vec4 color{1.0F};  // linear: of what has no mesh and so no material
+  MeshLook look;
+  bool rigid = false;  // a tool, whose drawn surface does not bend
   std::vector<PartDescription> parts;
   DrawMesh draw;
 };

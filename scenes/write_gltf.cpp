@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "scenes/gltf_rows.hpp"
+#include "scenes/write_materials.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -34,43 +35,56 @@ void set_bounds(tinygltf::Accessor& accessor, std::span<const glm::vec3> rows) {
   }
 }
 
-int add_material(tinygltf::Model& model, const WrittenMesh& mesh) {
-  tinygltf::Material material;
-  material.name = mesh.name;
-  for (int i = 0; i < 4; ++i) {
-    material.pbrMetallicRoughness.baseColorFactor[static_cast<std::size_t>(i)] =
-        static_cast<double>(mesh.color[i]);
+/// A primitive for each run of triangles of one material; they share the vertices.
+void add_primitives(tinygltf::Model& model, MaterialWriter& materials, const WrittenMesh& mesh,
+                    const tinygltf::Primitive& vertices, tinygltf::Mesh& written) {
+  const std::span<const glm::uvec3> triangles(mesh.triangles);
+  const auto material_of = [&](std::size_t triangle) {
+    return mesh.triangle_materials.empty() ? 0U : mesh.triangle_materials[triangle];
+  };
+  for (std::size_t first = 0; first < triangles.size();) {
+    std::size_t end = first + 1;
+    while (end < triangles.size() && material_of(end) == material_of(first)) {
+      ++end;
+    }
+    tinygltf::Primitive& primitive = written.primitives.emplace_back(vertices);
+    const std::uint32_t material = material_of(first);
+    primitive.material =
+        materials.add(mesh.materials[material],
+                      material == 0 ? mesh.name : mesh.name + " " + std::to_string(material));
+    primitive.indices =
+        add_accessor<glm::uvec3>(model, triangles.subspan(first, end - first),
+                                 {TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
+                                  3 * (end - first), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER});
+    first = end;
   }
-  material.pbrMetallicRoughness.metallicFactor = 0.0;
-  material.pbrMetallicRoughness.roughnessFactor = 0.6;
-  model.materials.push_back(material);
-  return static_cast<int>(model.materials.size()) - 1;
 }
 
-void add_mesh(tinygltf::Model& model, const WrittenMesh& mesh) {
-  tinygltf::Primitive primitive;
-  primitive.mode = TINYGLTF_MODE_TRIANGLES;
-  primitive.material = add_material(model, mesh);
+void add_mesh(tinygltf::Model& model, MaterialWriter& materials, const WrittenMesh& mesh) {
+  tinygltf::Primitive vertices;
+  vertices.mode = TINYGLTF_MODE_TRIANGLES;
   const int positions = add_vectors(model, mesh.positions);
   set_bounds(model.accessors[static_cast<std::size_t>(positions)], mesh.positions);
-  primitive.attributes["POSITION"] = positions;
-  primitive.attributes["NORMAL"] = add_vectors(model, mesh.normals);
+  vertices.attributes["POSITION"] = positions;
+  vertices.attributes["NORMAL"] = add_vectors(model, mesh.normals);
+  if (!mesh.texcoords.empty()) {
+    vertices.attributes["TEXCOORD_0"] =
+        add_accessor<glm::vec2>(model, mesh.texcoords,
+                                {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2,
+                                 mesh.texcoords.size(), TINYGLTF_TARGET_ARRAY_BUFFER});
+  }
   if (!mesh.rest_positions.empty()) {
-    primitive.attributes["_REST_POSITION"] = add_vectors(model, mesh.rest_positions);
+    vertices.attributes["_REST_POSITION"] = add_vectors(model, mesh.rest_positions);
   }
   if (!mesh.twist_angles.empty()) {
-    primitive.attributes["_TWIST_ANGLE"] =
+    vertices.attributes["_TWIST_ANGLE"] =
         add_accessor<float>(model, mesh.twist_angles,
                             {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR,
                              mesh.twist_angles.size(), TINYGLTF_TARGET_ARRAY_BUFFER});
   }
-  primitive.indices =
-      add_accessor<glm::uvec3>(model, mesh.triangles,
-                               {TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
-                                3 * mesh.triangles.size(), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER});
   tinygltf::Mesh written;
   written.name = mesh.name;
-  written.primitives.push_back(primitive);
+  add_primitives(model, materials, mesh, vertices, written);
   model.meshes.push_back(written);
   tinygltf::Node node;
   node.name = mesh.name;
@@ -91,8 +105,10 @@ void add_targets(tinygltf::Model& model, const AnimatedMesh& mesh, int times,
   for (const MorphTarget& target : mesh.targets) {
     const int positions = add_vectors(model, target.positions);
     set_bounds(model.accessors[static_cast<std::size_t>(positions)], target.positions);
-    written.primitives[0].targets.push_back(
-        {{"POSITION", positions}, {"NORMAL", add_vectors(model, target.normals)}});
+    const int normals = add_vectors(model, target.normals);
+    for (tinygltf::Primitive& primitive : written.primitives) {
+      primitive.targets.push_back({{"POSITION", positions}, {"NORMAL", normals}});
+    }
   }
   written.weights.assign(count, 0.0);
   std::vector<float> weights(count * count, 0.0F);
@@ -128,8 +144,9 @@ Result<std::string> bytes_of(tinygltf::Model model, bool binary) {
 
 Result<std::string> gltf_bytes(const std::vector<WrittenMesh>& meshes, bool binary) {
   tinygltf::Model model = empty_model();
+  MaterialWriter materials(model);
   for (const WrittenMesh& mesh : meshes) {
-    add_mesh(model, mesh);
+    add_mesh(model, materials, mesh);
   }
   return bytes_of(std::move(model), binary);
 }
@@ -137,11 +154,12 @@ Result<std::string> gltf_bytes(const std::vector<WrittenMesh>& meshes, bool bina
 Result<std::string> animated_gltf_bytes(const std::vector<AnimatedMesh>& meshes,
                                         const std::vector<float>& times, bool binary) {
   tinygltf::Model model = empty_model();
+  MaterialWriter materials(model);
   tinygltf::Animation animation;
   animation.name = "run";
   const int keys = append_times(model, 0, times);
   for (const AnimatedMesh& mesh : meshes) {
-    add_mesh(model, mesh.rest);
+    add_mesh(model, materials, mesh.rest);
     if (!mesh.poses.empty()) {
       add_pose_channels(model, animation, 0, static_cast<int>(model.nodes.size()) - 1, keys,
                         mesh.poses);

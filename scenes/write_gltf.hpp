@@ -3,10 +3,12 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "ecs/components.hpp"
+#include "ecs/draw_material.hpp"
 #include "ecs/result.hpp"
 
 namespace torsion::engine {
@@ -18,9 +20,11 @@ struct WrittenMesh {
   std::vector<glm::vec3> positions;  // m
   std::vector<glm::vec3> normals;    // unit; as many as positions
   std::vector<glm::uvec3> triangles;
-  std::vector<float> twist_angles;          // rad: attribute _TWIST_ANGLE; may be empty
-  std::vector<glm::vec3> rest_positions;    // m: attribute _REST_POSITION; may be empty
-  glm::vec4 color{0.8F, 0.8F, 0.8F, 1.0F};  // linear RGB and alpha
+  std::vector<float> twist_angles;         // rad: attribute _TWIST_ANGLE; may be empty
+  std::vector<glm::vec3> rest_positions;   // m: attribute _REST_POSITION; may be empty
+  std::vector<glm::vec2> texcoords;        // as many as positions; may be empty
+  std::vector<DrawMaterial> materials{1};  // as DrawMesh has them
+  std::vector<std::uint32_t> triangle_materials;
 };
 
 /// What a mesh is at one time, beside its rest: differences of each vertex's place and normal.

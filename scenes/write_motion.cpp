@@ -5,6 +5,7 @@
 
 #include "scenes/gltf_file.hpp"
 #include "scenes/gltf_rows.hpp"
+#include "scenes/write_materials.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -60,6 +61,7 @@ Result<std::string> written(tinygltf::Model& model, bool binary,
   for (tinygltf::Buffer& each : model.buffers) {
     each.uri.clear();  // inside, wherever the scene's files are
   }
+  embed_images(model);
   std::ostringstream stream;
   tinygltf::TinyGLTF writer;
   if (!writer.WriteGltfSceneToStream(&model, stream, true, binary) || !stream) {

@@ -11,7 +11,6 @@ layout(location = 0) out vec4 color;
 // Lit like the rest but never in shadow, since an arrow is not a thing of the scene.
 void main() {
   vec3 normal = normalize(world_normal);
-  vec3 ambient = mix(frame.ground_light.rgb, frame.sky_light.rgb, 0.5 + 0.5 * normal.y);
-  vec3 light = ambient + frame.key_light.rgb * max(dot(normal, frame.to_key_light.xyz), 0.0);
+  vec3 light = ambient_light(normal, normal, 1.0) + frame.key_light.rgb * max(dot(normal, frame.to_key_light.xyz), 0.0);
   color = vec4(vertex_color * light, 1.0);
 }

@@ -4,14 +4,18 @@
 #include "frame.glsl"
 #include "light.glsl"
 #include "openness.glsl"
+#include "reflection.glsl"
 
 layout(set = 0, binding = 2) uniform sampler2D color_maps;
+layout(set = 0, binding = 6) uniform sampler2D base_color;
 
 layout(location = 0) in vec3 world_position;  // with kQuick: linear rgb of the light from all around
-layout(location = 1) in vec3 world_normal;    // with kQuick: x is the cosine toward the key light
+layout(location = 1) in vec3 world_normal;    // with kQuick: x is the cosine toward the key light; y and z are what
+                                              // is mirrored: y times the reflectance, plus z
 layout(location = 2) in vec4 rest_position;
 layout(location = 3) in float heat;
 layout(location = 4) in vec3 in_shadow_map;
+layout(location = 5) in vec2 texcoord;
 
 layout(location = 0) out vec4 color;
 
@@ -43,6 +47,9 @@ float material_lines() {
 
 void main() {
   vec3 base = draw.color.rgb;
+  if ((draw.rows.w & kTextured) != 0) {
+    base *= texture(base_color, texcoord).rgb;
+  }
   if (draw.rows.z != kHeatNone) {
     float at = clamp((heat - frame.heat_scale.x) * frame.heat_scale.y, 0.0, 1.0);
     if (frame.heat_scale.w > 0.0) {
@@ -59,17 +66,24 @@ void main() {
     base = mix(base, line, material_lines());
   }
 
+  vec3 reflectance = normal_reflectance(base);
+  vec3 scattered = base * (1.0 - draw.surface.x);
   if (kQuick) {
-    float facing = max(world_normal.x, 0.0);
-    float share = facing > 0.0 ? key_light_share(in_shadow_map) : 0.0;
-    color = vec4(base * (world_position + frame.key_light.rgb * facing * share), 1.0);
+    float share = world_normal.x > 0.0 ? key_light_share(in_shadow_map) : 0.0;
+    vec3 light = world_position + frame.key_light.rgb * diffuse_key(world_normal.x, share);
+    color = vec4(below_white(scattered * light + reflectance * world_normal.y + world_normal.z), 1.0);
     return;
   }
   vec3 normal = normalize(world_normal);
   vec3 to_eye = normalize(frame.eye.xyz - world_position);
-  float facing = max(dot(normal, frame.to_key_light.xyz), 0.0);
+  float facing = dot(normal, frame.to_key_light.xyz);
   float share = facing > 0.0 ? key_light_share(in_shadow_map) : 0.0;
-  vec3 around = ambient_light(normal, to_eye, openness(rest_position.xyz, world_position.y, normal));
-  vec3 light = around + frame.key_light.rgb * facing * share;
-  color = vec4(base * light + frame.key_light.rgb * share * 0.03 * highlight(normal, to_eye, 30.0), 1.0);
+  float open = openness(rest_position.xyz, world_position.y, normal);
+  vec3 light = ambient_light(normal, to_eye, open) + frame.key_light.rgb * diffuse_key(facing, share);
+  vec2 of_mirror = mirrored_share(max(dot(normal, to_eye), 0.0));
+  vec3 shine = open * mirrored(reflect(-to_eye, normal)) * (reflectance * of_mirror.x + of_mirror.y);
+  if (share > 0.0) {
+    shine += share * frame.key_light.rgb * key_highlight(reflectance, normal, to_eye, facing);
+  }
+  color = vec4(below_white(scattered * light + shine), 1.0);
 }

@@ -24,9 +24,13 @@ vec3 direction_to_world(vec3 direction) {
 // shadow map, light from all around at the corners of triangles, no highlight on bodies.
 layout(constant_id = 0) const bool kQuick = false;
 
-// Light from all around and a little from the eye, which brightens what faces it; `open` is the share of it that
-// nothing near by takes away.
-vec3 ambient_light(vec3 normal, vec3 to_eye, float open) {
-  vec3 around = mix(frame.ground_light.rgb, frame.sky_light.rgb, 0.5 + 0.5 * normal.y);
-  return (around + frame.sky_light.w * max(dot(normal, to_eye), 0.0)) * open;
+// Light of the studio that arrives at a surface, as if white reflected it (Ramamoorthi and Hanrahan, SIGGRAPH 2001: nine
+// spherical harmonics), and a little from the eye, which brightens what faces it; `open` is the share of it that nothing
+// near by takes away.
+vec3 ambient_light(vec3 n, vec3 to_eye, float open) {
+  vec3 around = frame.irradiance[0].rgb + frame.irradiance[1].rgb * n.y + frame.irradiance[2].rgb * n.z +
+                frame.irradiance[3].rgb * n.x + frame.irradiance[4].rgb * (n.x * n.y) +
+                frame.irradiance[5].rgb * (n.y * n.z) + frame.irradiance[6].rgb * (3.0 * n.z * n.z - 1.0) +
+                frame.irradiance[7].rgb * (n.x * n.z) + frame.irradiance[8].rgb * (n.x * n.x - n.y * n.y);
+  return (max(around, 0.0) + frame.irradiance[0].w * max(dot(n, to_eye), 0.0)) * open;
 }

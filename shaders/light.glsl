@@ -1,4 +1,4 @@
-// One key light with a shadow map, and light from a sky above and a ground below.
+// One key light with a shadow map.
 
 layout(set = 0, binding = 1) uniform sampler2DShadow shadow_map;
 
@@ -9,8 +9,8 @@ float passing(vec2 at, float depth, vec2 step) {
                 textureLod(shadow_map, vec3(at + step, depth), 0.0));
 }
 
-// Share of the key light that arrives. The bodies' shadows are in the left half of the map, the tools' in the right
-// half, since a transparent tool only dims the light. What is deeper than the map reaches is compared as if at its
+// Share of the key light that arrives. Shadows of what is opaque are in the left half of the map, those of glass tools in
+// the right half, since glass only dims the light. What is deeper than the map reaches is compared as if at its
 // end, where nothing casts a shadow; beside the map everything is lit.
 float key_light_share(vec3 in_shadow_map) {
   vec2 texel = 1.0 / vec2(textureSize(shadow_map, 0));
@@ -32,8 +32,3 @@ float key_light_share(vec3 in_shadow_map) {
   return bodies * (1.0 - frame.floor_level.w * (1.0 - tools));
 }
 
-// A soft highlight (Blinn 1977, normalised so that a wider one is dimmer): share of the key light sent to the eye.
-float highlight(vec3 normal, vec3 to_eye, float sharpness) {
-  vec3 half_way = normalize(to_eye + frame.to_key_light.xyz);
-  return (sharpness + 8.0) / 25.0 * pow(max(dot(normal, half_way), 0.0), sharpness);
-}

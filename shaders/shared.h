@@ -28,6 +28,16 @@ TORSION_CONSTANT(kNoRegion, 0);
 TORSION_CONSTANT(kOneRegion, 1);
 TORSION_CONSTANT(kManyRegions, 2);
 
+// What a draw is, bits of DrawConstants::rows.w.
+TORSION_CONSTANT(kTextured, 1);  // its base colour is a texture's, times `color`
+TORSION_CONSTANT(kGlass, 2);     // tools: one sees through it
+TORSION_CONSTANT(kMarks, 4);     // tools: lines that turn with it
+
+// Reflections of the studio (render/studio_light.hpp): a square tile of the map for each of these
+// steps of roughness, one over another; the tile of roughness r is round(r * (tiles - 1)).
+TORSION_CONSTANT(kReflectionSide, 48);
+TORSION_CONSTANT(kReflectionTiles, 17);
+
 // The top bit of an entry of a normal ring: a new fan begins here.
 TORSION_CONSTANT(kRingRestart, 0x80000000U);
 TORSION_CONSTANT(kRingVertex, 0x7FFFFFFFU);
@@ -55,8 +65,8 @@ struct FrameUniforms {
   vec4 eye;                 // xyz: m, world
   vec4 to_key_light;        // xyz: world, unit
   vec4 key_light;           // linear rgb; w: how far off a surface its shadow is looked up, m
-  vec4 sky_light;           // linear rgb, from above; w: light from the eye
-  vec4 ground_light;        // linear rgb, from below
+  vec4 irradiance[9];       // linear rgb, of the studio, by spherical harmonics in the order of studio_light.hpp;
+                            // w of the first: light from the eye
   vec4 background;          // linear rgb
   vec4 floor_box;           // xz centre, xz half size of the bodies' footprint, m, world
   vec4 floor_level;         // x: y of the floor, m; y: height of the bodies, m; z: radius of the visible floor, m; w: share of the
@@ -76,7 +86,8 @@ struct DrawConstants {
   vec4 color;               // linear rgb, alpha
   vec4 grid;                // body: xyz a crossing of the material lines, m, at rest; w their distance, m, 0: none
                             // tool: xyz the middle of its box, m, tool
-  uvec4 rows;               // x: first contact spot, y: number of them, z: kHeat..., w unused
+  vec4 surface;             // x: metal, y: roughness, z: scattering, 0 to 1; w unused
+  uvec4 rows;               // x: first contact spot, y: number of them, z: kHeat..., w: kTextured | kGlass | kMarks
 };
 
 // Push constants of the overlay.

@@ -94,7 +94,7 @@ PartDescription exact_part(ShapeKind kind, const glm::dvec3& half_extent, const 
 
 DrawMesh drawn(const std::vector<SurfaceMesh>& surfaces, bool smooth, const glm::vec4& color) {
   DrawMesh mesh;
-  mesh.color = color;
+  mesh.materials.front().color = color;
   for (const SurfaceMesh& surface : surfaces) {
     std::vector<glm::dvec3> corner_normals(surface.positions.size(), glm::dvec3(0.0));
     std::vector<glm::dvec3> face_normals;

@@ -123,7 +123,7 @@ json body_json(const AnimatedMesh& body, double limit) {
 }
 
 json tool_json(const AnimatedMesh& tool, std::size_t row, const DeformedRun& run) {
-  const glm::vec4& color = tool.rest.color;
+  const glm::vec4& color = tool.rest.materials.front().color;
   json poses = json::array();
   json forces = json::array();
   json torques = json::array();

@@ -47,6 +47,17 @@ bool slider(const char* label, double& value, double low, double high, const cha
   return changed;
 }
 
+/// Tools as glass, as opaque, or as the scene has them.
+void tool_look_box(ToolLook& look) {
+  constexpr std::array<const char*, 3> kLooks = {"as authored", "glass", "opaque"};
+  int chosen = static_cast<int>(look);
+  ImGui::PushItemWidth(110.0F);
+  if (ImGui::Combo("tool##look", &chosen, kLooks.data(), static_cast<int>(kLooks.size()))) {
+    look = static_cast<ToolLook>(chosen);
+  }
+  ImGui::PopItemWidth();
+}
+
 /// How the physics thread and the pictures keep up.
 void timing_lines(const ViewState& state, const LiveSession& session) {
   const RunStatistics& statistics = session.frame().statistics;
@@ -156,7 +167,7 @@ void shown_things(ViewState& state) {
   ImGui::SameLine();
   ImGui::Checkbox("grid", &state.draw.grid);
   ImGui::SameLine();
-  ImGui::Checkbox("glass tool", &state.draw.transparent_tools);
+  tool_look_box(state.draw.tools);
   ImGui::Checkbox("legend", &state.show_legend);
   ImGui::SameLine();
   ImGui::Checkbox("couples apart from r x F", &state.draw.torque_parts);

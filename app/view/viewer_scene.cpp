@@ -50,6 +50,7 @@ void Viewer::look_at_scene() {
   state_.loop = view.loop;
   state_.entry = entry_of(state_.gallery, options_.scene);
   state_.draw.torque_parts = view.torque_parts;
+  state_.draw.grid = view.lines;
   seen_ = SeenScales{};
 }
 

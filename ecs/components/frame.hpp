@@ -3,6 +3,7 @@
 // What is drawn: rows that the GPU reads as they are, float, 16-byte rows or single floats.
 // Units, frames and "written by": ecs/components.hpp.
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
@@ -18,6 +19,11 @@ struct VertexRest {
 /// Written by: load.
 struct VertexNormal {
   glm::vec4 normal{0.0F};  // body, unit; w unused, 0
+};
+
+/// Written by: load.
+struct VertexTexcoord {
+  glm::vec2 uv{0.0F};  // of the base colour's texture, (0, 0) at its top left
 };
 
 /// Written by: surface_field.
@@ -44,9 +50,15 @@ struct TwistAxis {
 
 /// One drawn thing: a body, or a tool. Written by: load.
 struct DrawRange {
-  Range vertices;         // in the vertex table of its kind
-  Range triangles;        // likewise
-  glm::vec4 color{0.8F};  // linear RGB, alpha
+  Range vertices;   // in the vertex table of its kind
+  Range triangles;  // likewise
+  Range groups;     // likewise
+};
+
+/// Triangles of one drawn thing that have one material. Written by: load.
+struct DrawGroup {
+  Range triangles;             // in the triangle table of its kind
+  std::uint32_t material = 0;  // row of FrameWorld::materials
 };
 
 }  // namespace torsion::engine

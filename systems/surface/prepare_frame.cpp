@@ -76,15 +76,51 @@ Range append_rows(AnyTable& table, std::size_t count) {
   return *range;
 }
 
+/// Where a material lies among those of the frame; it is added where it is not there yet.
+std::uint32_t material_row(const DrawMaterial& material, std::vector<DrawMaterial>& materials) {
+  const auto found = std::ranges::find(materials, material);
+  const auto row = static_cast<std::uint32_t>(found - materials.begin());
+  if (found == materials.end()) {
+    materials.push_back(material);
+  }
+  return row;
+}
+
+/// A group for each run of triangles of one material.
+/// @param triangles  the mesh's, in the table of its kind
+Range append_groups(const DrawMesh& mesh, Range triangles, Table<DrawGroup>& groups,
+                    std::vector<DrawMaterial>& materials) {
+  const auto material_of = [&](std::uint32_t triangle) {
+    return mesh.triangle_materials.empty() ? 0U : mesh.triangle_materials[triangle];
+  };
+  Range range{groups.size(), 0};
+  for (std::uint32_t first = 0; first < triangles.count;) {
+    std::uint32_t end = first + 1;
+    while (end < triangles.count && material_of(end) == material_of(first)) {
+      ++end;
+    }
+    groups.at<DrawGroup>(append_rows(groups, 1).first) = {
+        {triangles.first + first, end - first},
+        material_row(mesh.materials[material_of(first)], materials)};
+    first = end;
+    ++range.count;
+  }
+  return range;
+}
+
 /// Copies a drawn mesh into the vertex and triangle tables of its kind.
 template <class VertexTable>
-DrawRange append_mesh(const DrawMesh& mesh, VertexTable& vertices, Table<Triangle>& triangles) {
+DrawRange append_mesh(const DrawMesh& mesh, VertexTable& vertices, Table<Triangle>& triangles,
+                      Table<DrawGroup>& groups, std::vector<DrawMaterial>& materials) {
   DrawRange range;
   range.vertices = append_rows(vertices, mesh.positions.size());
   range.triangles = append_rows(triangles, mesh.triangles.size());
-  range.color = mesh.color;
+  range.groups = append_groups(mesh, range.triangles, groups, materials);
   const auto rest = vertices.template rows<VertexRest>(range.vertices);
   const auto normals = vertices.template rows<VertexNormal>(range.vertices);
+  const auto texcoords = vertices.template rows<VertexTexcoord>(range.vertices);
+  std::ranges::transform(mesh.texcoords, texcoords.begin(),
+                         [](const glm::vec2& uv) { return VertexTexcoord{uv}; });
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const bool fixed = i < mesh.fixed.size() && mesh.fixed[i];
     rest[i].position = glm::vec4(mesh.positions[i], fixed ? 1.0F : 0.0F);
@@ -104,15 +140,19 @@ void reserve(const SceneDescription& scene, const Model& model,
   std::size_t body_triangles = 0;
   std::size_t tool_vertices = 0;
   std::size_t tool_triangles = 0;
+  std::size_t body_groups = 0;
+  std::size_t tool_groups = 0;
   std::size_t held = 0;
   std::size_t interpolation = 0;
   for (const BodyDescription& body : scene.bodies) {
     body_vertices += body.draw.positions.size();
     body_triangles += body.draw.triangles.size();
+    body_groups += body.draw.materials.size();
   }
   for (const ToolDescription& tool : scene.tools) {
     tool_vertices += tool.draw.positions.size();
     tool_triangles += tool.draw.triangles.size();
+    tool_groups += tool.draw.materials.size();
   }
   for (const BodyCenters& center : centers) {
     held += center.held.size();
@@ -127,8 +167,10 @@ void reserve(const SceneDescription& scene, const Model& model,
   frame.twist.reserve(rows(body_vertices * kMaxRegionsPerBody));
   frame.axes.reserve(rows(scene.bodies.size() * kMaxRegionsPerBody));
   frame.body_triangles.reserve(rows(body_triangles));
+  frame.body_groups.reserve(rows(body_groups));
   frame.tool_vertices.reserve(rows(tool_vertices));
   frame.tool_triangles.reserve(rows(tool_triangles));
+  frame.tool_groups.reserve(rows(tool_groups));
   frame.anchor_rest.reserve(model.anchors.size() + rows(held));
   frame.interpolation.reserve(rows(interpolation));
 }
@@ -136,7 +178,8 @@ void reserve(const SceneDescription& scene, const Model& model,
 void append_body(const BodyDescription& body, const Model& model, const State& state,
                  const BodyCenters& centers, FrameWorld& frame) {
   const std::uint32_t row = append_rows(frame.bodies, 1).first;
-  const DrawRange drawn = append_mesh(body.draw, frame.body_vertices, frame.body_triangles);
+  const DrawRange drawn = append_mesh(body.draw, frame.body_vertices, frame.body_triangles,
+                                      frame.body_groups, frame.materials);
   FrameBody data;
   data.anchors = centers.inverse.empty() ? Range{} : model.bodies.at<OwnedRows>(row).anchors;
   data.held_points = append_rows(frame.anchor_rest, centers.held.size());
@@ -171,8 +214,8 @@ FrameWorld prepare_frame(const SceneDescription& scene, const Model& model, cons
   for (const ToolDescription& tool : scene.tools) {
     const std::uint32_t row = append_rows(frame.tools, 1).first;
     frame.tools.at<Pose>(row) = state.tools.at<ToolPose>(row).now;
-    frame.tools.at<DrawRange>(row) =
-        append_mesh(tool.draw, frame.tool_vertices, frame.tool_triangles);
+    frame.tools.at<DrawRange>(row) = append_mesh(
+        tool.draw, frame.tool_vertices, frame.tool_triangles, frame.tool_groups, frame.materials);
   }
   return frame;
 }

@@ -49,9 +49,14 @@ class Refinement {
     }
     mark_longest_of_cut();
     const std::vector<glm::uvec3> before = std::move(mesh_.triangles);
+    const std::vector<std::uint32_t> materials = std::move(mesh_.triangle_materials);
     mesh_.triangles.clear();
-    for (const glm::uvec3& triangle : before) {
-      split(triangle);
+    mesh_.triangle_materials.clear();
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      split(before[i]);
+      if (!materials.empty()) {
+        mesh_.triangle_materials.resize(mesh_.triangles.size(), materials[i]);
+      }
     }
     return true;
   }
@@ -135,6 +140,9 @@ class Refinement {
         const glm::vec3 sum = mesh_.normals[a] + mesh_.normals[b];
         const float size = glm::length(sum);
         mesh_.normals.push_back(size > 0.0F ? sum / size : mesh_.normals[a]);
+      }
+      if (!mesh_.texcoords.empty()) {
+        mesh_.texcoords.push_back(0.5F * (mesh_.texcoords[a] + mesh_.texcoords[b]));
       }
       if (!mesh_.fixed.empty()) {
         mesh_.fixed.push_back(mesh_.fixed[a] && mesh_.fixed[b]);

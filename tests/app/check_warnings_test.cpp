@@ -146,7 +146,9 @@ TEST(CheckWarningTest, FacetsLongerThanTheContactAreSaid) {
 
 TEST(CheckWarningTest, AnExactShapeThatIsDrawnAsAnotherIsSaid) {
   test::GltfBuilder builder = test::good_scene();
-  builder.node("block")["extras"]["torsion_shape"] = "sphere";  // and drawn as a cube
+  builder.node("block")["extras"]["torsion_shape"] = "sphere";
+  EXPECT_FALSE(any_says(warnings_of(builder), "drawn as another"));
+  builder.node("block")["extras"]["torsion_draw"] = "mesh";  // a cube
   EXPECT_TRUE(
       any_says(warnings_of(builder), "\"block\" is felt as an exact shape but drawn as another"));
   test::GltfBuilder same = test::good_scene();
@@ -154,16 +156,32 @@ TEST(CheckWarningTest, AnExactShapeThatIsDrawnAsAnotherIsSaid) {
   EXPECT_FALSE(any_says(warnings_of(same), "drawn as another"));
 }
 
-TEST(CheckWarningTest, ATextureThatIsNotDrawnIsSaid) {
-  test::GltfBuilder builder = test::good_scene();
-  builder.document["images"] = {{{"uri", "data:image/png;base64,iVBORw0KGgo="}}};
-  builder.document["textures"] = {{{"source", 0}}};
-  builder.document["materials"] = {
-      {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
-  builder.document["meshes"][0]["primitives"][0]["material"] = 0;
-  const auto warnings = warnings_of(builder);
-  EXPECT_TRUE(any_says(warnings, "\"cube\" has a texture, which is not drawn"));
-  EXPECT_FALSE(any_says(warnings, "\"block\" has a texture"));
+TEST(CheckWarningTest, ATextureThatCannotBeDrawnIsSaid) {
+  const auto warnings_with = [](const nlohmann::json& image, const nlohmann::json& texture) {
+    test::GltfBuilder builder = test::good_scene();
+    builder.document["images"] = {image};
+    builder.document["textures"] = {texture};
+    builder.document["materials"] = {
+        {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    builder.document["meshes"][0]["primitives"][0]["material"] = 0;
+    return warnings_of(builder);
+  };
+  const nlohmann::json first = {{"source", 0}};
+  const auto cut = warnings_with({{"uri", "data:image/png;base64,iVBORw0KGgo="}}, first);
+  EXPECT_TRUE(
+      any_says(cut, "\"cube\" is drawn without its texture \"images[0]\": it is a damaged PNG"));
+  EXPECT_FALSE(any_says(cut, "\"block\" is drawn"));
+  const auto missing = warnings_with({{"uri", "nowhere.png"}}, first);
+  EXPECT_TRUE(any_says(missing, "its texture \"nowhere.png\": its file is missing or empty"));
+  const auto of_extension = warnings_with({{"uri", "nowhere.png"}}, nlohmann::json::object());
+  EXPECT_TRUE(any_says(of_extension, "its texture \"textures[0]\": its file is missing"));
+  const auto good = warnings_with(
+      {{"uri",
+        "data:image/"
+        "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmM"
+        "IQAAAABJRU5ErkJggg=="}},
+      first);
+  EXPECT_FALSE(any_says(good, "texture"));
 }
 
 TEST(CheckWarningTest, AToleranceThatIsNotReachedIsSaid) {

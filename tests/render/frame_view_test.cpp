@@ -92,17 +92,6 @@ TEST(FrameViewTest, GridSpacingIsRoundWithAtLeastTenLines) {
   EXPECT_EQ(grid_spacing(0.0), 0.0);
 }
 
-TEST(FrameViewTest, ClearToolsTakeLessLightThanOpaqueOnes) {
-  const SceneExtent extent = scene_extent(cube_and_ball({0.0, 0.12, 0.0}));
-  const Camera camera = camera_at({0.2, 0.2, 0.3}, {0.0, 0.05, 0.0}, 0.6);
-  DrawOptions options;
-  const float clear = frame_uniforms(extent, camera, kAspect, kShadowSize, options).floor_level.w;
-  options.transparent_tools = false;
-  const float opaque = frame_uniforms(extent, camera, kAspect, kShadowSize, options).floor_level.w;
-  EXPECT_LT(clear, opaque);
-  EXPECT_EQ(opaque, 1.0F);
-}
-
 TEST(FrameViewTest, HeatScaleMapsItsEndsToTheRowsEnds) {
   const SceneExtent extent = scene_extent(cube_and_ball({0.0, 0.12, 0.0}));
   const Camera camera = camera_at({0.2, 0.2, 0.3}, {0.0, 0.05, 0.0}, 0.6);

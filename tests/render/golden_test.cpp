@@ -82,7 +82,7 @@ TEST_F(GoldenTest, PressureShowsThroughTheTool) {
 
 TEST_F(GoldenTest, OpaqueToolHidesTheContactAndShadesIt) {
   DrawOptions options;
-  options.transparent_tools = false;
+  options.tools = ToolLook::kOpaque;
   options.arrows = false;
   expect_golden(draw(kTurn, options), "twisted_cube_opaque_tool");
 }

@@ -33,10 +33,20 @@ Range append_mesh(const TestMesh& mesh, Table& vertices, FrameWorld& frame, bool
     vertices.template at<VertexRest>(rows.first + i).position = glm::vec4(mesh.positions[i], 0.0F);
     vertices.template at<VertexNormal>(rows.first + i).normal = glm::vec4(mesh.normals[i], 0.0F);
   }
+  auto& groups = is_body ? frame.body_groups : frame.tool_groups;
+  drawn.groups = *groups.append(1);
+  groups.template at<DrawGroup>(drawn.groups.first) = {
+      drawn.triangles, static_cast<std::uint32_t>(frame.materials.size())};
   for (std::uint32_t i = 0; i < drawn.triangles.count; ++i) {
     triangles.template at<Triangle>(drawn.triangles.first + i).vertices = mesh.triangles[i];
   }
   return rows;
+}
+
+DrawMaterial material_of(const TestThing& thing) {
+  DrawMaterial material;
+  material.color = thing.color;
+  return material;
 }
 
 struct Sizes {
@@ -106,16 +116,18 @@ FrameWorld make_frame_world(const std::vector<TestThing>& bodies,
   frame.tools.reserve(count(tools));
   frame.body_vertices.reserve(body_sizes.vertices);
   frame.body_triangles.reserve(body_sizes.triangles);
+  frame.body_groups.reserve(count(bodies));
   frame.twist.reserve(body_sizes.vertices * kMaxRegionsPerBody);
   frame.axes.reserve(count(bodies) * kMaxRegionsPerBody);
   frame.tool_vertices.reserve(tool_sizes.vertices);
   frame.tool_triangles.reserve(tool_sizes.triangles);
+  frame.tool_groups.reserve(count(tools));
   for (const TestThing& thing : bodies) {
     const std::uint32_t row = frame.bodies.append()->first;
     frame.bodies.at<Pose>(row) = thing.pose;
     auto& drawn = frame.bodies.at<DrawRange>(row);
-    drawn.color = thing.color;
     const Range rows = append_mesh(thing.mesh, frame.body_vertices, frame, true, drawn);
+    frame.materials.push_back(material_of(thing));
     frame.bodies.at<FrameBody>(row).twist = *frame.twist.append(rows.count * kMaxRegionsPerBody);
     frame.bodies.at<FrameBody>(row).axes = *frame.axes.append(kMaxRegionsPerBody);
   }
@@ -123,8 +135,8 @@ FrameWorld make_frame_world(const std::vector<TestThing>& bodies,
     const std::uint32_t row = frame.tools.append()->first;
     frame.tools.at<Pose>(row) = thing.pose;
     auto& drawn = frame.tools.at<DrawRange>(row);
-    drawn.color = thing.color;
     append_mesh(thing.mesh, frame.tool_vertices, frame, false, drawn);
+    frame.materials.push_back(material_of(thing));
   }
   return frame;
 }

@@ -71,7 +71,7 @@ TEST_F(RendererTest, EveryPathIsSilentUnderValidation) {
       for (const HeatMap map : {HeatMap::kNone, HeatMap::kTwist, HeatMap::kPressure}) {
         DrawOptions draw;
         draw.heat_map = map;
-        draw.transparent_tools = map != HeatMap::kTwist;
+        draw.tools = map == HeatMap::kTwist ? ToolLook::kOpaque : ToolLook::kGlass;
         draw.arrows = map != HeatMap::kNone;
         draw.ground = map != HeatMap::kPressure;
         // Without waiting, so that frames overlap.

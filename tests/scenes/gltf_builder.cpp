@@ -57,7 +57,7 @@ int GltfBuilder::add_view(std::string_view bytes) {
 }
 
 int GltfBuilder::add_floats(const std::vector<float>& values, const std::string& type) {
-  const std::size_t width = type == "SCALAR" ? 1 : (type == "VEC3" ? 3 : 4);
+  const std::size_t width = type == "SCALAR" ? 1U : static_cast<std::size_t>(type.back() - '0');
   const int view = add_view(bytes_of(values));
   return append(document, "accessors",
                 {{"bufferView", view},

@@ -92,9 +92,9 @@ TEST(LoadGltfTest, KeysOfTheSceneSayHowAWindowShowsIt) {
   EXPECT_EQ(usual.speed, 1.0);
   EXPECT_EQ(usual.colors, "material");
   builder.document["scenes"][0]["extras"] = {
-      {"torsion_title", "A title"}, {"torsion_caption", "Look here."},
-      {"torsion_loop", 0},          {"torsion_speed", 0.2},
-      {"torsion_colors", "twist"},  {"torsion_stick_slip", true}};
+      {"torsion_title", "A title"}, {"torsion_caption", "Look here."}, {"torsion_loop", 0},
+      {"torsion_speed", 0.2},       {"torsion_colors", "twist"},       {"torsion_stick_slip", true},
+      {"torsion_lines", false}};
   const SceneView view = scene_of(load_text(builder.text())).view;
   EXPECT_EQ(view.title, "A title");
   EXPECT_EQ(view.caption, "Look here.");
@@ -102,6 +102,8 @@ TEST(LoadGltfTest, KeysOfTheSceneSayHowAWindowShowsIt) {
   EXPECT_EQ(view.speed, 0.2);
   EXPECT_EQ(view.colors, "twist");
   EXPECT_TRUE(view.stick_slip);
+  EXPECT_TRUE(usual.lines);
+  EXPECT_FALSE(view.lines);
 }
 
 // A cube and a ball that are nodes with two keys each.
@@ -127,7 +129,7 @@ TEST(LoadGltfTest, ShapesOfASizeNeedNoMesh) {
   const ToolDescription& tool = scene_of(loaded).tools[0];
   EXPECT_EQ(tool.parts[0].shape.kind, ShapeKind::kSphere);
   EXPECT_EQ(tool.parts[0].shape.half_extent.x, 0.01);
-  EXPECT_NE(body.draw.color, tool.draw.color);
+  EXPECT_NE(body.draw.materials[0].color, tool.draw.materials[0].color);
 }
 
 TEST(LoadGltfTest, AShapeWithoutAMeshDrawsWhatIsFelt) {
@@ -205,10 +207,11 @@ TEST(LoadGltfTest, NodeScaleGoesIntoTheMeshAndNotIntoTheFrame) {
 TEST(LoadGltfTest, MeshesBelowAToolAreItsParts) {
   GltfBuilder builder = good_scene();
   const int mesh = builder.add_mesh(box_mesh(glm::dvec3(0.01)));
-  const int grip = builder.add_node({{"name", "grip"},
-                                     {"mesh", mesh},
-                                     {"translation", {0.0, 0.03, 0.0}},
-                                     {"extras", {{"torsion_shape", "sphere"}}}});
+  const int grip =
+      builder.add_node({{"name", "grip"},
+                        {"mesh", mesh},
+                        {"translation", {0.0, 0.03, 0.0}},
+                        {"extras", {{"torsion_shape", "sphere"}, {"torsion_draw", "mesh"}}}});
   builder.put_below(grip, 1);
   const LoadedScene loaded = load_text(builder.text());
   ASSERT_EQ(scene_of(loaded).tools.size(), 1U);
@@ -270,6 +273,7 @@ TEST(LoadGltfTest, OpenMeshIsFineWhereAnExactShapeIsFelt) {
   GltfBuilder builder = good_scene();
   builder.document["accessors"][1]["count"] = 30;  // without the face at z = +0.05
   builder.node("cube")["extras"]["torsion_shape"] = "box";
+  builder.node("cube")["extras"]["torsion_draw"] = "mesh";
   const LoadedScene loaded = load_text(builder.text());
   ASSERT_EQ(scene_of(loaded).bodies.size(), 1U);
   EXPECT_EQ(scene_of(loaded).bodies[0].draw.triangles.size(), 10U);

@@ -27,8 +27,8 @@ Read read(const GltfBuilder& builder, const glm::dmat4& to_owner = glm::dmat4(1.
                                          static_cast<unsigned int>(text.size()), "."))
       << errors;
   Read result;
-  result.mesh =
-      read_mesh(model, model.meshes.at(0), to_owner, "node \"n\"", {"f.gltf", result.found});
+  result.mesh = read_mesh(model, model.meshes.at(0), to_owner, {read_images(model), {}},
+                          "node \"n\"", {"f.gltf", result.found});
   return result;
 }
 
@@ -180,14 +180,17 @@ TEST(MeshPartsTest, FixedAttributeOfOnePrimitiveLeavesTheOthersFree) {
   }
 }
 
-TEST(MeshPartsTest, ColorIsThatOfTheFirstMaterial) {
+TEST(MeshPartsTest, MaterialsAreTheirs) {
   GltfBuilder builder = zigzag(TINYGLTF_MODE_TRIANGLE_STRIP, {});
   builder.document["materials"] = {
       {{"pbrMetallicRoughness", {{"baseColorFactor", {0.25, 0.5, 0.75, 0.5}}}}}};
   builder.document["meshes"][0]["primitives"][0]["material"] = 0;
   DrawMesh draw;
   append_draw_mesh(read(builder).mesh, draw);
-  EXPECT_EQ(draw.color, glm::vec4(0.25F, 0.5F, 0.75F, 0.5F));
+  ASSERT_EQ(draw.materials.size(), 1U);
+  EXPECT_EQ(draw.materials[0].color, glm::vec4(0.25F, 0.5F, 0.75F, 0.5F));
+  EXPECT_EQ(draw.materials[0].alpha_mode, AlphaMode::kOpaque);  // as glTF says of no alphaMode
+  EXPECT_EQ(draw.materials[0].metallic, 1.0F);                  // likewise
 }
 
 TEST(MeshPartsTest, DrawnMeshesFollowEachOther) {

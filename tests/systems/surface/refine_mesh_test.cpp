@@ -157,5 +157,30 @@ TEST(RefineMeshTest, WhereTheBoundIsTightEdgesAreLonger) {
   expect_same_solid(mesh, 6.0 * 0.01, 1e-3);
 }
 
+TEST(RefineMeshTest, TextureAndMaterialsStayWhereTheyAre) {
+  DrawMesh mesh = box(glm::vec3(1.0F, 0.5F, 2.0F));
+  for (const glm::vec3& p : mesh.positions) {
+    mesh.texcoords.emplace_back(p.x + 2.0F * p.y, 3.0F * p.z);
+  }
+  mesh.materials.resize(3);
+  for (std::uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+    mesh.triangle_materials.push_back(triangle / 4);  // an axis
+  }
+  DrawnDetail detail;
+  detail.everywhere = 0.3;
+  refine_mesh(mesh, detail);
+  ASSERT_EQ(mesh.texcoords.size(), mesh.positions.size());
+  ASSERT_EQ(mesh.triangle_materials.size(), mesh.triangles.size());
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const glm::vec3& p = mesh.positions[i];
+    EXPECT_NEAR(mesh.texcoords[i].x, p.x + 2.0F * p.y, 1e-5);
+    EXPECT_NEAR(mesh.texcoords[i].y, 3.0F * p.z, 1e-5);
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto axis = static_cast<int>(mesh.triangle_materials[i]);
+    EXPECT_EQ(std::abs(mesh.normals[mesh.triangles[i].x][axis]), 1.0F);
+  }
+}
+
 }  // namespace
 }  // namespace torsion::engine

@@ -1,0 +1,174 @@
+// What materials do to pixels.
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "render/image_io.hpp"
+#include "tests/render/gpu_fixture.hpp"
+#include "tests/render/render_scenes.hpp"
+
+namespace torsion::engine {
+namespace {
+
+struct Color {
+  int r, g, b;
+};
+
+class MaterialTest : public GpuTest {
+ protected:
+  static std::shared_ptr<const EncodedImage> encoded(const Image& image) {
+    const auto path = std::filesystem::temp_directory_path() /
+                      ("torsion_material_" + std::to_string(::getpid()) + ".png");
+    must(write_png(image, path));
+    std::ifstream stream(path, std::ios::binary);
+    EncodedImage read{"test", {std::istreambuf_iterator<char>(stream), {}}};
+    std::filesystem::remove(path);
+    return std::make_shared<const EncodedImage>(std::move(read));
+  }
+
+  Image draw(const FrameWorld& frame, const Camera& camera, ToolLook look = ToolLook::kAuthored) {
+    Renderer renderer = open(options(), frame);
+    DrawOptions draw;
+    draw.grid = false;
+    draw.tools = look;
+    const Snapshot snapshot = make_snapshot(frame.tools.size(), 0);
+    return must(renderer.read_pixels(must(renderer.draw(frame, snapshot, camera, draw, nullptr))));
+  }
+
+  static Color at(const Image& image, double x, double y) {
+    const auto column = static_cast<std::size_t>(x * image.width);
+    const auto row = static_cast<std::size_t>(y * image.height);
+    const std::uint8_t* pixel = &image.rgba[4 * (row * image.width + column)];
+    return {pixel[0], pixel[1], pixel[2]};
+  }
+
+  static int sum(const Color& color) { return color.r + color.g + color.b; }
+
+  /// A slab that fills the picture, seen from above, +x to the right.
+  static FrameWorld slab() {
+    return make_frame_world({{box_mesh({0.1F, 0.01F, 0.1F}, 2), {}, {}}}, {});
+  }
+  static Camera above() { return camera_at({0.0, 0.3, 1e-4}, glm::dvec3(0.0), 0.3); }
+};
+
+TEST_F(MaterialTest, ATextureIsOnItsPlaceAndTimesTheColor) {
+  FrameWorld frame = slab();
+  // Red on the left half, green on the right one, white below.
+  Image image{4, 4, {}};
+  for (int i = 0; i < 16; ++i) {
+    const bool left = i % 4 < 2;
+    const bool low = i >= 8;
+    for (const int c : {left || low ? 255 : 0, !left || low ? 255 : 0, low ? 255 : 0, 255}) {
+      image.rgba.push_back(static_cast<std::uint8_t>(c));
+    }
+  }
+  frame.materials[0].texture = encoded(image);
+  frame.materials[0].color = {1.0F, 1.0F, 0.0F, 1.0F};
+  for (std::uint32_t i = 0; i < frame.body_vertices.size(); ++i) {
+    const glm::vec4 p = frame.body_vertices.at<VertexRest>(i).position;
+    frame.body_vertices.at<VertexTexcoord>(i).uv = {0.5F + 10.0F * p.x, 0.5F + 10.0F * p.z};
+  }
+  const Image seen = draw(frame, above());
+  const Color red = at(seen, 0.25, 0.25);
+  const Color green = at(seen, 0.75, 0.25);
+  const Color yellow = at(seen, 0.75, 0.75);  // white times the material's colour
+  EXPECT_GT(red.r, 2 * red.g);
+  EXPECT_GT(green.g, 2 * green.r);
+  EXPECT_GT(yellow.r, 150);
+  EXPECT_GT(yellow.g, 150);
+  EXPECT_LT(yellow.b, 100);  // what is mirrored
+}
+
+TEST_F(MaterialTest, ATextureThatCannotBeReadLeavesTheColor) {
+  FrameWorld frame = slab();
+  const Image plain = draw(frame, above());
+  frame.materials[0].texture =
+      std::make_shared<const EncodedImage>(EncodedImage{"broken", {0x89, 'P', 'N', 'G'}});
+  EXPECT_EQ(draw(frame, above()), plain);
+}
+
+TEST_F(MaterialTest, EachGroupOfTrianglesHasItsMaterial) {
+  FrameWorld frame = slab();
+  const Range all = frame.bodies.at<DrawRange>(0).triangles;
+  frame.body_groups = {};
+  frame.body_groups.reserve(2);
+  frame.body_groups.append(2);
+  frame.body_groups.at<DrawGroup>(0) = {{all.first, all.count / 2}, 0};
+  frame.body_groups.at<DrawGroup>(1) = {{all.first + all.count / 2, all.count / 2}, 1};
+  frame.bodies.at<DrawRange>(0).groups = {0, 2};
+  frame.materials.push_back(frame.materials[0]);
+  frame.materials[0].color = {0.9F, 0.1F, 0.1F, 1.0F};
+  frame.materials[1].color = {0.1F, 0.1F, 0.9F, 1.0F};
+  // Each half is three faces of six, of which one is out of sight.
+  int red = 0;
+  int blue = 0;
+  for (const glm::dvec3& eye :
+       {glm::dvec3(0.0, 0.3, 1e-4), glm::dvec3(0.3, 0.0, 0.0), glm::dvec3(-0.3, 0.0, 0.0),
+        glm::dvec3(0.0, 0.0, 0.3), glm::dvec3(0.0, 0.0, -0.3)}) {
+    const Color seen = at(draw(frame, camera_at(eye, glm::dvec3(0.0), 0.05)), 0.5, 0.5);
+    red += seen.r > 2 * seen.b ? 1 : 0;
+    blue += seen.b > 2 * seen.r ? 1 : 0;
+  }
+  EXPECT_EQ(red + blue, 5);
+  EXPECT_GE(std::min(red, blue), 2);
+}
+
+TEST_F(MaterialTest, AMetalHasTheColorInWhatItMirrorsAndNoOther) {
+  FrameWorld frame = slab();
+  frame.materials[0].color = {0.9F, 0.5F, 0.1F, 1.0F};
+  frame.materials[0].roughness = 0.3F;
+  const Color plastic = at(draw(frame, above()), 0.5, 0.5);
+  frame.materials[0].metallic = 1.0F;
+  const Color metal = at(draw(frame, above()), 0.5, 0.5);
+  // From above it mirrors the ceiling, which is darker than what a diffuse surface gathers.
+  EXPECT_LT(sum(metal), sum(plastic));
+  EXPECT_GT(metal.r, 2 * metal.b);
+}
+
+TEST_F(MaterialTest, AnOpaqueToolCastsADeeperShadowThanGlass) {
+  // The shadow falls beside the body on the floor, where the tool is not in the picture: from the
+  // ball's middle against the light, whose direction is (-0.45, 0.85, 0.40).
+  const glm::dvec3 ball(0.12, 0.1, 0.0);
+  const glm::dvec3 shadow = ball - glm::dvec3(-0.45, 0.85, 0.40) * (ball.y / 0.85);
+  const Camera camera = camera_at(shadow + glm::dvec3(0.05, 0.4, 0.001), shadow, 0.05);
+  FrameWorld frame = make_frame_world(
+      {{box_mesh(glm::vec3(0.05F), 2), {{0.0, 0.05, 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)}, {}}},
+      {{sphere_mesh(0.02F, 8), {ball, glm::dquat(1.0, 0.0, 0.0, 0.0)}, {}}});
+  const auto brightness = [&](ToolLook look) {
+    return sum(at(draw(frame, camera, look), 0.5, 0.5));
+  };
+  const int glass = brightness(ToolLook::kGlass);
+  const int opaque = brightness(ToolLook::kOpaque);
+  EXPECT_LT(opaque, glass - 30);
+  const std::uint32_t row = frame.tool_groups.at<DrawGroup>(0).material;
+  EXPECT_EQ(brightness(ToolLook::kAuthored), glass);  // nobody said what it is made of
+  frame.materials[row].alpha_mode = AlphaMode::kOpaque;
+  EXPECT_EQ(brightness(ToolLook::kAuthored), opaque);
+  frame.materials[row].alpha_mode = AlphaMode::kBlend;
+  EXPECT_EQ(brightness(ToolLook::kAuthored), glass);
+  EXPECT_GT(sum(at(draw(slab(), above()), 0.5, 0.5)), 0);
+}
+
+TEST_F(MaterialTest, ALongToolCastsTheShadowOfItsFarEnd) {
+  // A rod that reaches far nearer to the light than the shadow map does.
+  const auto rod = [](float half) {
+    return make_frame_world(
+        {{box_mesh(glm::vec3(0.05F), 2), {{0.0, 0.05, 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)}, {}}},
+        {{box_mesh({0.01F, half, 0.01F}, 2),
+          {{0.0, 0.12 + static_cast<double>(half), 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)},
+          {}}});
+  };
+  // Where the light through a point of the rod at a height of 0.25 m meets the floor.
+  const glm::dvec3 shadow = glm::dvec3(0.45, 0.0, -0.40) * (0.25 / 0.85);
+  const Camera camera = camera_at(shadow + glm::dvec3(0.01, 0.12, 0.001), shadow, 0.05);
+  EXPECT_EQ(sum(at(draw(rod(0.1F), camera, ToolLook::kOpaque), 0.5, 0.5)),
+            sum(at(draw(rod(0.6F), camera, ToolLook::kOpaque), 0.5, 0.5)));
+}
+
+}  // namespace
+}  // namespace torsion::engine

@@ -1,0 +1,104 @@
+#include "scenes/materials.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/scenes/gltf_builder.hpp"
+
+namespace torsion::engine::test {
+namespace {
+
+using nlohmann::json;
+
+/// The good scene with a texture on its body.
+GltfBuilder textured_scene() {
+  GltfBuilder builder = good_scene();
+  const std::vector<float> uv = {0, 0, 1, 0, 0, 1, 1, 1, 0.5F, 0, 0, 0.5F, 0.5F, 1, 1, 0.5F};
+  json& primitive = builder.document["meshes"][0]["primitives"][0];
+  primitive["attributes"]["TEXCOORD_0"] = builder.add_floats(uv, "VEC2");
+  primitive["material"] = 0;
+  builder.document["images"] = {{{"uri", "data:image/png;base64,iVBORw0KGgo="}}};
+  builder.document["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}};
+  builder.document["textures"] = {{{"source", 0}, {"sampler", 0}}};
+  builder.document["materials"] = {
+      {{"pbrMetallicRoughness",
+        {{"baseColorTexture", {{"index", 0}}},
+         {"metallicFactor", 0.25},
+         {"roughnessFactor", 0.75}}},
+       {"alphaMode", "BLEND"},
+       {"extensions",
+        {{"KHR_materials_diffuse_transmission", {{"diffuseTransmissionFactor", 0.4}}}}}}};
+  return builder;
+}
+
+TEST(MaterialsTest, AllThatIsDrawnIsRead) {
+  const LoadedScene loaded = load_text(textured_scene().text());
+  ASSERT_TRUE(loaded.scene.has_value()) << to_text(loaded.problems);
+  const DrawMesh& draw = loaded.scene->bodies[0].draw;
+  ASSERT_EQ(draw.materials.size(), 1U);
+  const DrawMaterial& material = draw.materials[0];
+  EXPECT_EQ(material.metallic, 0.25F);
+  EXPECT_EQ(material.roughness, 0.75F);
+  EXPECT_EQ(material.scattering, 0.4F);
+  EXPECT_EQ(material.alpha_mode, AlphaMode::kBlend);
+  EXPECT_EQ(material.wrap_u, TextureWrap::kClamp);
+  EXPECT_EQ(material.wrap_v, TextureWrap::kMirror);
+  ASSERT_TRUE(material.texture);
+  EXPECT_EQ(material.texture->bytes,
+            (std::vector<unsigned char>{0x89, 'P', 'N', 'G', 0x0D, 0x0A, 0x1A, 0x0A}));
+  ASSERT_EQ(draw.texcoords.size(), draw.positions.size());
+  EXPECT_EQ(draw.texcoords[1], glm::vec2(1.0F, 0.0F));
+  EXPECT_EQ(draw.texcoords[4], glm::vec2(0.5F, 0.0F));
+  EXPECT_EQ(loaded.scene->tools[0].draw.materials[0].alpha_mode, AlphaMode::kUnsaid);
+}
+
+TEST(MaterialsTest, ATransformOfTheTextureMovesItsCoordinates) {
+  GltfBuilder builder = textured_scene();
+  builder.document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] = {
+      {"KHR_texture_transform",
+       {{"offset", {0.1, 0.2}}, {"rotation", 1.5707963267948966}, {"scale", {2.0, 3.0}}}}};
+  const LoadedScene loaded = load_text(builder.text());
+  ASSERT_TRUE(loaded.scene.has_value()) << to_text(loaded.problems);
+  const std::vector<glm::vec2>& uv = loaded.scene->bodies[0].draw.texcoords;
+  // The extension's own words: offset (0.1, 0.2), counter-clockwise turn with v downwards.
+  EXPECT_NEAR(uv[1].x, 0.1, 1e-6);
+  EXPECT_NEAR(uv[1].y, 0.2 - 2.0, 1e-6);
+  EXPECT_NEAR(uv[2].x, 0.1 + 3.0, 1e-6);
+  EXPECT_NEAR(uv[2].y, 0.2, 1e-6);
+}
+
+TEST(MaterialsTest, CoordinatesOfAnotherKindAreRefusedOrPassedOver) {
+  GltfBuilder builder = textured_scene();
+  json& primitive = builder.document["meshes"][0]["primitives"][0];
+  primitive["attributes"]["TEXCOORD_0"] = primitive["attributes"]["POSITION"];
+  const LoadedScene loaded = load_text(builder.text());
+  EXPECT_TRUE(!loaded.scene || loaded.scene->bodies[0].draw.texcoords.empty());
+  builder.document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 3;
+  const LoadedScene missing = load_text(builder.text());
+  ASSERT_TRUE(missing.scene.has_value());
+  EXPECT_TRUE(missing.scene->bodies[0].draw.texcoords.empty());
+}
+
+TEST(MaterialsTest, AnExactShapeIsDrawnAsItIsFeltUnlessToldOtherwise) {
+  GltfBuilder builder = textured_scene();
+  builder.node("cube")["extras"]["torsion_shape"] = "sphere";
+  const auto farthest = [](const LoadedScene& loaded) {
+    float largest = 0.0F;
+    for (const glm::vec3& p : loaded.scene->bodies[0].draw.positions) {
+      largest = std::max(largest, glm::length(p));
+    }
+    return largest;
+  };
+  const LoadedScene shape = load_text(builder.text());
+  ASSERT_TRUE(shape.scene.has_value()) << to_text(shape.problems);
+  EXPECT_NEAR(farthest(shape), 0.05, 1e-6);
+  EXPECT_EQ(shape.scene->bodies[0].draw.materials[0].metallic, 0.25F);
+  EXPECT_FALSE(shape.scene->bodies[0].draw.materials[0].texture);
+  builder.node("cube")["extras"]["torsion_draw"] = "mesh";
+  const LoadedScene mesh = load_text(builder.text());
+  ASSERT_TRUE(mesh.scene.has_value());
+  EXPECT_NEAR(farthest(mesh), 0.05 * std::sqrt(3.0), 1e-6);
+  EXPECT_TRUE(mesh.scene->bodies[0].draw.materials[0].texture);
+}
+
+}  // namespace
+}  // namespace torsion::engine::test

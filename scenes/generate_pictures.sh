@@ -23,3 +23,8 @@ picture compass_on_ellipsoid_soft 2 340x226 50
 picture mallet_on_ellipsoid_soft 2 340x226 50
 picture many_regions 2 300x200 20
 picture two_bodies 2 340x226 28
+picture looks/finger_on_lid 2 270x180 18 --heat none
+picture looks/screwdriver_on_gel 2.8 280x184 40 --heat none
+picture looks/stethoscope_on_belly 2.4 250x165 12 --heat none
+picture looks/knob_on_mat 2 250x165 12 --heat none
+picture looks/drill_on_foam 2.4 280x184 36 --heat none

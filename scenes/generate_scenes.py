@@ -6,7 +6,9 @@ import pathlib
 import sys
 
 from generate.catalogue import all_files
+from generate.looks import looks
 from generate.templates import templates
+from generate.textures import all_textures
 
 
 def main():
@@ -15,7 +17,7 @@ def main():
         print("usage: generate_scenes.py [--check]", file=sys.stderr)
         return 2
     stale = 0
-    for name, content in sorted((all_files() | templates()).items()):
+    for name, content in sorted((all_files() | looks() | all_textures() | templates()).items()):
         path = folder / name
         if sys.argv[1:] == ["--check"]:
             if not path.is_file() or path.read_bytes() != content:

@@ -64,6 +64,7 @@ std::vector<GalleryEntry> read_gallery(const fs::path& scenes) {
   std::vector<GalleryEntry> gallery;
   add_titled(scenes / "gallery", gallery);
   add_titled(scenes, gallery);
+  add_titled(scenes / "looks", gallery);
   for (GalleryEntry& entry : gallery) {
     Result<Image> picture = read_png(scenes / "gallery" / entry.file.stem().concat(".png"));
     if (picture && picture.value().width == kCardWidth && picture.value().height == kCardHeight) {

@@ -14,13 +14,13 @@ SOFT = {**RUBBER, "torsion_youngs_modulus": 1e4}
 STICKY = {**RUBBER, "torsion_static_friction": 0.9375}
 
 BODY_COLOR = [0.80, 0.42, 0.22, 1.0]
-TOOL_COLOR = [0.25, 0.38, 0.55, 1.0]
+TOOL_COLOR = [0.25, 0.38, 0.55, 0.13]  # glass, so that the contact shows through
 
 
 def start(bin_name, eye, at, field_of_view=0.5):
     gltf = Gltf(bin_name)
-    gltf.body_material = gltf.material("rubber", BODY_COLOR)
-    gltf.tool_material = gltf.material("steel", TOOL_COLOR)
+    gltf.body_material = gltf.material("rubber", BODY_COLOR, roughness=0.5)
+    gltf.tool_material = gltf.material("glass", TOOL_COLOR, roughness=0.15, glass=True)
     gltf.camera("camera", eye, motions.looking(eye, at), field_of_view)
     return gltf
 

@@ -51,19 +51,45 @@ class Gltf:
         self.doc["accessors"].append(accessor)
         return len(self.doc["accessors"]) - 1
 
-    def material(self, name, color):
-        self.doc["materials"].append({"name": name, "pbrMetallicRoughness": {
-            "baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.6}})
+    def material(self, name, color, metal=0.0, roughness=0.6, glass=False, scattering=0.0, texture=None):
+        """texture: of the base colour, a file beside the scene; glass: seen through by the colour's alpha;
+        scattering: how much light goes on inside."""
+        look = {"baseColorFactor": color, "metallicFactor": metal, "roughnessFactor": roughness}
+        material = {"name": name, "pbrMetallicRoughness": look}
+        if texture:
+            look["baseColorTexture"] = {"index": self.texture(texture)}
+        if glass:
+            material["alphaMode"] = "BLEND"
+        if scattering:
+            extension = "KHR_materials_diffuse_transmission"
+            material["extensions"] = {extension: {"diffuseTransmissionFactor": scattering}}
+            if extension not in self.doc.setdefault("extensionsUsed", []):
+                self.doc["extensionsUsed"].append(extension)
+        self.doc["materials"].append(material)
         return len(self.doc["materials"]) - 1
 
-    def mesh(self, name, mesh, material):
+    def texture(self, uri):
+        images = self.doc.setdefault("images", [])
+        if {"uri": uri} not in images:
+            images.append({"uri": uri})
+        self.doc.setdefault("textures", []).append({"source": images.index({"uri": uri})})
+        return len(self.doc["textures"]) - 1
+
+    def primitive(self, mesh, material):
         attributes = {
             "POSITION": self.accessor(0, mesh.positions, "VEC3", FLOAT, VERTICES, bounds=True),
             "NORMAL": self.accessor(0, mesh.normals, "VEC3", FLOAT, VERTICES)}
+        if mesh.texcoords:
+            attributes["TEXCOORD_0"] = self.accessor(0, mesh.texcoords, "VEC2", FLOAT, VERTICES)
         corners = [(corner,) for triangle in mesh.triangles for corner in triangle]
-        self.doc["meshes"].append({"name": name, "primitives": [{
-            "attributes": attributes, "material": material,
-            "indices": self.accessor(0, corners, "SCALAR", USHORT, INDICES)}]})
+        return {"attributes": attributes, "material": material,
+                "indices": self.accessor(0, corners, "SCALAR", USHORT, INDICES)}
+
+    def mesh(self, name, mesh, material):
+        """mesh, material: one each, or as many of both."""
+        meshes, materials = (mesh, material) if isinstance(mesh, list) else ([mesh], [material])
+        self.doc["meshes"].append({"name": name, "primitives": [
+            self.primitive(*pair) for pair in zip(meshes, materials)]})
         return len(self.doc["meshes"]) - 1
 
     def node(self, name, parent=None, **members):

@@ -8,11 +8,22 @@ class Mesh:
         self.positions = []
         self.normals = []
         self.triangles = []
+        self.texcoords = []  # as many as positions, or none
 
     def add(self, position, normal):
         self.positions.append(position)
         self.normals.append(normal)
         return len(self.positions) - 1
+
+
+    def painted(self, uv):
+        """With uv(position, normal) at each vertex."""
+        self.texcoords = [uv(*both) for both in zip(self.positions, self.normals)]
+        return self
+
+    def moved(self, x, y, z):
+        self.positions = [(a + x, b + y, c + z) for a, b, c in self.positions]
+        return self
 
 
 def normalized(v):

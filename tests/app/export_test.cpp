@@ -325,5 +325,29 @@ TEST(ExportTest, ARunOfTooManyMomentsIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(folder / "run.glb"));
 }
 
+TEST(ExportTest, MaterialsAndTexturesGoWithTheirMeshes) {
+  const tinygltf::Model model = exported("looks/finger_on_lid", "0", "look.glb");
+  const tinygltf::Mesh& jar = model.meshes.at(0);
+  ASSERT_EQ(jar.primitives.size(), 3U);  // the lid's top, its rim, the pot
+  const auto material_of = [&](std::size_t primitive) -> const tinygltf::Material& {
+    return model.materials.at(static_cast<std::size_t>(jar.primitives.at(primitive).material));
+  };
+  EXPECT_NEAR(material_of(0).pbrMetallicRoughness.roughnessFactor, 0.45, 1e-6);
+  EXPECT_NEAR(material_of(2).pbrMetallicRoughness.roughnessFactor, 0.18, 1e-6);
+  EXPECT_EQ(material_of(1).pbrMetallicRoughness.baseColorTexture.index, -1);
+  const int texture = material_of(0).pbrMetallicRoughness.baseColorTexture.index;
+  ASSERT_GE(texture, 0);
+  EXPECT_EQ(jar.primitives[0].attributes.count("TEXCOORD_0"), 1U);
+  // Decoded by tinygltf's own reader: the picture of the file beside the scene.
+  const tinygltf::Image& image = model.images.at(
+      static_cast<std::size_t>(model.textures.at(static_cast<std::size_t>(texture)).source));
+  EXPECT_EQ(image.width, 256);
+  EXPECT_EQ(image.height, 256);
+  const tinygltf::Material& skin =
+      model.materials.at(static_cast<std::size_t>(model.meshes.at(1).primitives.at(0).material));
+  EXPECT_EQ(skin.extensions.count("KHR_materials_diffuse_transmission"), 1U);
+  EXPECT_EQ(model.images.size(), 2U);  // the skin's once, for three parts
+}
+
 }  // namespace
 }  // namespace torsion::engine

@@ -49,8 +49,8 @@ OWNED_LIBRARIES = {
     "ceres/": "app",
     "hdf5": "app",
 }
-# What a part of a folder may include besides: the report compares with the references of the tests.
-ALLOWED_BESIDES = {"app/report/": "tests/reference/"}
+# What a part of a folder may include besides: the report and the window show the references of the tests.
+ALLOWED_BESIDES = {"app/report/": "tests/reference/", "app/view/exact_curves": "tests/reference/exact/"}
 SUFFIXES = {".cpp", ".hpp", ".h", ".comp", ".vert", ".frag", ".glsl"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 

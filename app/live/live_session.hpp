@@ -48,6 +48,7 @@ class LiveSession {
   [[nodiscard]] const LiveFrame& frame() const { return loop_.frames.front(); }
   /// The world that the newest frame is of, for what is constant in it, and what draws it.
   [[nodiscard]] Generation& shown() { return *generations_.front(); }
+  [[nodiscard]] const Generation& shown() const { return *generations_.front(); }
 
   /// Every row since the last call, in order.
   template <class F>

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <imgui.h>
 
+#include "app/view/exact_curves.hpp"
 #include "app/view/panel_style.hpp"
 #include "app/view/plots.hpp"
 #include "render/arrows.hpp"
@@ -25,7 +26,7 @@ constexpr float kTimingPlot = 44.0F;
 /// Curves of what `value` takes from a point, over the last seconds.
 template <class F>
 Curve over_time(const History& history, double seconds, const char* name, ImU32 color, F&& value) {
-  Curve curve{name, color, {}, {}};
+  Curve curve{name, color, {}, {}, false};
   const double end = history.size() == 0 ? 0.0 : history[history.size() - 1].time;
   for (std::size_t i = 0; i < history.size(); ++i) {
     if (history[i].time > end - seconds) {
@@ -86,7 +87,7 @@ bool region_plot(const ViewState& state, const RegionHistory& history, double le
   std::vector<Curve> curves;
   for (std::size_t row = 0; row < now.count; ++row) {
     const std::uint64_t order = now.regions[row].order;
-    Curve curve{fmt::format("{}", order + 1), shade(row, now.count), {}, {}};
+    Curve curve{fmt::format("{}", order + 1), shade(row, now.count), {}, {}, false};
     for (std::size_t i = 0; i < history.size(); ++i) {
       const RegionHistory::Moment& moment = history[i];
       if (moment.time > now.time - state.plot_seconds) {
@@ -115,7 +116,7 @@ void region_lines(const RegionHistory::Moment& now) {
 /// curve with it.
 Curve over_turn(const History& history, std::uint64_t generation, const std::string& name,
                 ImU32 color) {
-  Curve curve{name, color, {}, {}};
+  Curve curve{name, color, {}, {}, false};
   std::uint64_t contact = 0;
   for (std::size_t i = 0; i < history.size(); ++i) {
     const PlotPoint& point = history[i];
@@ -157,8 +158,47 @@ void turn_plot(const ViewState& state, const LiveSession& session) {
       least = std::max(least, least_torque(state.histories[tool]));
     }
   }
+  const auto exact =
+      exact_contact(session.scene(), session.shown().simulation.world.model, state.tool);
+  if (exact) {
+    Curve curve = exact_over_turn(history, now, *exact);
+    if (!curve.x.empty()) {
+      curves.push_back(std::move(curve));
+    }
+  }
   curves.push_back(over_turn(history, now, name_of_tool(state.tool), kDarkCurve));
   draw_plot({"Couple (N m) by turn", "deg", 0.0, 0.0, least}, curves, kTurnPlot);
+}
+
+/// Couple against friction force, where both are there, with the limit of a contact that slips as a
+/// whole.
+void limit_plot(const ViewState& state, const LiveSession& session) {
+  constexpr double kSlides = 0.05;  // of mu F
+  const History& history = state.histories[state.tool];
+  const auto exact =
+      exact_contact(session.scene(), session.shown().simulation.world.model, state.tool);
+  if (!exact || history.size() == 0) {
+    return;
+  }
+  const PlotPoint& now = history[history.size() - 1];
+  const double limit = exact->friction * now.normal_force;
+  Curve path{"", kDarkCurve, {}, {}, false};
+  bool slides = false;
+  bool spins = false;
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    const PlotPoint& point = history[i];
+    if (now.region != 0 && point.region == now.region && point.generation == now.generation) {
+      path.x.push_back(point.friction_force);
+      path.y.push_back(std::abs(point.couple));
+      slides = slides || point.friction_force > kSlides * limit;
+      spins = spins || std::abs(point.couple) > kSlides * limit * point.radius;
+    }
+  }
+  if (slides && spins) {
+    const std::array<Curve, 2> curves = {exact_limit(now.normal_force, *exact), std::move(path)};
+    draw_plot({"Couple (N m) by friction", "N", 0.0, 0.0, least_torque(history), true}, curves,
+              kTurnPlot);
+  }
 }
 
 void choose_tool(ViewState& state, const LiveSession& session) {
@@ -196,6 +236,7 @@ void draw_felt(ViewState& state, const LiveSession& session) {
   state.contact_axes = axes == 0;
   const History& history = state.histories[state.tool];
   bool hovered = wrench_plots(state, history);
+  limit_plot(state, session);
   turn_plot(state, session);
   const RegionHistory& regions = state.region_histories[state.tool];
   if (regions.size() > 0 && regions[regions.size() - 1].count > 1) {

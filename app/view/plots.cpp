@@ -74,7 +74,8 @@ void draw_curves(ImDrawList& list, const Place& place, std::span<const Curve> cu
   for (const Curve& curve : curves) {
     points.clear();
     const auto flush = [&] {
-      list.AddPolyline(points.data(), static_cast<int>(points.size()), curve.rgba, 0, 1.8F);
+      list.AddPolyline(points.data(), static_cast<int>(points.size()), curve.rgba, 0,
+                       curve.wide ? 5.0F : 1.8F);
       points.clear();
     };
     for (std::size_t i = 0; i < curve.x.size(); ++i) {

@@ -12,6 +12,7 @@ struct Curve {
   std::uint32_t rgba = 0;  // as ImGui's IM_COL32
   std::vector<double> x;
   std::vector<double> y;
+  bool wide = false;  // so that it is seen beside one that lies on it
 };
 
 /// How a plot's axes are laid out.

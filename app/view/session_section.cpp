@@ -102,7 +102,11 @@ bool line(const ViewState& state, std::size_t i) {
 
 void draw_gallery_cards(ViewState& state) {
   constexpr std::size_t kColumns = 4;
+  constexpr std::size_t kAtFirst = 11;  // three rows, with a button for the others
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(4.0F, 4.0F));
+  const auto all = static_cast<std::size_t>(std::ranges::count_if(
+      state.cards, [](const CardPictures& card) { return card.small.width > 0.0F; }));
+  const bool folded = !state.all_cards && all > kAtFirst + 1;
   std::size_t cards = 0;
   for (std::size_t i = 0; i < state.gallery.size(); ++i) {
     if (state.cards[i].small.width == 0.0F) {
@@ -110,6 +114,11 @@ void draw_gallery_cards(ViewState& state) {
     }
     if (cards++ % kColumns != 0) {
       ImGui::SameLine();
+    }
+    if (folded && cards > kAtFirst) {
+      const ImVec2 size(kCardWidth / 3.0F, kCardHeight / 3.0F);
+      state.all_cards = ImGui::Button(fmt::format("{} more", all - kAtFirst).c_str(), size);
+      break;
     }
     if (card(state, i)) {
       state.wants_entry = i;

@@ -66,6 +66,7 @@ struct ViewState {
   bool loop = true;                   // the scene begins again after its animation
   std::vector<GalleryEntry> gallery;  // scenes to choose from
   std::vector<CardPictures> cards;    // (gallery)
+  bool all_cards = false;             // the gallery shows more than three rows
   std::optional<std::size_t> entry;   // which of them is shown; none: a scene of one's own
   bool opening = false;               // another scene is being read and prepared
 

@@ -202,7 +202,7 @@ void add_simulate(CLI::App& app, Command& command) {
                              "Recording to run again: the same bits, its models and its rate");
   subcommand
       ->add_option("--device", options->device.what,
-                   "What holds the tool: usb, or usb:falcon+odrive and the like")
+                   "What holds the tool: usb, usb:falcon+odrive and the like, or gateway[:PORT]")
       ->needs(realtime);
   add_device_options(*subcommand, options->device);
   // A recording is of what the scene's file says and what was picked in the window.

@@ -118,7 +118,8 @@ void add_view(CLI::App& app, Command& command) {
   subcommand->add_option("--screenshot", options->viewer.screenshot,
                          "PNG to write of the last picture");
   subcommand->add_option("--device", options->viewer.device.what,
-                         "What holds the tool instead of the mouse: usb, or usb:falcon+odrive");
+                         "What holds the tool instead of the mouse: usb, usb:falcon+odrive, or "
+                         "gateway[:PORT]");
   add_device_options(*subcommand, options->viewer.device);
   subcommand->add_flag("--json", options->json, "Print what the session was like as JSON");
   subcommand->callback([options, &command] {

@@ -27,6 +27,8 @@ std::string trouble_text(const DeviceSample& sample) {
       return "it does not answer; is its power on?";
     case DeviceTrouble::kNotUnderstood:
       return "it does not speak as such a device should";
+    case DeviceTrouble::kNoClient:
+      return "no client speaks to the gateway; start one (docs/gateway.md)";
     case DeviceTrouble::kMotorError:
       return fmt::format("its motor has no force ({}). {}", odrive_error_text(sample.motor_errors),
                          sample.motor_errors == kOdriveWatchdog ? "It is set up anew"

@@ -33,6 +33,7 @@ enum class DeviceTrouble : std::uint8_t {
   kNotHomed,       // the user must move it through its range
   kSilent,         // it does not answer
   kNotUnderstood,  // it answers something else
+  kNoClient,       // of the gateway: nobody is there, or who was fell silent
   kMotorError,     // its motor's controller has let go: DeviceSample::motor_errors
 };
 

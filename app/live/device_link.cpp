@@ -14,6 +14,7 @@ namespace torsion::engine {
 namespace {
 
 constexpr std::string_view kUsb = "usb";
+constexpr std::string_view kGateway = "gateway";
 
 double seconds(Nanoseconds time) {
   return 1e-9 * static_cast<double>(time);
@@ -46,7 +47,7 @@ Result<std::uint32_t> kinds_of(const std::string& what) {
   }
   const Error wrong{fmt::format(
       "--device {}: expected usb, or usb: and some of spacemouse, falcon, woodenhaptics, odrive "
-      "with + between",
+      "with + between, or gateway",
       what)};
   if (what.rfind("usb:", 0) != 0) {
     return wrong;
@@ -84,6 +85,24 @@ DeviceLink::DeviceLink(const Pose& tool) {
 DeviceLink::~DeviceLink() = default;
 
 Result<std::unique_ptr<DeviceLink>> DeviceLink::open(const DeviceChoice& choice, const Pose& tool) {
+  if (choice.what.starts_with(kGateway)) {
+    Result<GatewayOptions> options = gateway_of(choice.what);
+    if (!options) {
+      return options.error();
+    }
+    auto link = std::make_unique<DeviceLink>(tool);
+    link->side_.limits.longest_silence = choice.longest_silence;
+    link->side_.hold = choice.hold;
+    options.value().on_start = [] {
+      become_realtime();
+    };
+    auto gateway = Gateway::start(std::move(options).value(), {link.get(), on_gateway_sample});
+    if (!gateway) {
+      return gateway.error();
+    }
+    link->gateway_ = std::move(gateway).value();
+    return link;
+  }
   const Result<std::uint32_t> kinds = kinds_of(choice.what);
   if (!kinds) {
     return kinds.error();
@@ -115,6 +134,19 @@ Result<std::unique_ptr<DeviceLink>> DeviceLink::open(const DeviceChoice& choice,
 
 Wrench DeviceLink::on_sample(void* link, const DeviceSample& sample) {
   return static_cast<DeviceLink*>(link)->take(sample);
+}
+
+GatewayAnswer DeviceLink::on_gateway_sample(void* link, const DeviceSample& sample) {
+  auto& self = *static_cast<DeviceLink*>(link);
+  GatewayAnswer answer;
+  answer.wrench = self.take(sample);
+  const HandleAnswer& physics = self.slot_.answer.front();
+  answer.tool = physics.time_ns != 0 ? physics.tool : self.side_.home;
+  answer.faults = physics.faults;
+  static_assert(static_cast<std::uint32_t>(GuardState::kFalling) ==
+                static_cast<std::uint32_t>(GatewayState::kFalling));
+  answer.state = static_cast<GatewayState>(self.now_.guard);
+  return answer;
 }
 
 Wrench DeviceLink::take(const DeviceSample& sample) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/run_statistics.hpp"
+#include "device/gateway/gateway.hpp"
 #include "device/handle_slot.hpp"
 #include "device/usb/usb_bus.hpp"
 #include "ecs/result.hpp"
@@ -16,7 +17,7 @@ namespace torsion::engine {
 
 /// Which devices are to hold a tool, as the command line says it.
 struct DeviceChoice {
-  std::string what;                       // "usb", or "usb:falcon+odrive"; empty: none
+  std::string what;                       // "usb", "usb:falcon+odrive", "gateway:7747"; empty: none
   std::filesystem::path falcon_firmware;  // empty: in the user's data folder, if there
   double largest_knob_torque = 0.2;       // N m
   TurnButtons turn_buttons;               // of a device that senses no turn
@@ -37,7 +38,8 @@ struct DeviceView {
   std::uint64_t losses = 0;            // times that the device was live and then not
 };
 
-/// The devices of one tool: the USB threads, and what they say to the physics thread.
+/// The devices of one tool: the USB threads or the gateway's, and what they say to the physics
+/// thread.
 class DeviceLink {
  public:
   /// @param tool  the tool's frame at the start, world: the centre of the device's workspace
@@ -56,6 +58,9 @@ class DeviceLink {
   /// One sample, in the device's thread: tells the physics, and answers with the wrench to display.
   static Wrench on_sample(void* link, const DeviceSample& sample);
 
+  /// Likewise, of a client of the gateway.
+  static GatewayAnswer on_gateway_sample(void* link, const DeviceSample& sample);
+
   /// Without USB: a test feeds on_sample itself.
   explicit DeviceLink(const Pose& tool);
 
@@ -68,7 +73,8 @@ class DeviceLink {
   TripleBuffer<DeviceView> views_;
   std::uint64_t number_ = 0;
   std::vector<std::uint8_t> firmware_;
-  std::unique_ptr<UsbBus> bus_;  // last: it ends before what its thread uses
+  std::unique_ptr<UsbBus> bus_;  // last: they end before what their threads use
+  std::unique_ptr<Gateway> gateway_;
 };
 
 /// Bits of DeviceKind that a choice allows, or what is wrong with it.

@@ -9,6 +9,7 @@
 
 #include <libusb-1.0/libusb.h>
 
+#include "device/steady_clock.hpp"
 #include "device/usb/usb_keeper.hpp"
 
 namespace torsion::engine {
@@ -18,10 +19,6 @@ constexpr double kLongestWait = 0.1;   // s: nothing of ours is missed, this is 
 constexpr double kReopen = 1.0;        // s: after an open that was not allowed
 constexpr double kLetGoTime = 0.1;     // s: for the last packets when the bus is stopped
 constexpr double kLongestClose = 3.0;  // s: a transfer that never comes back is left to the system
-
-double steady_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 }  // namespace
 

@@ -1,0 +1,274 @@
+#include "device/gateway/gateway.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "device/device_loop.hpp"
+#include "device/gateway/datagram_socket.hpp"
+#include "device/steady_clock.hpp"
+
+namespace torsion::engine {
+namespace {
+
+constexpr std::string_view kWord = "gateway";
+constexpr int kMostAtOnce = 64;  // packets that are read before one is answered
+
+}  // namespace
+
+Result<GatewayOptions> gateway_of(const std::string& what) {
+  const Error wrong{
+      fmt::format("--device {}: expected gateway, gateway:PORT with a port from 1 to 65535, or "
+                  "gateway:/PATH of a "
+                  "Unix socket",
+                  what)};
+  GatewayOptions options;
+  std::string_view rest(what);
+  rest.remove_prefix(std::min(kWord.size(), rest.size()));
+  if (rest.empty()) {
+    return options;
+  }
+  if (rest.size() < 2 || rest.front() != ':') {
+    return wrong;
+  }
+  rest.remove_prefix(1);
+  if (rest.front() == '/') {
+    options.socket = rest;
+    return options;
+  }
+  const auto [end, failed] = std::from_chars(rest.data(), rest.data() + rest.size(), options.port);
+  if (failed != std::errc() || end != rest.data() + rest.size() || options.port == 0) {
+    return wrong;
+  }
+  return options;
+}
+
+/// All of it is the thread's, but for what is atomic.
+struct Gateway::State {
+  GatewayOptions options;
+  GatewaySink sink;
+  Descriptor socket;
+  Descriptor stop;
+  std::uint16_t port = 0;
+  std::thread thread;
+
+  Address client;  // who has the tool
+  std::uint32_t session = 0;
+  std::uint32_t sequence = 0;
+  bool live = false;
+  double deadline = 0.0;  // s: then the client is silent
+  double interval = 0.0;  // s: between samples, averaged
+  DeviceSample sample;
+
+  std::atomic<std::uint64_t> samples{0};
+  std::atomic<std::uint64_t> garbage{0};
+  std::atomic<std::uint64_t> stale{0};
+  std::atomic<std::uint64_t> refused{0};
+  std::atomic<std::uint64_t> silences{0};
+
+  void run();
+  void take_packets();
+  bool belongs(const GatewaySample& came, const Address& from);
+  void take(const GatewaySample& came, double now);
+  void fall_silent(double now);
+  void send(const Address& to, const GatewayAnswer& answer) const;
+  [[nodiscard]] bool wait();
+};
+
+void Gateway::State::send(const Address& to, const GatewayAnswer& answer) const {
+  const GatewayAnswerBytes bytes = encode_gateway_answer(answer);
+  // A client that is gone, or whose queue is full, hears nothing, and lets go by itself.
+  (void)::sendto(socket.number(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL, to.get(),
+                 to.length);
+}
+
+/// Whether a sample is the newest of the client that has the tool; one may have it that nobody has.
+bool Gateway::State::belongs(const GatewaySample& came, const Address& from) {
+  if (!live) {
+    session = came.session;
+    sequence = came.sequence;
+    client = from;
+    return true;
+  }
+  if (came.session != session) {
+    refused.fetch_add(1, std::memory_order_relaxed);
+    GatewayAnswer no;
+    no.session = came.session;
+    no.sequence = came.sequence;
+    no.time = steady_now();
+    no.state = GatewayState::kRefused;
+    send(from, no);
+    return false;
+  }
+  if (static_cast<std::int32_t>(came.sequence - sequence) <= 0) {
+    stale.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
+  sequence = came.sequence;
+  client = from;
+  return true;
+}
+
+/// Answers the newest of what has come.
+void Gateway::State::take_packets() {
+  std::optional<GatewaySample> newest;
+  for (int i = 0; i < kMostAtOnce; ++i) {
+    std::array<std::uint8_t, kGatewaySampleSize + 1> bytes{};
+    Address from;
+    from.length = sizeof from.storage;
+    const ssize_t size =
+        ::recvfrom(socket.number(), bytes.data(), bytes.size(), MSG_DONTWAIT,
+                   reinterpret_cast<sockaddr*>(&from.storage), &from.length);  // NOLINT
+    if (size < 0) {
+      break;
+    }
+    const auto came = decode_gateway_sample(Bytes(bytes).first(static_cast<std::size_t>(size)));
+    if (!came) {
+      garbage.fetch_add(1, std::memory_order_relaxed);
+      continue;
+    }
+    const bool was_live = live;
+    if (belongs(*came, from)) {
+      stale.fetch_add(newest ? 1U : 0U, std::memory_order_relaxed);
+      newest = came;
+      live = true;
+      sample.epoch += was_live ? 0U : 1U;
+    }
+  }
+  if (newest) {
+    take(*newest, steady_now());
+  }
+}
+
+void Gateway::State::take(const GatewaySample& came, double now) {
+  constexpr double kShare = 0.02;     // of a new interval in the average
+  constexpr double kPatience = 2.5;   // periods
+  constexpr double kLongest = 25e-3;  // s
+  const double since = now - sample.time;
+  const bool steady = sample.state == DeviceState::kLive && since < kLongest;
+  interval =
+      !steady || interval == 0.0 ? came.traits.period : interval + kShare * (since - interval);
+  sample.pose = came.pose;
+  sample.buttons = came.buttons;
+  sample.state = DeviceState::kLive;
+  sample.trouble = DeviceTrouble::kNone;
+  sample.sensed = came.sensed;
+  sample.actuated = came.actuated;
+  sample.traits = came.traits;
+  sample.number += 1;
+  sample.time = now;
+  sample.rate = 1.0 / interval;
+  sample.traits.period = period_of(came.traits.period, sample.rate);
+  deadline = now + std::clamp(kPatience * came.traits.period, kGatewaySilence, kLongest);
+  GatewayAnswer answer = sink.on_sample(sink.context, sample);
+  answer.session = session;
+  answer.sequence = came.sequence;
+  answer.time = steady_now();
+  send(client, answer);
+  samples.fetch_add(1, std::memory_order_relaxed);
+}
+
+void Gateway::State::fall_silent(double now) {
+  live = false;
+  interval = 0.0;
+  sample.state = DeviceState::kStarting;
+  sample.trouble = DeviceTrouble::kNoClient;
+  sample.number += 1;
+  sample.time = now;
+  GatewayAnswer answer = sink.on_sample(sink.context, sample);
+  answer.session = session;
+  answer.sequence = sequence;
+  answer.time = now;
+  answer.wrench = {};
+  answer.state = GatewayState::kSilent;
+  send(client, answer);
+  silences.fetch_add(1, std::memory_order_relaxed);
+}
+
+/// Until a packet or the deadline. @return false when it is to end
+bool Gateway::State::wait() {
+  std::array<pollfd, 2> waited = {{{socket.number(), POLLIN, 0}, {stop.number(), POLLIN, 0}}};
+  timespec left{};
+  if (live) {
+    const double seconds = std::max(deadline - steady_now(), 0.0);
+    left.tv_nsec = static_cast<long>(1e9 * std::min(seconds, 0.5));
+  }
+  (void)::ppoll(waited.data(), waited.size(), live ? &left : nullptr, nullptr);
+  return (waited[1].revents & POLLIN) == 0;
+}
+
+void Gateway::State::run() {
+  if (options.on_start) {
+    options.on_start();
+  }
+  sample.state = DeviceState::kStarting;
+  sample.trouble = DeviceTrouble::kNoClient;
+  sample.time = steady_now();
+  (void)sink.on_sample(sink.context, sample);
+  while (wait()) {
+    take_packets();
+    if (const double now = steady_now(); live && now >= deadline) {
+      fall_silent(now);
+    }
+  }
+  if (live) {
+    fall_silent(steady_now());
+  }
+}
+
+Gateway::Gateway(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+Result<std::unique_ptr<Gateway>> Gateway::start(GatewayOptions options, GatewaySink sink) {
+  Result<Descriptor> socket =
+      options.socket.empty() ? open_udp(options.port) : open_unix(options.socket);
+  if (!socket) {
+    return socket.error();
+  }
+  auto state = std::make_unique<State>();
+  state->options = std::move(options);
+  state->sink = sink;
+  state->socket = std::move(socket).value();
+  state->stop = Descriptor(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+  if (state->stop.number() < 0) {
+    return unusable_socket("gateway");
+  }
+  state->port = port_of(state->socket);
+  State& running = *state;
+  running.thread = std::thread([&running] { running.run(); });
+  return std::unique_ptr<Gateway>(new Gateway(std::move(state)));
+}
+
+Gateway::~Gateway() {
+  const std::uint64_t one = 1;
+  (void)!::write(state_->stop.number(), &one, sizeof one);
+  state_->thread.join();
+  if (!state_->options.socket.empty()) {
+    std::error_code gone;
+    std::filesystem::remove(state_->options.socket, gone);
+  }
+}
+
+std::uint16_t Gateway::port() const {
+  return state_->port;
+}
+
+GatewayCounts Gateway::counts() const {
+  const auto of = [](const std::atomic<std::uint64_t>& count) {
+    return count.load(std::memory_order_relaxed);
+  };
+  return {of(state_->samples), of(state_->garbage), of(state_->stale), of(state_->refused),
+          of(state_->silences)};
+}
+
+}  // namespace torsion::engine

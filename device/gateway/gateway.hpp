@@ -1,0 +1,68 @@
+#pragma once
+
+// A socket on this machine through which another program holds the tool with a device of its own.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "device/protocols/gateway.hpp"
+#include "ecs/result.hpp"
+
+namespace torsion::engine {
+
+inline constexpr std::uint16_t kGatewayPort = 7747;
+
+/// s: a client that says nothing for as long is gone, and its force with it. One that says it sends
+/// less often than that is waited for two and a half of its periods.
+inline constexpr double kGatewaySilence = 5e-3;
+
+struct GatewayOptions {
+  std::uint16_t port = kGatewayPort;  // UDP on 127.0.0.1; 0: any free one
+  std::filesystem::path socket;       // not empty: a Unix datagram socket in place of UDP
+  std::function<void()> on_start;  // in the gateway's thread, before it does anything; may be empty
+};
+
+/// "gateway", "gateway:PORT" or "gateway:/PATH". Error: it is none of these.
+Result<GatewayOptions> gateway_of(const std::string& what);
+
+/// Who wants the samples, and says what the client is told. In the gateway's thread.
+struct GatewaySink {
+  void* context = nullptr;
+  /// @return wrench, tool, state and faults; the gateway adds the rest
+  GatewayAnswer (*on_sample)(void* context, const DeviceSample& sample) = nullptr;
+};
+
+struct GatewayCounts {
+  std::uint64_t samples = 0;
+  std::uint64_t garbage = 0;   // packets that were none
+  std::uint64_t stale = 0;     // older than one before, doubled, or overtaken before it was read
+  std::uint64_t refused = 0;   // of another client while one has the tool
+  std::uint64_t silences = 0;  // times that a client fell silent
+};
+
+class Gateway {
+ public:
+  /// Starts the thread. Error: the address is in use, or the socket cannot be made there.
+  static Result<std::unique_ptr<Gateway>> start(GatewayOptions options, GatewaySink sink);
+
+  /// Tells the client that there is no force any more, and ends the thread.
+  ~Gateway();
+  Gateway(const Gateway&) = delete;
+  Gateway& operator=(const Gateway&) = delete;
+  Gateway(Gateway&&) = delete;
+  Gateway& operator=(Gateway&&) = delete;
+
+  [[nodiscard]] std::uint16_t port() const;
+  [[nodiscard]] GatewayCounts counts() const;
+
+ private:
+  struct State;
+  explicit Gateway(std::unique_ptr<State> state);
+
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace torsion::engine

@@ -168,8 +168,8 @@ void warn_of_textures(const std::string& node, const std::vector<DrawMaterial>& 
     const Result<Image> image = decode_image(texture->bytes, kLargestSide);
     if (!image) {
       warnings.push_back(
-          fmt::format("\"{}\" is drawn without its texture \"{}\": {}; save it as PNG or JPEG",
-                      node, texture->name, image.error().text));
+          fmt::format(R"("{}" is drawn without its texture "{}": {}; save it as PNG or JPEG)", node,
+                      texture->name, image.error().text));
     }
   }
 }

@@ -58,6 +58,7 @@ Image2d make_texture(const Gpu& gpu, Image image) {
     levels.push_back(halved(levels.back(), linear));
   }
   std::vector<std::span<const std::byte>> bytes;
+  bytes.reserve(levels.size());
   for (const Image& level : levels) {
     bytes.push_back(std::as_bytes(std::span(level.rgba)));
   }

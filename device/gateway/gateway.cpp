@@ -83,7 +83,7 @@ struct Gateway::State {
   void take(const GatewaySample& came, double now);
   void fall_silent(double now);
   void send(const Address& to, const GatewayAnswer& answer) const;
-  [[nodiscard]] bool wait();
+  [[nodiscard]] bool wait() const;
 };
 
 void Gateway::State::send(const Address& to, const GatewayAnswer& answer) const {
@@ -197,7 +197,7 @@ void Gateway::State::fall_silent(double now) {
 }
 
 /// Until a packet or the deadline. @return false when it is to end
-bool Gateway::State::wait() {
+bool Gateway::State::wait() const {
   std::array<pollfd, 2> waited = {{{socket.number(), POLLIN, 0}, {stop.number(), POLLIN, 0}}};
   timespec left{};
   if (live) {

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The clients of examples/gateway against the program: each holds the tool, feels the body push up, and the recording of it
 # replays to the same bits. What C clients call of their makers is emulated.
+# Their devices' services, and rclpy, are stood in for, too.
 # usage: gateway_clients_test.sh TORSION SOURCE_FOLDER
 set -euo pipefail
 torsion=$1 source=$2
@@ -47,6 +48,26 @@ for client in touch:hd:2 force_dimension:dhd:3; do
   line=$(grep '^force' "$folder/$name.txt")
   read -ra words <<< "$line"
   is_between 0.02 "${words[axis]}" 0.5 || fail "$name: $line"
+  for other in 1 2 3; do
+    [[ $other == "$axis" ]] || is_between -0.01 "${words[other]}" 0.01 || fail "$name: $line"
+  done
+done
+mcs -warnaserror -out:"$folder/client.exe" "$source/examples/gateway/TorsionGateway.cs"
+session c_sharp 7747 mono "$folder/client.exe" 7747
+# Up is z for ROS and for Haply.
+PYTHONPATH=$source/tests/gateway_stubs/ros session ros 7747 /usr/bin/python3 "$source/examples/gateway/ros2_node.py"
+/usr/bin/python3 "$source/tests/gateway_stubs/haply_service.py" 10011 > "$folder/service.txt" 2>&1 &
+service=$!
+for _ in $(seq 100); do grep -q ready "$folder/service.txt" && break || sleep 0.1; done
+session haply 7747 /usr/bin/python3 "$source/examples/gateway/haply.py" --service ws://127.0.0.1:10011 --seconds 3.5
+wait "$service" || fail "haply: $(cat "$folder/service.txt")"
+grep -q sideways "$folder/service.txt" && fail "haply: $(cat "$folder/service.txt")"
+cp "$folder/service.txt" "$folder/haply.txt"
+for check in c_sharp:2 ros:3 haply:3; do
+  IFS=: read -r name axis <<< "$check"
+  line=$(grep '^force' "$folder/$name.txt")
+  read -ra words <<< "${line//,/}"
+  is_between 0.02 "${words[6]}" 0.5 || fail "$name: $line"  # up to
   for other in 1 2 3; do
     [[ $other == "$axis" ]] || is_between -0.01 "${words[other]}" 0.01 || fail "$name: $line"
   done

@@ -44,6 +44,10 @@ for client in touch:hd:2 force_dimension:dhd:3; do
   IFS=: read -r name maker axis <<< "$client"
   cc -std=c11 -Wall -Wextra -Werror -D_DEFAULT_SOURCE -I"$source/tests/gateway_stubs" -o "$folder/$name" \
     "$source/examples/gateway/$name.c" "$source/tests/gateway_stubs/${maker}_emulator.c" -lm
+  cc -std=c11 -Wall -Wextra -Werror -D_DEFAULT_SOURCE -DCLIENT="\"$name.c\"" -I"$source/examples/gateway" \
+    -I"$source/tests/gateway_stubs" -o "$folder/rotations" "$source/tests/gateway_stubs/rotations_test.c" \
+    "$source/tests/gateway_stubs/${maker}_emulator.c" -lm
+  "$folder/rotations" || fail "$name: turns are wrong"
   session "$name" 7747 "$folder/$name"
   line=$(grep '^force' "$folder/$name.txt")
   read -ra words <<< "$line"

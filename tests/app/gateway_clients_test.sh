@@ -62,7 +62,7 @@ session c_sharp 7747 mono "$folder/client.exe" 7747
 PYTHONPATH=$source/tests/gateway_stubs/ros session ros 7747 /usr/bin/python3 "$source/examples/gateway/ros2_node.py"
 /usr/bin/python3 "$source/tests/gateway_stubs/haply_service.py" 10011 > "$folder/service.txt" 2>&1 &
 service=$!
-for _ in $(seq 100); do grep -q ready "$folder/service.txt" && break || sleep 0.1; done
+until grep -q ready "$folder/service.txt"; do sleep 0.1; done
 session haply 7747 /usr/bin/python3 "$source/examples/gateway/haply.py" --service ws://127.0.0.1:10011 --seconds 3.5
 wait "$service" || fail "haply: $(cat "$folder/service.txt")"
 grep -q sideways "$folder/service.txt" && fail "haply: $(cat "$folder/service.txt")"

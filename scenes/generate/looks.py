@@ -56,7 +56,8 @@ def fluted(mesh, flutes, depth):
     for i, (x, y, z) in enumerate(mesh.positions):
         radius = math.hypot(x, z)
         if radius > 0.0:
-            share = 1.0 - depth * (0.5 - 0.5 * math.cos(flutes * math.atan2(z, x))) / radius * min(1.0, radius / depth / 4.0)
+            groove = depth * (0.5 - 0.5 * math.cos(flutes * math.atan2(z, x)))
+            share = 1.0 - groove / radius * min(1.0, radius / depth / 4.0)
             mesh.positions[i] = (x * share, y, z * share)
     angle_step = 1e-3
     for i, (x, y, z) in enumerate(mesh.positions):
@@ -224,7 +225,8 @@ def stethoscope_on_belly():
     part(gltf, disc, "stem", rounded(0.006, -0.008, 0.008, 0.003, 48), chrome, "cylinder", (0.0, 0.0145, 0.0))
     part(gltf, disc, "tube", shapes.capsule(0.0042, 0.026, 32), black, "capsule", (0.022, 0.0185, 0.0),
          motions.about((0.0, 0.0, 1.0), 90.0))
-    gltf.show("A stethoscope on a belly", "The belly breathes under the disc while a hand turns it to and fro.", torsion_lines=False)
+    gltf.show("A stethoscope on a belly", "The belly breathes under the disc while a hand turns it to and fro.",
+              torsion_lines=False)
     return gltf.files("looks/stethoscope_on_belly")
 
 

@@ -8,8 +8,9 @@
 
 namespace torsion::engine {
 
-/// Where the tools will be at equal intervals of the scene's animations, (times) of (tools); empty
-/// where something else than an animation moves one of them, or an animation moves a body.
+/// Where the tools will be at equal intervals of the scene's animations, (times) of (tools), as
+/// seen from a body that an animation moves: where that is at rest. Empty where something else than
+/// an animation moves a tool, or an animation moves one of several bodies.
 std::vector<std::vector<Pose>> expected_poses(const SceneDescription& scene);
 
 }  // namespace torsion::engine

@@ -1,5 +1,7 @@
 #include "scenes/load_gltf.hpp"
 
+#include <cmath>
+
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
@@ -317,6 +319,31 @@ TEST(LoadGltfTest, EveryFaultOfAFileIsListedAtOnce) {
   EXPECT_EQ(loaded.problems.size(), 4U) << to_text(loaded.problems);
 }
 
+TEST(LoadGltfTest, ABodyThatTurnsUnderAToolIsAToolThatTurnsTheOtherWay) {
+  // The block stands still while the cube turns by 90 degrees about y.
+  const float half = std::sqrt(0.5F);
+  test::GltfBuilder turns = test::good_scene();
+  turns.document.erase("animations");
+  turns.node("block")["translation"] = {0.02, 0.105, 0.0};
+  turns.add_motion(0, "rotation", {0.0F, 1.0F}, {0, 0, 0, 1, 0, half, 0, half});
+  const LoadedScene turning = test::load_text(turns.text());
+  ASSERT_TRUE(turning.scene) << to_text(turning.problems);
+  const auto poses = expected_poses(*turning.scene);
+  ASSERT_FALSE(poses.empty());
+  const Pose& last = poses.back()[0];
+  EXPECT_LT(glm::length(last.position - glm::dvec3(0.0, 0.105, 0.02)), 1e-7);
+  EXPECT_NEAR(last.rotation.y, -std::sqrt(0.5), 1e-7);
+  // Of two bodies of which one moves there is no such way.
+  const int mesh = turns.add_mesh(test::box_mesh(glm::dvec3(0.01)));
+  turns.add_node({{"name", "other"},
+                  {"mesh", mesh},
+                  {"translation", {1.0, 0.0, 0.0}},
+                  {"extras", {{"torsion_role", "elastic"}}}});
+  const LoadedScene two = test::load_text(turns.text());
+  ASSERT_TRUE(two.scene) << to_text(two.problems);
+  EXPECT_TRUE(expected_poses(*two.scene).empty());
+}
+
 TEST(LoadGltfTest, AnAnimationMayMoveABody) {
   test::GltfBuilder builder = test::good_scene();
   builder.add_motion(0, "translation", {0.0F, 4.0F}, {0.0F, 0.05F, 0.0F, 0.0F, 0.09F, 0.0F});
@@ -326,7 +353,16 @@ TEST(LoadGltfTest, AnAnimationMayMoveABody) {
   EXPECT_EQ(loaded.scene->duration, 4.0);
   EXPECT_LT(glm::length(scripted_pose(body.script, 1.0).position - glm::dvec3(0.0, 0.06, 0.0)),
             1e-8);
-  EXPECT_TRUE(expected_poses(*loaded.scene).empty());
+  // The tool's way as the body sees it, from where that is at rest.
+  const auto poses = expected_poses(*loaded.scene);
+  ASSERT_FALSE(poses.empty());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const double time = 4.0 * static_cast<double>(i) / static_cast<double>(poses.size() - 1);
+    const glm::dvec3 wanted = body.pose.position +
+                              scripted_pose(loaded.scene->tools[0].script, time).position -
+                              scripted_pose(body.script, time).position;
+    EXPECT_LT(glm::length(poses[i][0].position - wanted), 1e-12) << time;
+  }
   // One that nothing moves has no script.
   EXPECT_TRUE(test::load_text(test::good_scene().text()).scene->bodies[0].script.links.empty());
 }

@@ -88,7 +88,7 @@ Result<Camera> choose_camera(const Session& session, const FrameWorld& frame,
                              const std::string& node, double aspect) {
   const std::vector<CameraDescription>& cameras = session.scene.cameras;
   if (node.empty()) {
-    return cameras.empty() ? auto_camera(frame, aspect, expected_poses(session.scene))
+    return cameras.empty() ? auto_camera(frame, aspect, scripted_poses(session.scene))
                            : camera_of(cameras.front());
   }
   const auto found = std::ranges::find(cameras, node, &CameraDescription::node);

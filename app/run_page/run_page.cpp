@@ -152,7 +152,7 @@ json camera_json(const Session& session) {
   const SceneDescription& scene = session.scene;
   const World& world = session.simulation.world;
   const FrameWorld frame = prepare_frame(scene, world.model, world.state);
-  const Camera camera = scene.cameras.empty() ? auto_camera(frame, kAspect, expected_poses(scene))
+  const Camera camera = scene.cameras.empty() ? auto_camera(frame, kAspect, scripted_poses(scene))
                                               : camera_of(scene.cameras.front());
   glm::dvec3 middle(0.0);
   for (const BodyDescription& body : scene.bodies) {

@@ -24,7 +24,7 @@ void Viewer::place_camera() {
   const double aspect = static_cast<double>(kWindowWidth) / kWindowHeight;
   const std::vector<CameraDescription>& cameras = session_->scene().cameras;
   state_.camera =
-      orbit_of(cameras.empty() ? auto_camera(frame, aspect, expected_poses(session_->scene()))
+      orbit_of(cameras.empty() ? auto_camera(frame, aspect, scripted_poses(session_->scene()))
                                : camera_of(cameras.front()),
                glm::dvec3(0.0));
 }

@@ -330,6 +330,9 @@ TEST(LoadGltfTest, ABodyThatTurnsUnderAToolIsAToolThatTurnsTheOtherWay) {
   ASSERT_TRUE(turning.scene) << to_text(turning.problems);
   const auto poses = expected_poses(*turning.scene);
   ASSERT_FALSE(poses.empty());
+  // In the world it stands still, which is what a camera is to see.
+  const Pose in_world = scripted_poses(*turning.scene).back()[0];
+  EXPECT_LT(glm::length(in_world.position - glm::dvec3(0.02, 0.105, 0.0)), 1e-7);
   const Pose& last = poses.back()[0];
   EXPECT_LT(glm::length(last.position - glm::dvec3(0.0, 0.105, 0.02)), 1e-7);
   EXPECT_NEAR(last.rotation.y, -std::sqrt(0.5), 1e-7);

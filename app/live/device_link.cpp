@@ -84,19 +84,24 @@ DeviceLink::DeviceLink(const Pose& tool) {
 
 DeviceLink::~DeviceLink() = default;
 
+std::unique_ptr<DeviceLink> DeviceLink::held_as(const DeviceChoice& choice, const Pose& tool) {
+  auto link = std::make_unique<DeviceLink>(tool);
+  link->side_.limits.longest_silence = choice.longest_silence;
+  link->side_.hold = choice.hold;
+  return link;
+}
+
 Result<std::unique_ptr<DeviceLink>> DeviceLink::open(const DeviceChoice& choice, const Pose& tool) {
   if (choice.what.starts_with(kGateway)) {
     Result<GatewayOptions> options = gateway_of(choice.what);
     if (!options) {
       return options.error();
     }
-    auto link = std::make_unique<DeviceLink>(tool);
-    link->side_.limits.longest_silence = choice.longest_silence;
-    link->side_.hold = choice.hold;
+    std::unique_ptr<DeviceLink> link = held_as(choice, tool);
     options.value().on_start = [] {
       become_realtime();
     };
-    auto gateway = Gateway::start(std::move(options).value(), {link.get(), on_gateway_sample});
+    auto gateway = Gateway::start(std::move(options).value(), {{link.get(), on_sample}, describe});
     if (!gateway) {
       return gateway.error();
     }
@@ -111,10 +116,8 @@ Result<std::unique_ptr<DeviceLink>> DeviceLink::open(const DeviceChoice& choice,
   if (!firmware) {
     return firmware.error();
   }
-  auto link = std::make_unique<DeviceLink>(tool);
+  std::unique_ptr<DeviceLink> link = held_as(choice, tool);
   link->firmware_ = std::move(firmware).value();
-  link->side_.limits.longest_silence = choice.longest_silence;
-  link->side_.hold = choice.hold;
   UsbBusOptions options;
   options.loop.kinds = kinds.value();
   options.loop.turn_axis = tool.rotation * glm::dvec3(0.0, 1.0, 0.0);
@@ -136,17 +139,14 @@ Wrench DeviceLink::on_sample(void* link, const DeviceSample& sample) {
   return static_cast<DeviceLink*>(link)->take(sample);
 }
 
-GatewayAnswer DeviceLink::on_gateway_sample(void* link, const DeviceSample& sample) {
+void DeviceLink::describe(void* link, GatewayAnswer& answer) {
+  static_assert(static_cast<std::uint32_t>(GuardState::kFalling) ==
+                static_cast<std::uint32_t>(GatewayState::kFalling));
   auto& self = *static_cast<DeviceLink*>(link);
-  GatewayAnswer answer;
-  answer.wrench = self.take(sample);
   const HandleAnswer& physics = self.slot_.answer.front();
   answer.tool = physics.time_ns != 0 ? physics.tool : self.side_.home;
   answer.faults = physics.faults;
-  static_assert(static_cast<std::uint32_t>(GuardState::kFalling) ==
-                static_cast<std::uint32_t>(GatewayState::kFalling));
   answer.state = static_cast<GatewayState>(self.now_.guard);
-  return answer;
 }
 
 Wrench DeviceLink::take(const DeviceSample& sample) {

@@ -58,13 +58,14 @@ class DeviceLink {
   /// One sample, in the device's thread: tells the physics, and answers with the wrench to display.
   static Wrench on_sample(void* link, const DeviceSample& sample);
 
-  /// Likewise, of a client of the gateway.
-  static GatewayAnswer on_gateway_sample(void* link, const DeviceSample& sample);
+  /// What a client of the gateway is told after on_sample(), besides its wrench.
+  static void describe(void* link, GatewayAnswer& answer);
 
   /// Without USB: a test feeds on_sample itself.
   explicit DeviceLink(const Pose& tool);
 
  private:
+  static std::unique_ptr<DeviceLink> held_as(const DeviceChoice& choice, const Pose& tool);
   Wrench take(const DeviceSample& sample);
 
   HandleSlot slot_;

@@ -30,8 +30,7 @@ constexpr int kMostAtOnce = 64;  // packets that are read before one is answered
 Result<GatewayOptions> gateway_of(const std::string& what) {
   const Error wrong{
       fmt::format("--device {}: expected gateway, gateway:PORT with a port from 1 to 65535, or "
-                  "gateway:/PATH of a "
-                  "Unix socket",
+                  "gateway:/PATH of a Unix socket",
                   what)};
   GatewayOptions options;
   std::string_view rest(what);
@@ -66,10 +65,12 @@ struct Gateway::State {
   Address client;  // who has the tool
   std::uint32_t session = 0;
   std::uint32_t sequence = 0;
-  bool live = false;
   double deadline = 0.0;  // s: then the client is silent
-  double interval = 0.0;  // s: between samples, averaged
-  DeviceSample sample;
+  // The client's device, as a driver has one: but for requests to a bus.
+  DriverReport report;
+  UsbIdentity identity;
+  DriverOptions driver_options;
+  UsbRequests requests;
 
   std::atomic<std::uint64_t> samples{0};
   std::atomic<std::uint64_t> garbage{0};
@@ -77,11 +78,16 @@ struct Gateway::State {
   std::atomic<std::uint64_t> refused{0};
   std::atomic<std::uint64_t> silences{0};
 
+  [[nodiscard]] bool live() const { return report.sample.state == DeviceState::kLive; }
+  [[nodiscard]] DriverCall call(double now) {
+    return {now, identity, driver_options, report, requests, sink.samples};
+  }
   void run();
   void take_packets();
+  void begin(const GatewaySample& came);
   bool belongs(const GatewaySample& came, const Address& from);
-  void take(const GatewaySample& came, double now);
-  void fall_silent(double now);
+  void take(const GatewaySample& came);
+  void fall_silent();
   void send(const Address& to, const GatewayAnswer& answer) const;
   [[nodiscard]] bool wait() const;
 };
@@ -93,10 +99,20 @@ void Gateway::State::send(const Address& to, const GatewayAnswer& answer) const 
                  to.length);
 }
 
+/// A client has the tool from here on.
+void Gateway::State::begin(const GatewaySample& came) {
+  session = came.session;
+  const double now = steady_now();
+  report.sample.rate = 0.0;
+  report.sample.time = now - came.traits.period;  // the silence before is no interval
+  DriverCall at = call(now);
+  set_state(at, DeviceState::kLive);
+}
+
 /// Whether a sample is the newest of the client that has the tool; one may have it that nobody has.
 bool Gateway::State::belongs(const GatewaySample& came, const Address& from) {
-  if (!live) {
-    session = came.session;
+  if (!live()) {
+    begin(came);
     sequence = came.sequence;
     client = from;
     return true;
@@ -138,40 +154,29 @@ void Gateway::State::take_packets() {
       garbage.fetch_add(1, std::memory_order_relaxed);
       continue;
     }
-    const bool was_live = live;
     if (belongs(*came, from)) {
       stale.fetch_add(newest ? 1U : 0U, std::memory_order_relaxed);
       newest = came;
-      live = true;
-      sample.epoch += was_live ? 0U : 1U;
     }
   }
   if (newest) {
-    take(*newest, steady_now());
+    take(*newest);
   }
 }
 
-void Gateway::State::take(const GatewaySample& came, double now) {
-  constexpr double kShare = 0.02;     // of a new interval in the average
+void Gateway::State::take(const GatewaySample& came) {
   constexpr double kPatience = 2.5;   // periods
   constexpr double kLongest = 25e-3;  // s
-  const double since = now - sample.time;
-  const bool steady = sample.state == DeviceState::kLive && since < kLongest;
-  interval =
-      !steady || interval == 0.0 ? came.traits.period : interval + kShare * (since - interval);
-  sample.pose = came.pose;
-  sample.buttons = came.buttons;
-  sample.state = DeviceState::kLive;
-  sample.trouble = DeviceTrouble::kNone;
+  DriverCall now = call(steady_now());
+  DeviceSample& sample = report.sample;
   sample.sensed = came.sensed;
   sample.actuated = came.actuated;
   sample.traits = came.traits;
-  sample.number += 1;
-  sample.time = now;
-  sample.rate = 1.0 / interval;
   sample.traits.period = period_of(came.traits.period, sample.rate);
-  deadline = now + std::clamp(kPatience * came.traits.period, kGatewaySilence, kLongest);
-  GatewayAnswer answer = sink.on_sample(sink.context, sample);
+  deadline = now.now + std::clamp(kPatience * came.traits.period, kGatewaySilence, kLongest);
+  GatewayAnswer answer;
+  answer.wrench = publish_pose(now, came.pose, came.buttons);
+  sink.describe(sink.samples.context, answer);
   answer.session = session;
   answer.sequence = came.sequence;
   answer.time = steady_now();
@@ -179,18 +184,14 @@ void Gateway::State::take(const GatewaySample& came, double now) {
   samples.fetch_add(1, std::memory_order_relaxed);
 }
 
-void Gateway::State::fall_silent(double now) {
-  live = false;
-  interval = 0.0;
-  sample.state = DeviceState::kStarting;
-  sample.trouble = DeviceTrouble::kNoClient;
-  sample.number += 1;
-  sample.time = now;
-  GatewayAnswer answer = sink.on_sample(sink.context, sample);
+void Gateway::State::fall_silent() {
+  DriverCall now = call(steady_now());
+  set_state(now, DeviceState::kStarting, DeviceTrouble::kNoClient);
+  GatewayAnswer answer;
+  sink.describe(sink.samples.context, answer);
   answer.session = session;
   answer.sequence = sequence;
-  answer.time = now;
-  answer.wrench = {};
+  answer.time = now.now;
   answer.state = GatewayState::kSilent;
   send(client, answer);
   silences.fetch_add(1, std::memory_order_relaxed);
@@ -200,11 +201,11 @@ void Gateway::State::fall_silent(double now) {
 bool Gateway::State::wait() const {
   std::array<pollfd, 2> waited = {{{socket.number(), POLLIN, 0}, {stop.number(), POLLIN, 0}}};
   timespec left{};
-  if (live) {
+  if (live()) {
     const double seconds = std::max(deadline - steady_now(), 0.0);
     left.tv_nsec = static_cast<long>(1e9 * std::min(seconds, 0.5));
   }
-  (void)::ppoll(waited.data(), waited.size(), live ? &left : nullptr, nullptr);
+  (void)::ppoll(waited.data(), waited.size(), live() ? &left : nullptr, nullptr);
   return (waited[1].revents & POLLIN) == 0;
 }
 
@@ -212,18 +213,16 @@ void Gateway::State::run() {
   if (options.on_start) {
     options.on_start();
   }
-  sample.state = DeviceState::kStarting;
-  sample.trouble = DeviceTrouble::kNoClient;
-  sample.time = steady_now();
-  (void)sink.on_sample(sink.context, sample);
+  DriverCall first = call(steady_now());
+  set_state(first, DeviceState::kStarting, DeviceTrouble::kNoClient);
   while (wait()) {
     take_packets();
-    if (const double now = steady_now(); live && now >= deadline) {
-      fall_silent(now);
+    if (live() && steady_now() >= deadline) {
+      fall_silent();
     }
   }
-  if (live) {
-    fall_silent(steady_now());
+  if (live()) {
+    fall_silent();
   }
 }
 

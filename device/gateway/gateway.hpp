@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "device/drivers/driver.hpp"
 #include "device/protocols/gateway.hpp"
 #include "ecs/result.hpp"
 
@@ -28,11 +29,11 @@ struct GatewayOptions {
 /// "gateway", "gateway:PORT" or "gateway:/PATH". Error: it is none of these.
 Result<GatewayOptions> gateway_of(const std::string& what);
 
-/// Who wants the samples, and says what the client is told. In the gateway's thread.
+/// Who wants the samples, and says what the client is told of them. In the gateway's thread.
 struct GatewaySink {
-  void* context = nullptr;
-  /// @return wrench, tool, state and faults; the gateway adds the rest
-  GatewayAnswer (*on_sample)(void* context, const DeviceSample& sample) = nullptr;
+  SampleSink samples;
+  /// Adds the tool's pose, the state and the physics' faults after the last sample.
+  void (*describe)(void* context, GatewayAnswer& answer) = nullptr;
 };
 
 struct GatewayCounts {

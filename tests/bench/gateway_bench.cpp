@@ -18,6 +18,7 @@
 #include "app/live/live_loop.hpp"
 #include "app/session.hpp"
 #include "device/scripted_motion.hpp"
+#include "tests/bench/quantile.hpp"
 #include "tests/support/paths.hpp"
 
 namespace {
@@ -93,15 +94,6 @@ RoundTrips play(std::uint16_t port, double rate, const MotionScript& script, dou
   return trips;
 }
 
-double quantile(std::vector<double>& values, double share) {
-  if (values.empty()) {
-    return std::nan("");
-  }
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
-
 bool measure(double rate) {
   auto opened = open_session(test::shipped_scene("ball_on_cube_soft"), {}, true);
   if (!opened) {
@@ -124,7 +116,7 @@ bool measure(double rate) {
   options.on_start = [] {
     become_realtime();
   };
-  auto gateway = Gateway::start(options, {&link, DeviceLink::on_gateway_sample});
+  auto gateway = Gateway::start(options, {{&link, DeviceLink::on_sample}, DeviceLink::describe});
   if (!gateway) {
     std::fprintf(stderr, "%s\n", gateway.error().text.c_str());
     return false;

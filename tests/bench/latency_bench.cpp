@@ -17,6 +17,7 @@
 #include "app/live/live_loop.hpp"
 #include "app/session.hpp"
 #include "device/scripted_motion.hpp"
+#include "tests/bench/quantile.hpp"
 #include "tests/support/paths.hpp"
 
 namespace {
@@ -80,15 +81,6 @@ Latencies play_device(DeviceLink& link, const MotionScript& script, double harde
   }
   std::printf("device thread: %s\n", describe(mode).c_str());
   return latencies;
-}
-
-double quantile(std::vector<double>& values, double share) {
-  if (values.empty()) {
-    return std::nan("");
-  }
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
 }
 
 void print_row(const char* name, std::vector<double>& values) {

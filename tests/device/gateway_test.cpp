@@ -140,19 +140,21 @@ struct Listener {
   std::atomic<std::uint32_t> epoch{0};
   std::atomic<int> state{0};
   std::atomic<double> x{0.0};
+  std::atomic<double> period{0.0};
 
-  static GatewayAnswer on_sample(void* context, const DeviceSample& sample) {
+  static Wrench on_sample(void* context, const DeviceSample& sample) {
     auto& self = *static_cast<Listener*>(context);
     self.epoch = sample.epoch;
     self.state = static_cast<int>(sample.state);
     self.x = sample.pose.position.x;
+    self.period = sample.traits.period;
     ++self.calls;
-    GatewayAnswer answer;
-    answer.wrench.force = {0.0, -2.0, 0.0};  // also where nobody should get it
-    answer.state = GatewayState::kLive;
-    return answer;
+    return {{0.0, -2.0, 0.0}, glm::dvec3(0.0)};  // also where nobody should get it
   }
-  GatewaySink sink() { return {this, on_sample}; }
+  static void describe(void* /*context*/, GatewayAnswer& answer) {
+    answer.state = GatewayState::kLive;
+  }
+  GatewaySink sink() { return {{this, on_sample}, describe}; }
 };
 
 /// A client on its own socket.
@@ -253,10 +255,12 @@ TEST(GatewayTest, ASampleIsAnsweredAndSilenceEndsTheForce) {
   EXPECT_EQ(silent->wrench.force, glm::dvec3(0.0));
   EXPECT_NE(listener.state, static_cast<int>(DeviceState::kLive));
   const std::uint32_t epoch = listener.epoch;
-  // It goes on: a new beginning.
+  // It goes on: a new beginning, whose rate knows nothing of the silence.
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
   client.send(7, 2);
   ASSERT_TRUE(client.receive(GatewayState::kLive));
   EXPECT_EQ(listener.epoch, epoch + 1);
+  EXPECT_EQ(listener.period, good_sample().traits.period);
   EXPECT_GE(gateway->counts().silences, 1U);
 }
 

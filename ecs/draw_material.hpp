@@ -2,10 +2,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <glm/vec4.hpp>
+
+#include "ecs/range.hpp"
 
 namespace torsion::engine {
 
@@ -38,5 +41,26 @@ struct DrawMaterial {
 
   bool operator==(const DrawMaterial&) const = default;
 };
+
+/// Triangles one after another that have one material.
+struct MaterialRun {
+  Range triangles;
+  std::uint32_t material = 0;
+};
+
+/// The runs of a mesh.
+/// @param materials  (triangles) their materials; empty: all have the first
+inline std::vector<MaterialRun> material_runs(std::span<const std::uint32_t> materials,
+                                              std::uint32_t triangles) {
+  std::vector<MaterialRun> runs;
+  for (std::uint32_t i = 0; i < triangles; ++i) {
+    const std::uint32_t material = materials.empty() ? 0 : materials[i];
+    if (runs.empty() || runs.back().material != material) {
+      runs.push_back({{i, 0}, material});
+    }
+    runs.back().triangles.count += 1;
+  }
+  return runs;
+}
 
 }  // namespace torsion::engine

@@ -8,20 +8,24 @@
 
 namespace torsion::engine {
 
-int append_rows(tinygltf::Model& model, int buffer, std::span<const std::byte> rows,
-                const RowKind& kind) {
+int append_view(tinygltf::Model& model, int buffer, std::span<const std::byte> bytes, int target) {
   std::vector<unsigned char>& data = model.buffers[static_cast<std::size_t>(buffer)].data;
   data.resize((data.size() + 3) / 4 * 4);
   tinygltf::BufferView view;
   view.buffer = buffer;
   view.byteOffset = data.size();
-  view.byteLength = rows.size();
-  view.target = kind.target;
-  data.resize(data.size() + rows.size());
-  std::memcpy(data.data() + view.byteOffset, rows.data(), rows.size());
+  view.byteLength = bytes.size();
+  view.target = target;
+  data.resize(data.size() + bytes.size());
+  std::memcpy(data.data() + view.byteOffset, bytes.data(), bytes.size());
   model.bufferViews.push_back(view);
+  return static_cast<int>(model.bufferViews.size()) - 1;
+}
+
+int append_rows(tinygltf::Model& model, int buffer, std::span<const std::byte> rows,
+                const RowKind& kind) {
   tinygltf::Accessor accessor;
-  accessor.bufferView = static_cast<int>(model.bufferViews.size()) - 1;
+  accessor.bufferView = append_view(model, buffer, rows, kind.target);
   accessor.componentType = kind.component;
   accessor.type = kind.type;
   accessor.count = kind.count;

@@ -17,6 +17,12 @@ struct RowKind {
   int target = 0;  // of the buffer view; 0 for none
 };
 
+/// Appends bytes to a buffer of the model, from a multiple of four, and makes a view of them.
+/// @param target  of the view; 0 for none
+/// @return the view's index
+int append_view(tinygltf::Model& model, int buffer, std::span<const std::byte> bytes,
+                int target = 0);
+
 /// Appends rows to a buffer of the model, from a multiple of four bytes as accessors must
 /// (glTF 2.0, 3.6.2.4), and makes a view and an accessor of them.
 /// @return the accessor's index

@@ -39,24 +39,17 @@ void set_bounds(tinygltf::Accessor& accessor, std::span<const glm::vec3> rows) {
 void add_primitives(tinygltf::Model& model, MaterialWriter& materials, const WrittenMesh& mesh,
                     const tinygltf::Primitive& vertices, tinygltf::Mesh& written) {
   const std::span<const glm::uvec3> triangles(mesh.triangles);
-  const auto material_of = [&](std::size_t triangle) {
-    return mesh.triangle_materials.empty() ? 0U : mesh.triangle_materials[triangle];
-  };
-  for (std::size_t first = 0; first < triangles.size();) {
-    std::size_t end = first + 1;
-    while (end < triangles.size() && material_of(end) == material_of(first)) {
-      ++end;
-    }
+  for (const MaterialRun& run :
+       material_runs(mesh.triangle_materials, static_cast<std::uint32_t>(mesh.triangles.size()))) {
+    const auto [first, count] = run.triangles;
     tinygltf::Primitive& primitive = written.primitives.emplace_back(vertices);
-    const std::uint32_t material = material_of(first);
-    primitive.material =
-        materials.add(mesh.materials[material],
-                      material == 0 ? mesh.name : mesh.name + " " + std::to_string(material));
+    primitive.material = materials.add(
+        mesh.materials[run.material],
+        run.material == 0 ? mesh.name : mesh.name + " " + std::to_string(run.material));
     primitive.indices =
-        add_accessor<glm::uvec3>(model, triangles.subspan(first, end - first),
+        add_accessor<glm::uvec3>(model, triangles.subspan(first, count),
                                  {TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
-                                  3 * (end - first), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER});
-    first = end;
+                                  std::size_t{3} * count, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER});
   }
 }
 

@@ -1,7 +1,9 @@
 #include "scenes/write_materials.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <span>
+
+#include "scenes/gltf_rows.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -10,22 +12,6 @@ namespace {
 const char* mime_type(const std::vector<unsigned char>& bytes) {
   constexpr unsigned char kPngStart = 0x89;
   return !bytes.empty() && bytes[0] == kPngStart ? "image/png" : "image/jpeg";
-}
-
-/// @return row of the model's views
-int append_view(tinygltf::Model& model, const std::vector<unsigned char>& bytes) {
-  if (model.buffers.empty()) {
-    model.buffers.emplace_back();
-  }
-  std::vector<unsigned char>& data = model.buffers[0].data;
-  data.resize((data.size() + 3) / 4 * 4);
-  tinygltf::BufferView view;
-  view.buffer = 0;
-  view.byteOffset = data.size();
-  view.byteLength = bytes.size();
-  data.insert(data.end(), bytes.begin(), bytes.end());
-  model.bufferViews.push_back(view);
-  return static_cast<int>(model.bufferViews.size()) - 1;
 }
 
 int gltf_wrap(TextureWrap wrap) {
@@ -56,7 +42,7 @@ int MaterialWriter::texture_of(const DrawMaterial& material) {
     tinygltf::Image image;
     image.name = material.texture->name;
     image.mimeType = mime_type(material.texture->bytes);
-    image.bufferView = append_view(model_, material.texture->bytes);
+    image.bufferView = append_view(model_, 0, std::as_bytes(std::span(material.texture->bytes)));
     model_.images.push_back(image);
   }
   tinygltf::Sampler sampler;
@@ -99,7 +85,10 @@ void embed_images(tinygltf::Model& model) {
   for (tinygltf::Image& image : model.images) {
     if (!image.image.empty() && image.bufferView < 0) {
       image.mimeType = mime_type(image.image);
-      image.bufferView = append_view(model, image.image);
+      if (model.buffers.empty()) {
+        model.buffers.emplace_back();
+      }
+      image.bufferView = append_view(model, 0, std::as_bytes(std::span(image.image)));
       image.uri.clear();
     }
   }

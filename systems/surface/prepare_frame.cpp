@@ -90,20 +90,13 @@ std::uint32_t material_row(const DrawMaterial& material, std::vector<DrawMateria
 /// @param triangles  the mesh's, in the table of its kind
 Range append_groups(const DrawMesh& mesh, Range triangles, Table<DrawGroup>& groups,
                     std::vector<DrawMaterial>& materials) {
-  const auto material_of = [&](std::uint32_t triangle) {
-    return mesh.triangle_materials.empty() ? 0U : mesh.triangle_materials[triangle];
-  };
-  Range range{groups.size(), 0};
-  for (std::uint32_t first = 0; first < triangles.count;) {
-    std::uint32_t end = first + 1;
-    while (end < triangles.count && material_of(end) == material_of(first)) {
-      ++end;
-    }
-    groups.at<DrawGroup>(append_rows(groups, 1).first) = {
-        {triangles.first + first, end - first},
-        material_row(mesh.materials[material_of(first)], materials)};
-    first = end;
-    ++range.count;
+  const std::vector<MaterialRun> runs = material_runs(mesh.triangle_materials, triangles.count);
+  const Range range = append_rows(groups, runs.size());
+  for (std::uint32_t i = 0; i < range.count; ++i) {
+    const Range run = runs[i].triangles;
+    groups.at<DrawGroup>(range.first + i) = {
+        {triangles.first + run.first, run.count},
+        material_row(mesh.materials[runs[i].material], materials)};
   }
   return range;
 }

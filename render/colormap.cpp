@@ -7,6 +7,8 @@
 #include <numbers>
 #include <span>
 
+#include "render/srgb.hpp"
+
 namespace torsion::engine {
 namespace {
 
@@ -44,12 +46,6 @@ glm::dvec3 linear_of(const glm::dvec3& lab) {
           -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
 }
 
-/// IEC 61966-2-1.
-double encoded(double linear) {
-  const double c = std::clamp(linear, 0.0, 1.0);
-  return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
-}
-
 std::span<const Stop> stops_of(HeatMap map) {
   switch (map) {
     case HeatMap::kTwist:
@@ -71,7 +67,7 @@ glm::dvec3 heat_color(HeatMap map, double at) {
   const double share = place - static_cast<double>(low);
   const glm::dvec3 linear =
       linear_of((1.0 - share) * lab_of(stops[low]) + share * lab_of(stops[low + 1]));
-  return {encoded(linear.x), encoded(linear.y), encoded(linear.z)};
+  return {srgb_encoded(linear.x), srgb_encoded(linear.y), srgb_encoded(linear.z)};
 }
 
 }  // namespace torsion::engine

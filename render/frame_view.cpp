@@ -26,8 +26,6 @@ constexpr double kArcBeside = 1.25;  // of the tool's smallest half size
 constexpr double kSmallestArc = 0.25;
 constexpr double kLargestArc = 0.75;
 
-const glm::dvec3 kToKeyLight = glm::normalize(glm::dvec3(-0.45, 0.85, 0.40));
-
 glm::dvec3 to_world(const Pose& pose, const glm::vec4& point) {
   return pose.rotation * glm::dvec3(point) + pose.position;
 }

@@ -6,26 +6,15 @@
 #include <span>
 
 #include "render/image_io.hpp"
+#include "render/srgb.hpp"
 #include "render/studio_light.hpp"
 #include "shaders/shared.h"
 
 namespace torsion::engine {
 namespace {
 
-/// sRGB's curve (IEC 61966-2-1).
-float to_linear(std::uint8_t encoded) {
-  const float c = static_cast<float>(encoded) / 255.0F;
-  return c <= 0.04045F ? c / 12.92F : std::pow((c + 0.055F) / 1.055F, 2.4F);
-}
-
-std::uint8_t to_encoded(float linear) {
-  const float c =
-      linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
-  return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(c, 0.0F, 1.0F)));
-}
-
 /// An image of half the size: the mean of each four texels, in linear light.
-Image halved(const Image& image, const std::array<float, 256>& linear) {
+Image halved(const Image& image, const std::array<double, 256>& linear) {
   Image half{std::max(image.width / 2, 1U), std::max(image.height / 2, 1U), {}};
   half.rgba.reserve(std::size_t{half.width} * half.height * 4);
   const auto texel = [&](std::uint32_t x, std::uint32_t y, std::uint32_t lane) {
@@ -36,10 +25,11 @@ Image halved(const Image& image, const std::array<float, 256>& linear) {
   for (std::uint32_t y = 0; y < half.height; ++y) {
     for (std::uint32_t x = 0; x < half.width; ++x) {
       for (std::uint32_t lane = 0; lane < 3; ++lane) {
-        const float sum =
+        const double sum =
             linear[texel(2 * x, 2 * y, lane)] + linear[texel(2 * x + 1, 2 * y, lane)] +
             linear[texel(2 * x, 2 * y + 1, lane)] + linear[texel(2 * x + 1, 2 * y + 1, lane)];
-        half.rgba.push_back(to_encoded(0.25F * sum));
+        half.rgba.push_back(
+            static_cast<std::uint8_t>(std::lround(255.0 * srgb_encoded(0.25 * sum))));
       }
       half.rgba.push_back(255);
     }
@@ -48,9 +38,9 @@ Image halved(const Image& image, const std::array<float, 256>& linear) {
 }
 
 Image2d make_texture(const Gpu& gpu, Image image) {
-  std::array<float, 256> linear{};
+  std::array<double, 256> linear{};
   for (std::size_t i = 0; i < linear.size(); ++i) {
-    linear[i] = to_linear(static_cast<std::uint8_t>(i));
+    linear[i] = srgb_decoded(static_cast<double>(i) / 255.0);
   }
   const vk::Extent2D extent{image.width, image.height};
   std::vector<Image> levels = {std::move(image)};

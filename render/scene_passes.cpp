@@ -12,9 +12,6 @@ using Commands = vk::raii::CommandBuffer;
 
 constexpr float kClearTool = 0.13F;  // alpha of a tool where one looks straight through it
 
-/// Groups of tools in the order of their drawing.
-enum class ToolGroups : std::uint8_t { kOpaque, kGlass };
-
 bool is_glass(const DrawMaterial& material, ToolLook look) {
   switch (look) {
     case ToolLook::kGlass:
@@ -85,7 +82,8 @@ void draw_bodies(const Commands& commands, const FrameInputs& inputs) {
       });
 }
 
-void draw_tools(const Commands& commands, const FrameInputs& inputs, ToolGroups wanted) {
+/// @param glass  those that are seen through, or the others
+void draw_tools(const Commands& commands, const FrameInputs& inputs, bool glass) {
   if (inputs.frame.tools.empty()) {
     return;
   }
@@ -98,15 +96,14 @@ void draw_tools(const Commands& commands, const FrameInputs& inputs, ToolGroups 
     draw_each(
         commands, inputs, inputs.frame.tools, inputs.frame.tool_groups,
         [&](std::uint32_t row, const DrawMaterial& material, shared::DrawConstants& constants) {
-          const bool glass = is_glass(material, inputs.options.tools);
           constants.grid = inputs.extent.tool_centers[row];
           constants.color.w = glass ? glass_alpha(material) : 1.0F;
           constants.rows.w |= glass ? shared::kGlass : 0U;
           constants.rows.w |= inputs.options.grid ? shared::kMarks : 0U;
-          return glass == (wanted == ToolGroups::kGlass);
+          return is_glass(material, inputs.options.tools) == glass;
         });
   };
-  if (wanted == ToolGroups::kGlass) {
+  if (glass) {
     draw_with(inputs.pipelines.tool_depth);
   }
   draw_with(inputs.pipelines.tool);
@@ -213,13 +210,13 @@ void record_draw(const Frame& target, const FrameInputs& inputs) {
   commands.setScissor(0, inputs.part);
   push_draw_bindings(commands, inputs, true);
   draw_bodies(commands, inputs);
-  draw_tools(commands, inputs, ToolGroups::kOpaque);
+  draw_tools(commands, inputs, false);
   draw_arrows(commands, inputs);
   if (inputs.options.ground) {
     bind(commands, inputs.pipelines.ground);
     commands.draw(6, 1, 0, 0);
   }
-  draw_tools(commands, inputs, ToolGroups::kGlass);
+  draw_tools(commands, inputs, true);
   if (!inputs.overlay_apart) {
     const std::span<const OverlayClip> all = inputs.overlay == nullptr
                                                  ? std::span<const OverlayClip>{}

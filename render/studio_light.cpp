@@ -21,25 +21,36 @@ double smooth(double low, double high, double value) {
 }
 
 /// A rectangle of light far away, with soft edges.
-struct SoftBox {
-  dvec3 middle;           // unit
-  double half_width = 0;  // as tangents
-  double half_height = 0;
-  dvec3 radiance;
+class SoftBox {
+ public:
+  /// @param half_width, half_height  as tangents
+  SoftBox(const dvec3& toward, double half_width, double half_height, const dvec3& radiance)
+      : middle_(glm::normalize(toward)),
+        right_(glm::normalize(glm::cross(dvec3(0.0, 1.0, 0.0), middle_))),
+        up_(glm::cross(middle_, right_)),
+        half_width_(half_width),
+        half_height_(half_height),
+        radiance_(radiance) {}
 
   [[nodiscard]] dvec3 seen(const dvec3& direction) const {
     constexpr double kEdge = 0.12;
-    const double ahead = glm::dot(direction, middle);
+    const double ahead = glm::dot(direction, middle_);
     if (ahead <= 0.05) {
       return dvec3(0.0);
     }
-    const dvec3 right = glm::normalize(glm::cross(dvec3(0.0, 1.0, 0.0), middle));
-    const dvec3 up = glm::cross(middle, right);
-    const double x = std::abs(glm::dot(direction, right)) / ahead;
-    const double y = std::abs(glm::dot(direction, up)) / ahead;
-    return radiance * (1.0 - smooth(half_width - kEdge, half_width + kEdge, x)) *
-           (1.0 - smooth(half_height - kEdge, half_height + kEdge, y));
+    const double x = std::abs(glm::dot(direction, right_)) / ahead;
+    const double y = std::abs(glm::dot(direction, up_)) / ahead;
+    return radiance_ * (1.0 - smooth(half_width_ - kEdge, half_width_ + kEdge, x)) *
+           (1.0 - smooth(half_height_ - kEdge, half_height_ + kEdge, y));
   }
+
+ private:
+  dvec3 middle_;
+  dvec3 right_;
+  dvec3 up_;
+  double half_width_;
+  double half_height_;
+  dvec3 radiance_;
 };
 
 /// Two axes beside a direction.
@@ -75,9 +86,9 @@ dvec3 texel_direction(std::uint32_t column, std::uint32_t row) {
 
 dvec3 studio_radiance(const dvec3& direction) {
   static const std::array<SoftBox, 3> kBoxes = {{
-      {glm::normalize(dvec3(-0.45, 0.85, 0.40)), 0.38, 0.28, dvec3(2.05, 2.0, 1.9)},
-      {glm::normalize(dvec3(0.70, 0.45, -0.75)), 0.36, 0.28, dvec3(0.95, 1.0, 1.08)},
-      {glm::normalize(dvec3(0.95, 0.12, 0.35)), 0.12, 0.80, dvec3(0.75, 0.77, 0.80)},
+      {kToKeyLight, 0.38, 0.28, dvec3(2.05, 2.0, 1.9)},
+      {dvec3(0.70, 0.45, -0.75), 0.36, 0.28, dvec3(0.95, 1.0, 1.08)},
+      {dvec3(0.95, 0.12, 0.35), 0.12, 0.80, dvec3(0.75, 0.77, 0.80)},
   }};
   constexpr dvec3 kFloor(0.205, 0.20, 0.195);
   constexpr dvec3 kWall(0.21, 0.22, 0.235);

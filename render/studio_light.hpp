@@ -4,9 +4,13 @@
 #include <cstdint>
 #include <vector>
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 namespace torsion::engine {
+
+/// Toward the key light, world.
+inline const glm::dvec3 kToKeyLight = glm::normalize(glm::dvec3(-0.45, 0.85, 0.40));
 
 /// The studio around every scene: a pale room, a soft box above on the key light's side, a dimmer
 /// one behind, a strip low at the right. A picture's light from all around, diffuse and mirrored,

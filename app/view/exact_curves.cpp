@@ -36,7 +36,7 @@ class FirstLoading {
 
  private:
   static constexpr double kRows = 257.0;
-  static constexpr double kMost = 3.0;  // there the stick radius is a millionth of the contact's
+  static constexpr double kMost = 3.0;  // there the couple is all but saturated
 
   static double turn_of(double row) {
     const double share = row / (kRows - 1.0);
@@ -117,7 +117,7 @@ Curve exact_over_turn(const History& history, std::uint64_t generation,
   double couple_unit = 1.0;  // N m
   for (std::uint32_t i = points.first; i < points.first + points.count; ++i) {
     const PlotPoint& point = history[i];
-    const bool unturned = curve.x.empty() || path.displacement == 0.0;
+    const bool unturned = curve.x.empty();
     if (unturned && point.normal_force != force && point.normal_force > 0.0) {
       force = point.normal_force;
       const double radius = exact_radius(contact, force);

@@ -6,7 +6,7 @@
 
 namespace torsion::engine {
 
-/// --falcon-firmware, --knob-torque and the buttons that turn.
+/// How a device is held and kept safe: its limits, its buttons, the maker's firmware.
 void add_device_options(CLI::App& subcommand, DeviceChoice& choice);
 
 }  // namespace torsion::engine

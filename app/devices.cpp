@@ -154,6 +154,21 @@ void add_device_options(CLI::App& subcommand, DeviceChoice& choice) {
           "Two buttons (1 to 32) that turn the tool counter-clockwise and clockwise where a device "
           "senses no turn [1 4]")
       ->check(CLI::Range(1, 32));
+  subcommand
+      .add_option_function<std::uint32_t>(
+          "--enable-button",
+          [&choice](std::uint32_t number) { choice.safety.held_buttons = 1U << (number - 1U); },
+          "A button (1 to 32) that has to be held for any force")
+      ->check(CLI::Range(1, 32));
+  subcommand
+      .add_option("--continuous-force", choice.safety.continuous_force,
+                  "What its motors bear for ever, N, where the device's own is not right")
+      ->check(CLI::PositiveNumber);
+  subcommand.add_option("--continuous-torque", choice.safety.continuous_torque, "Likewise, N m")
+      ->check(CLI::PositiveNumber);
+  subcommand.add_flag_callback(
+      "--no-sign-check", [&choice] { choice.safety.checks_signs = false; },
+      "Do not see with a small force first whether it goes where it is pushed");
 }
 
 void add_devices(CLI::App& app, Command& command) {

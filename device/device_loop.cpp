@@ -117,16 +117,24 @@ void compose_state(const DeviceLoop& loop, DeviceSample& whole) {
 
 void add_traits(DeviceTraits& whole, const DeviceRow& row) {
   const DeviceTraits& part = row.report.sample.traits;
+  whole.thermal_time = whole.thermal_time > 0.0 ? std::min(whole.thermal_time, part.thermal_time)
+                                                : part.thermal_time;
   if (translates(row.role)) {
     whole.damping = part.damping;
     whole.mass = part.mass;
     whole.encoder_step = part.encoder_step;
     whole.largest_force = part.largest_force;
+    whole.continuous_force = part.continuous_force;
+    whole.delay = part.delay;
     whole.largest_stiffness = part.largest_stiffness;
   }
   if (turns(row.role) || row.role == DeviceRole::kKnob) {
     whole.encoder_turn_step = std::max(whole.encoder_turn_step, part.encoder_turn_step);
     whole.largest_torque = std::max(whole.largest_torque, part.largest_torque);
+    whole.continuous_torque = std::max(whole.continuous_torque, part.continuous_torque);
+    whole.turn_damping = part.turn_damping;
+    whole.inertia = part.inertia;
+    whole.delay = std::max(whole.delay, part.delay);
   }
 }
 
@@ -136,7 +144,9 @@ void compose_points(const DeviceLoop& loop, DeviceSample& whole) {
     if (row.used && row.role == DeviceRole::kPoint) {
       places[row.point] = row.report.sample.pose.position;
       whole.traits.largest_force += row.report.sample.traits.largest_force;
+      whole.traits.continuous_force += row.report.sample.traits.continuous_force;
       whole.traits.encoder_step = row.report.sample.traits.encoder_step;
+      whole.traits.delay = std::max(whole.traits.delay, row.report.sample.traits.delay);
     }
   }
   whole.pose = carried_pose(loop.carried, std::span(places).first(loop.carried.count));
@@ -145,6 +155,8 @@ void compose_points(const DeviceLoop& loop, DeviceSample& whole) {
   // A couple of two of them, N m.
   const double one = whole.traits.largest_force / static_cast<double>(loop.carried.count);
   whole.traits.largest_torque = one * loop.options.spacing;
+  whole.traits.continuous_torque = whole.traits.continuous_force /
+                                   static_cast<double>(loop.carried.count) * loop.options.spacing;
   whole.traits.encoder_turn_step = whole.traits.encoder_step / loop.options.spacing;
 }
 
@@ -323,6 +335,7 @@ std::size_t free_row(const DeviceLoop& loop) {
 void attach(DeviceLoop& loop, std::size_t row, const UsbIdentity& identity, DeviceKind kind,
             double now, UsbRequests& requests) {
   occupy(loop, row, identity, kind);
+  loop.whole.plugged += 1;
   with_driver(loop, row, now, requests,
               [](auto& driver, DriverCall& call) { begin(driver, call); });
 }

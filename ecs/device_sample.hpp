@@ -46,9 +46,12 @@ struct DeviceTraits {
   double encoder_step = 0.0;       // m: one count, at the handle
   double encoder_turn_step = 0.0;  // rad
   double period = 1e-3;            // T, s: between two forces
-  double delay = 0.0;           // t_d, s: from a position read to its force sent, beyond the hold
-  double largest_force = 0.0;   // N
-  double largest_torque = 0.0;  // N m; zero: the device has no torque
+  double delay = 0.0;             // t_d, s: from a position read to its force sent, beyond the hold
+  double largest_force = 0.0;     // N
+  double largest_torque = 0.0;    // N m; zero: the device has no torque
+  double continuous_force = 0.0;  // N: that its motors bear for ever
+  double continuous_torque = 0.0;       // N m
+  double thermal_time = 0.0;            // s: in which they get warm
   double largest_stiffness = 0.0;       // N/m, as its maker says
   double largest_turn_stiffness = 0.0;  // N m/rad
 };
@@ -66,6 +69,8 @@ struct DeviceSample {
   bool steers_rate = false;   // it has no place of its own: its pose is where it was steered to
   bool buttons_turn = false;  // it senses no turn: two of its buttons make one
   std::uint32_t epoch = 0;    // another one: the pose starts anew and may be anywhere
+  std::uint32_t plugged = 0;  // counts what was plugged in, or a gateway's clients: another one may
+                              // have other signs
   std::uint64_t number = 0;   // of the samples so far
   double time = 0.0;          // s, steady clock, when it arrived
   DeviceTraits traits;

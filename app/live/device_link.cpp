@@ -39,6 +39,23 @@ Result<std::vector<std::uint8_t>> load_firmware(const std::filesystem::path& cho
   return bytes;
 }
 
+GatewayState gateway_state(GuardState state) {
+  switch (state) {
+    case GuardState::kWaiting:
+      return GatewayState::kWaiting;
+    case GuardState::kChecking:
+      return GatewayState::kChecking;
+    case GuardState::kRising:
+      return GatewayState::kRising;
+    case GuardState::kLive:
+      return GatewayState::kLive;
+    case GuardState::kFalling:
+      return GatewayState::kFalling;
+    default:
+      return GatewayState::kOff;
+  }
+}
+
 }  // namespace
 
 Result<std::uint32_t> kinds_of(const std::string& what) {
@@ -88,6 +105,7 @@ std::unique_ptr<DeviceLink> DeviceLink::held_as(const DeviceChoice& choice, cons
   auto link = std::make_unique<DeviceLink>(tool);
   link->side_.limits.longest_silence = choice.longest_silence;
   link->side_.hold = choice.hold;
+  link->side_.safety = choice.safety;
   return link;
 }
 
@@ -140,13 +158,11 @@ Wrench DeviceLink::on_sample(void* link, const DeviceSample& sample) {
 }
 
 void DeviceLink::describe(void* link, GatewayAnswer& answer) {
-  static_assert(static_cast<std::uint32_t>(GuardState::kFalling) ==
-                static_cast<std::uint32_t>(GatewayState::kFalling));
   auto& self = *static_cast<DeviceLink*>(link);
   const HandleAnswer& physics = self.slot_.answer.front();
   answer.tool = physics.time_ns != 0 ? physics.tool : self.side_.home;
   answer.faults = physics.faults;
-  answer.state = static_cast<GatewayState>(self.now_.guard);
+  answer.state = gateway_state(self.now_.guard);
 }
 
 Wrench DeviceLink::take(const DeviceSample& sample) {
@@ -166,7 +182,7 @@ Wrench DeviceLink::take(const DeviceSample& sample) {
     handle.number = ++number_;
     handle.time_ns = static_cast<Nanoseconds>(1e9 * sample.time);
     handle.buttons = sample.buttons;
-    handle.epoch = sample.epoch;
+    handle.epoch = side_.couplings;
     handle.traits = sample.traits;
     slot_.sample.publish();
     now_.result_us.add(1e6 * (now - result.time));
@@ -178,10 +194,27 @@ Wrench DeviceLink::take(const DeviceSample& sample) {
   now_.outcome = outcome;
   now_.coupling = side_.coupling;
   now_.hold = side_.hold;
-  now_.guard = side_.guard.state;
+  show_guard();
   views_.back() = now_;
   views_.publish();
   return outcome.wrench;
+}
+
+void DeviceLink::show_guard() {
+  const OutputGuard& guard = side_.guard;
+  if (guard.state == GuardState::kFalling) {
+    now_.stopped_by = guard.reason;
+  } else if (guard.state == GuardState::kLive) {
+    now_.stopped_by = GuardReason::kNone;
+  }
+  now_.guard = guard.state;
+  now_.reason = guard.reason;
+  now_.signs = guard.signs;
+  now_.reversed_axes = side_.signs.reversed;
+  const double largest = side_.limits.largest_force;
+  const double largest_torque = side_.limits.largest_torque;
+  now_.is_warm = allowed_now(guard.force_heat, largest) < largest ||
+                 allowed_now(guard.torque_heat, largest_torque) < largest_torque;
 }
 
 const DeviceView& DeviceLink::view() {

@@ -22,6 +22,7 @@ struct DeviceChoice {
   double largest_knob_torque = 0.2;       // N m
   TurnButtons turn_buttons;               // of a device that senses no turn
   ToolHold hold = ToolHold::kMassless;    // a mouse's too
+  HandleSafety safety;
   // s: without a result of the physics, then the force falls
   double longest_silence = GuardLimits{}.longest_silence;
 };
@@ -33,6 +34,11 @@ struct DeviceView {
   VirtualCoupling coupling;
   ToolHold hold = ToolHold::kMassless;
   GuardState guard = GuardState::kWaiting;
+  GuardReason reason = GuardReason::kFar;       // why there is no force, where there is none
+  GuardReason stopped_by = GuardReason::kNone;  // what ended the last one
+  SignVerdict signs = SignVerdict::kRunning;
+  std::uint8_t reversed_axes = 0;      // bits
+  bool is_warm = false;                // its motors: it gets less than its largest
   Histogram answer_us{kShortestTime};  // from a sample's arrival to its wrench's going out
   Histogram result_us{kShortestTime};  // how old the physics' result in that wrench was
   std::uint64_t losses = 0;            // times that the device was live and then not
@@ -67,6 +73,7 @@ class DeviceLink {
  private:
   static std::unique_ptr<DeviceLink> held_as(const DeviceChoice& choice, const Pose& tool);
   Wrench take(const DeviceSample& sample);
+  void show_guard();
 
   HandleSlot slot_;
   HandleSide side_;

@@ -38,6 +38,80 @@ std::vector<std::string> hold_lines(const DeviceView& view) {
   return lines;
 }
 
+bool felt_anything(const DeviceSample& sample) {
+  return sample.actuated != kNoAxes;
+}
+
+/// The axes of a set of bits, for a person.
+std::string axis_words(std::uint8_t axes) {
+  std::vector<std::string> words;
+  for (std::size_t axis = 0; axis < kSignAxes; ++axis) {
+    if ((axes >> axis & 1U) != 0) {
+      words.emplace_back(sign_axis_name(axis));
+    }
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+const char* signs_word(SignVerdict signs) {
+  switch (signs) {
+    case SignVerdict::kRight:
+      return "right";
+    case SignVerdict::kReversed:
+      return "reversed";
+    case SignVerdict::kUnresolved:
+      return "not seen";
+    default:
+      return "not looked at";
+  }
+}
+
+/// Why a device has no force that is off for good, and what to do.
+std::string off_words(const DeviceView& view) {
+  if (view.reason == GuardReason::kReversed) {
+    return fmt::format(
+        "it goes the other way than it is pushed ({}): no force. Mend the signs of its motors or "
+        "encoders (a gateway's client: its axes), then plug it in again",
+        axis_words(view.reversed_axes));
+  }
+  return "it ran against the force, faster and faster: no force. Are its motors and encoders the "
+         "right way round? Plug it in again and hold it firmly";
+}
+
+/// What ended the last force, and what to do; empty where nothing did.
+const char* stop_words(GuardReason reason) {
+  switch (reason) {
+    case GuardReason::kLetGo:
+      return "hold the button that enables the force";
+    case GuardReason::kPhysics:
+      return "the simulation was silent or had a fault";
+    case GuardReason::kTooFast:
+      return "it moved faster than 1.2 m/s or 40 rad/s; move it more slowly";
+    default:
+      return "";
+  }
+}
+
+/// Of a live device: what stands between it and its whole force; empty where nothing does.
+std::string guard_words(const DeviceView& view) {
+  const std::string stopped = stop_words(view.stopped_by);
+  switch (view.guard) {
+    case GuardState::kWaiting:
+      if (view.reason != GuardReason::kFar && view.reason != GuardReason::kNone) {
+        const std::string against = stop_words(view.reason);
+        return against.empty() ? std::string() : "no force: " + against;
+      }
+      return fmt::format("bring it to the tool: {:.0f} mm to go{}{}", 1e3 * view.outcome.distance,
+                         stopped.empty() ? "" : "; ", stopped);
+    case GuardState::kChecking:
+      return "a small force looks whether it goes where it is pushed; hold it loosely and still";
+    case GuardState::kOff:
+      return off_words(view);
+    default:
+      return view.is_warm ? "its motors are warm: less than its largest force" : "";
+  }
+}
+
 }  // namespace
 
 std::string describe(const DeviceView& view) {
@@ -52,8 +126,10 @@ std::string describe(const DeviceView& view) {
   std::string text =
       fmt::format("{:.0f} Hz; measures {}; displays {}; {}", sample.rate, sensed_by(sample),
                   actuated_text(sample.actuated), fmt::join(hold_lines(view), "; "));
-  if (!view.outcome.holds) {
-    text += fmt::format("; bring it to the tool: {:.0f} mm to go", 1e3 * view.outcome.distance);
+  const std::string guard = guard_words(view);
+  text += guard.empty() ? "" : "; " + guard;
+  if (view.signs == SignVerdict::kUnresolved && felt_anything(sample)) {
+    text += "; whether all its axes go where they are pushed could not be seen";
   }
   return trouble.empty() ? text : text + "; another one: " + trouble;
 }
@@ -113,11 +189,14 @@ DeviceBanner device_banner(const DeviceView& view, bool steps_go_on) {
   if (!steps_go_on) {
     return {"No force in a pause and in slow motion."};
   }
-  if (!view.outcome.holds) {
-    return {fmt::format("Bring the device to the tool: {:.0f} mm to go. No force before.",
-                        1e3 * view.outcome.distance)};
+  if (view.guard == GuardState::kWaiting && view.reason == GuardReason::kFar) {
+    const std::string stopped = stop_words(view.stopped_by);
+    return {fmt::format("Bring the device to the tool: {:.0f} mm to go. No force before.{}{}",
+                        1e3 * view.outcome.distance, stopped.empty() ? "" : " Why: ", stopped)};
   }
-  return {};
+  const std::string guard = guard_words(view);
+  return guard.empty() ? DeviceBanner{}
+                       : DeviceBanner{"The device: " + guard + ".", view.guard == GuardState::kOff};
 }
 
 std::string device_summary(const DeviceView& view) {
@@ -134,6 +213,7 @@ std::string device_summary(const DeviceView& view) {
 
 nlohmann::ordered_json device_json(const DeviceView& view) {
   return {{"state", describe(view)},
+          {"signs", signs_word(view.signs)},
           {"rate_Hz", view.sample.rate},
           {"samples", view.sample.number},
           {"losses", view.losses},

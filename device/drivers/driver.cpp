@@ -9,6 +9,7 @@ namespace {
 constexpr std::uint32_t kReadsUnderWay = 2;
 constexpr std::uint32_t kMostFailures = 10;  // in a row
 constexpr double kRateMemory = 0.02;         // share of one sample's interval in the mean
+constexpr double kDelayMemory = 0.02;        // likewise of one write
 constexpr double kRetry = 0.5;               // s
 
 }  // namespace
@@ -59,10 +60,11 @@ const UsbEndpoint* find_endpoint(const UsbInterface& interface, UsbEndpointKind 
   return found != interface.endpoints.end() ? &*found : nullptr;
 }
 
-void write_through(WriteGate& gate, DriverCall& call, Bytes packet) {
+void write_through(WriteGate& gate, DriverCall& call, Bytes packet, bool may_take_long) {
   if (!gate.under_way) {
-    write_usb(call.requests, gate.endpoint, packet);
+    write_usb(call.requests, gate.endpoint, packet, may_take_long);
     gate.under_way = true;
+    gate.asked_at = call.now;
   }
 }
 
@@ -87,6 +89,12 @@ bool take_write(WriteGate& gate, DriverCall& call, const UsbEvent& event) {
     return true;
   }
   call.report.counts.failures += event.status == UsbStatus::kCompleted ? 0U : 1U;
+  DeviceSample& sample = call.report.sample;
+  if (event.status == UsbStatus::kCompleted && sample.state == DeviceState::kLive) {
+    // The force goes out as soon as its sample has come: it is as late as its way out takes.
+    const double late = call.now - gate.asked_at;
+    sample.traits.delay += kDelayMemory * (late - sample.traits.delay);
+  }
   return std::exchange(gate.let_go_after, false) && event.status != UsbStatus::kGone;
 }
 

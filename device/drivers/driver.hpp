@@ -71,13 +71,15 @@ const UsbEndpoint* find_endpoint(const UsbInterface& interface, UsbEndpointKind 
 
 /// One packet at a time on the way out, and whether one that lets go of the motors is to follow it.
 struct WriteGate {
+  double asked_at = 0.0;  // s: when it was written
   std::uint8_t endpoint = 0;
   bool under_way = false;
   bool let_go_after = false;
 };
 
 /// Writes a packet, unless one is on its way: then the next answer will bring a newer one.
-void write_through(WriteGate& gate, DriverCall& call, Bytes packet);
+/// @param may_take_long  it is no force
+void write_through(WriteGate& gate, DriverCall& call, Bytes packet, bool may_take_long = false);
 
 /// Writes a packet that takes the force off the motors, now or as soon as the gate is free.
 /// @return false where it has to wait: take_write says when
@@ -86,7 +88,8 @@ bool let_go_through(WriteGate& gate, DriverCall& call, Bytes packet);
 /// Writes a packet whatever is on its way: it is to be the last.
 void write_last(WriteGate& gate, DriverCall& call, Bytes packet);
 
-/// The end of a write. @return true where a packet that lets go is owed, now
+/// The end of a write; a force's tells how late it is. @return true where a packet that lets go is
+/// owed, now
 bool take_write(WriteGate& gate, DriverCall& call, const UsbEvent& event);
 
 /// Reads that are always under way on one endpoint.

@@ -35,7 +35,7 @@ void ask(FalconDriver& driver, DriverCall& call) {
 void say(FalconDriver& driver, DriverCall& call, const FalconPhrase& phrase) {
   driver.echo = {};
   driver.tries += 1;
-  write_through(driver.writes, call, Bytes(phrase.said).first(phrase.said_size));
+  write_through(driver.writes, call, Bytes(phrase.said).first(phrase.said_size), true);
   call.report.wake_at = call.now + kAnswer;
 }
 
@@ -100,7 +100,7 @@ void load_firmware(FalconDriver& driver, DriverCall& call) {
 
 void write_piece(FalconDriver& driver, DriverCall& call) {
   driver.echo = {};
-  write_through(driver.writes, call, piece_of(driver, call));
+  write_through(driver.writes, call, piece_of(driver, call), true);
   call.report.wake_at = call.now + kAnswer;
 }
 
@@ -207,6 +207,7 @@ void begin(FalconDriver& driver, DriverCall& call) {
   sample.traits = {};
   sample.traits.encoder_step = 64e-6;  // m: 0.0364 degrees of a joint at 0.1 m
   sample.traits.largest_force = 8.0;   // N, as CHAI3D has it
+  set_cautious_heat(sample.traits);
   if (call.identity.interfaces.empty()) {
     give_up(driver, call, DeviceTrouble::kNotUnderstood);
     return;

@@ -13,6 +13,14 @@ namespace torsion::engine {
 inline constexpr double kSilence = 5e-3;  // s: then it is told to let go and asked again
 inline constexpr double kLost = 0.25;     // s: then it is set up anew
 
+/// What motors bear for ever where no data sheet says it: half of their largest, warm after ten
+/// seconds.
+inline void set_cautious_heat(DeviceTraits& traits) {
+  traits.continuous_force = 0.5 * traits.largest_force;
+  traits.continuous_torque = 0.5 * traits.largest_torque;
+  traits.thermal_time = 10.0;
+}
+
 /// A driver as it is at first, but for what is under way.
 template <class D>
 D fresh(const D& driver) {

@@ -166,6 +166,7 @@ void begin(OdriveDriver& driver, DriverCall& call) {
   sample.actuated = kTurnAxis;
   sample.traits = {};
   sample.traits.largest_torque = call.options.largest_knob_torque;
+  set_cautious_heat(sample.traits);
   sample.traits.encoder_turn_step = 2.0 * std::numbers::pi / 8192.0;  // rad: its usual encoder
   const UsbInterface* control = interface_of(call.identity, kCdcControl);
   const UsbInterface* data = interface_of(call.identity, kCdcData);

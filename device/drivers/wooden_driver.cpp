@@ -77,6 +77,8 @@ void begin(WoodenDriver& driver, DriverCall& call) {
   sample.traits.encoder_step = 50e-6;     // m: a count of a motor at the end of the arm
   sample.traits.largest_force = 5.0;      // N, as its makers say of the build of 2015
   sample.traits.largest_stiffness = 1e3;  // N/m, likewise
+  set_cautious_heat(sample.traits);
+  sample.traits.thermal_time = 4.0;  // s: its servo drives' for more (haptikfabrikenapi)
   const UsbInterface* interface = interface_of(call.identity);
   if (interface == nullptr) {
     give_up(driver, call, DeviceTrouble::kNotUnderstood);

@@ -101,6 +101,7 @@ void Gateway::State::send(const Address& to, const GatewayAnswer& answer) const 
 
 /// A client has the tool from here on.
 void Gateway::State::begin(const GatewaySample& came) {
+  report.sample.plugged += came.session != session || report.sample.plugged == 0 ? 1U : 0U;
   session = came.session;
   const double now = steady_now();
   report.sample.rate = 0.0;

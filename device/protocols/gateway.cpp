@@ -194,7 +194,7 @@ std::optional<GatewayAnswer> decode_gateway_answer(Bytes bytes) {
   answer.session = reader.take<std::uint32_t>();
   answer.sequence = reader.take<std::uint32_t>();
   const auto state = reader.take<std::uint32_t>();
-  if (state > static_cast<std::uint32_t>(GatewayState::kRefused)) {
+  if (state > static_cast<std::uint32_t>(GatewayState::kOff)) {
     return std::nullopt;
   }
   answer.state = static_cast<GatewayState>(state);

@@ -36,9 +36,11 @@ enum class GatewayState : std::uint32_t {
   kWaiting = 0,  // no force until the handle is brought to the tool
   kRising = 1,
   kLive = 2,
-  kFalling = 3,  // the physics is silent, or has a fault
-  kSilent = 4,   // nothing came from the client for too long
-  kRefused = 5,  // another client has the tool
+  kFalling = 3,   // the physics is silent, or has a fault
+  kSilent = 4,    // nothing came from the client for too long
+  kRefused = 5,   // another client has the tool
+  kChecking = 6,  // a small force to see whether it goes where it is pushed
+  kOff = 7,       // it went the other way: no force until the client begins anew
 };
 
 struct GatewayAnswer {

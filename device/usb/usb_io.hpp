@@ -73,6 +73,7 @@ struct UsbRequest {
   std::uint8_t endpoint = 0;   // read, write, clear halt
   std::uint8_t interface = 0;  // claim, release
   std::uint16_t length = 0;    // read: room for this many bytes; write: how many
+  bool may_take_long = false;  // write: not of a force, which is too old after 5 ms
   UsbSetup setup;              // control
   std::array<std::uint8_t, kLargestUsbWrite> bytes{};  // write, control out
 
@@ -110,12 +111,15 @@ inline void read_usb(UsbRequests& requests, std::uint8_t endpoint, std::size_t l
   request.length = static_cast<std::uint16_t>(length);
 }
 
+/// @param may_take_long  it is no force, and the device may have to think
 /// @pre bytes.size() <= kLargestUsbWrite
-inline void write_usb(UsbRequests& requests, std::uint8_t endpoint, Bytes bytes) {
+inline void write_usb(UsbRequests& requests, std::uint8_t endpoint, Bytes bytes,
+                      bool may_take_long = false) {
   TORSION_ASSERT(bytes.size() <= kLargestUsbWrite);
   UsbRequest& request = requests.add(UsbJob::kWrite);
   request.endpoint = endpoint;
   request.length = static_cast<std::uint16_t>(bytes.size());
+  request.may_take_long = may_take_long;
   std::ranges::copy(bytes, request.bytes.begin());
 }
 

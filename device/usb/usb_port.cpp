@@ -7,7 +7,10 @@
 namespace torsion::engine {
 namespace {
 
-constexpr unsigned kTimeout = 500;  // ms: of what goes out; reads wait as long as it takes
+// ms, of what goes out: a force that a device has not taken by then is too old, and one that lets
+// go has to follow; set-up may take longer. Reads wait as long as it takes.
+constexpr unsigned kForceTimeout = 5;
+constexpr unsigned kTimeout = 500;
 constexpr std::size_t kSetupSize = 8;
 
 UsbStatus status_of(libusb_transfer_status status) {
@@ -59,7 +62,10 @@ void fill(UsbPort& port, UsbTransfer& transfer, const UsbRequest& request,
     std::ranges::copy(request.data(), transfer.buffer.begin());
   }
   libusb_fill_bulk_transfer(transfer.usb, port.handle, request.endpoint, transfer.buffer.data(),
-                            request.length, callback, &transfer, in ? 0U : kTimeout);
+                            request.length, callback, &transfer,
+                            in                      ? 0U
+                            : request.may_take_long ? kTimeout
+                                                    : kForceTimeout);
 }
 
 UsbEvent end_of(const UsbRequest& request) {

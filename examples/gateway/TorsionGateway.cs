@@ -15,7 +15,7 @@ namespace Torsion {
 [Flags]
 public enum Axes { None = 0, Translation = 1, Rotation = 2, Turn = 4 }
 
-public enum State { Waiting, Rising, Live, Falling, Silent, Refused }
+public enum State { Waiting, Rising, Live, Falling, Silent, Refused, Checking, Off }
 
 /// What the device is, as far as stability asks: N, m, kg, s, rad. 0: not known, and Torsion is cautious.
 public struct Traits {
@@ -118,12 +118,14 @@ static class Program {
     using (var gateway = new Gateway(port)) {
       gateway.Traits = new Traits { Damping = 1.0, TurnDamping = 1e-3, Mass = 0.1, Period = 1e-3, LargestForce = 8.0,
                                     LargestTorque = 0.3 };
-      var clock = Stopwatch.StartNew();
+      var begun = Stopwatch.StartNew();
+      var held = new Stopwatch();
       double most = 0.0;
       var answer = new Answer();
-      while (clock.Elapsed.TotalSeconds < 3.5) {
-        // Waits a little at the tool, then goes down.
-        var down = 0.004 * Share(clock.Elapsed.TotalSeconds - 0.5);
+      while (begun.Elapsed.TotalSeconds < 60.0 && held.Elapsed.TotalSeconds < 3.5) {
+        // Waits at the tool until it has all of its force (a check of its signs comes first), then goes down.
+        if (answer.State == State.Live) { held.Start(); }
+        var down = 0.004 * Share(held.Elapsed.TotalSeconds - 0.5);
         answer = gateway.Exchange(new[] { 0.0, -down, 0.0 }, new[] { 0.0, 0.0, 0.0, 1.0 });
         most = Math.Max(most, answer.Force[1]);
         Thread.Sleep(1);

@@ -17,7 +17,11 @@
 #include <unistd.h>
 
 enum { TORSION_TRANSLATION = 1, TORSION_ROTATION = 2, TORSION_TURN = 4 }; /* axes: sums of these */
-enum torsion_state { TORSION_WAITING, TORSION_RISING, TORSION_LIVE, TORSION_FALLING, TORSION_SILENT, TORSION_REFUSED };
+enum torsion_state {
+  TORSION_WAITING, TORSION_RISING, TORSION_LIVE, TORSION_FALLING, TORSION_SILENT, TORSION_REFUSED,
+  TORSION_CHECKING, /* a small force to see whether the device goes where it is pushed: display it */
+  TORSION_OFF       /* it went the other way: no force until the client begins anew */
+};
 
 /* As it is sent: little-endian machines only, no padding (every double is at a multiple of 8). */
 struct torsion_sample {
@@ -87,7 +91,7 @@ static inline int torsion_gateway_exchange(struct torsion_gateway *gateway, stru
     while (recv(gateway->socket, answer, sizeof *answer, 0) == (ssize_t)sizeof *answer) {
       if (answer->magic == sample->magic && answer->version == 1 && answer->kind == 2 &&
           answer->session == gateway->session && answer->sequence == gateway->sequence) {
-        return answer->state <= TORSION_FALLING ? 0 : -1;
+        return answer->state == TORSION_SILENT || answer->state == TORSION_REFUSED ? -1 : 0;
       }
     }
   }

@@ -22,7 +22,7 @@ SAMPLE = struct.Struct("<IHHIId 3d4d 3d 3d IIII 12d")  # docs/gateway.md
 ANSWER = struct.Struct("<IHHIIII d 3d 3d 3d4d")
 MAGIC, VERSION = 0x47524F54, 1
 TRANSLATION, ROTATION, TURN = 1, 2, 4  # axes that a device senses or pushes on: sums of these
-STATES = ("waiting", "rising", "live", "falling", "silent", "refused")
+STATES = ("waiting", "rising", "live", "falling", "silent", "refused", "checking", "off")
 Answer = collections.namedtuple("Answer", "sequence state faults time force torque tool_position tool_rotation")
 # damping, turn damping, mass, inertia, encoder step, encoder turn step, period, delay, largest force, largest torque,
 # largest stiffness, largest turn stiffness: N, m, kg, s, rad. 0: not known, and Torsion is cautious.
@@ -73,17 +73,20 @@ class Gateway:
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("address", nargs="?", default="7747", help="port, or path of a Unix socket")
-    parser.add_argument("--seconds", type=float, default=4.0)
+    parser.add_argument("--seconds", type=float, default=4.0, help="after the tool is held")
     parser.add_argument("--press", type=float, default=0.004, help="m below where the tool is at first")
     parser.add_argument("--turn", type=float, default=40.0, help="degrees")
     words = parser.parse_args()
     gateway = Gateway(int(words.address) if words.address.isdigit() else words.address)
-    start, most, most_torque, lost, answer = time.monotonic(), 0.0, 0.0, 0, None
-    due = start
-    while (now := time.monotonic() - start) < words.seconds:
-        # Waits a little at the tool, then goes down, and turns there.
-        share = min(max((now - 0.5) / 1.0, 0.0), 1.0)
-        half = math.radians(words.turn) * min(max((now - 1.5) / 1.5, 0.0), 1.0) / 2.0
+    begun = due = time.monotonic()
+    held_at, most, most_torque, lost, answer = None, 0.0, 0.0, 0, None
+    while (now := time.monotonic()) - begun < 60.0 and (held_at is None or now - held_at < words.seconds):
+        # Waits at the tool until it has all of its force (a check of its signs comes first), then goes down, and turns.
+        if held_at is None and answer is not None and answer.state == "live":
+            held_at = now
+        held = now - held_at if held_at is not None else 0.0
+        share = min(max((held - 0.5) / 1.0, 0.0), 1.0)
+        half = math.radians(words.turn) * min(max((held - 1.5) / 1.5, 0.0), 1.0) / 2.0
         answer = gateway.exchange((0.0, -words.press * share, 0.0), (0.0, math.sin(half), 0.0, math.cos(half)))
         if answer is None:
             lost += 1

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "systems/hold/count_play.hpp"
 #include "systems/hold/virtual_coupling.hpp"
 #include "systems/math/finite.hpp"
 #include "systems/math/frames.hpp"
@@ -13,179 +13,73 @@
 namespace torsion::engine {
 namespace {
 
-constexpr double kFarthest = 2.0;   // counts: what is farther is followed at once
-constexpr double kPlay = 1.0;       // counts: what is nearer is not
-constexpr double kSlowTime = 0.25;  // s: of the way between, twice that of a loose hand
-
-/// The part of a change beyond `free`, for each axis.
-glm::dvec3 beyond(const glm::dvec3& change, double free) {
-  return change - glm::clamp(change, -free, free);
-}
-
-/// The part of a change that is followed within `period`.
-glm::dvec3 followed(const glm::dvec3& change, double count, double period) {
-  const glm::dvec3 at_once = beyond(change, kFarthest * count);
-  const double share = std::min(1.0, period / kSlowTime);
-  return at_once + share * beyond(change - at_once, kPlay * count);
-}
-
-}  // namespace
-
-Pose follow_counts(const Pose& last, const Pose& measured, double count, double turn_count,
-                   double period) {
-  Pose pose = measured;
-  if (count > 0.0) {
-    pose.position = last.position + followed(measured.position - last.position, count, period);
-  }
-  if (turn_count > 0.0) {
-    const glm::dvec3 turn =
-        followed(turn_between(last.rotation, measured.rotation), turn_count, period);
-    const double angle = glm::length(turn);
-    pose.rotation = angle > 0.0
-                        ? glm::normalize(glm::angleAxis(angle, turn / angle) * last.rotation)
-                        : last.rotation;
-  }
-  return pose;
-}
-
-namespace {
-
-constexpr double kSlowest = 1e-9;  // m or rad a sample: slower, damping would divide by nothing
-// Used where a device's own are not known: a small handle alone, 50 g with a radius of 20 mm. The
-// mechanism and the fingers only add to it, and with more mass a late damper may do more.
-constexpr double kLightMass = 0.05;     // kg
-constexpr double kLightInertia = 1e-5;  // kg m^2
-
-/// @param held  force on the hand over the past interval
-/// @param way   of the handle over it
-/// @return the force to display over the next one
-glm::dvec3 keep_channel_passive(EnergyBooks& books, const glm::dvec3& held, const glm::dvec3& way,
-                                const glm::dvec3& wanted, double largest_damping,
-                                double largest_stored, double period) {
-  // The force on the hand does the work held . way on it.
-  books.stored = std::min(books.stored - glm::dot(held, way), largest_stored);
-  const double square = glm::dot(way, way);
-  if (books.stored >= 0.0 || square < kSlowest * kSlowest) {
-    return wanted;
-  }
-  // A damper of b takes b v^2 T = b way^2 / T over the next interval, should the hand go on.
-  const double damping = std::min(-books.stored * period / square, largest_damping);
-  books.dissipated += damping * square / period;
-  return wanted - damping * way / period;
-}
-
-}  // namespace
-
-PassivityLimits choose_passivity(const DeviceTraits& device) {
-  constexpr double kShareOfForce = 0.02;
-  const double lag = device.period + 2.0 * device.delay;
-  const auto damping = [&](double inertia, double largest, double count) {
-    const double most = 0.5 * inertia / lag;
-    return count > 0.0 ? std::min(most, kShareOfForce * largest * device.period / count) : most;
-  };
-  PassivityLimits limits;
-  limits.largest_damping = damping(device.mass > 0.0 ? device.mass : kLightMass,
-                                   device.largest_force, device.encoder_step);
-  limits.largest_turn_damping = damping(device.inertia > 0.0 ? device.inertia : kLightInertia,
-                                        device.largest_torque, device.encoder_turn_step);
-  limits.delay = static_cast<std::uint32_t>(
-      std::clamp(std::round(device.delay / device.period), 0.0, 1.0 * kLongestDelay));
-  return limits;
-}
-
-Wrench keep_passive(PassivityState& state, const PassivityLimits& limits, const Wrench& wanted,
-                    const glm::dvec3& shift, const glm::dvec3& turn, double period) {
-  const auto count = static_cast<std::uint32_t>(state.sent.size());
-  const Wrench& held =
-      state.sent[(state.samples + count - 1 - std::min(limits.delay, kLongestDelay)) % count];
-  const Wrench next{
-      keep_channel_passive(state.translation, held.force, shift, wanted.force,
-                           limits.largest_damping, limits.largest_stored, period),
-      keep_channel_passive(state.rotation, held.torque, turn, wanted.torque,
-                           limits.largest_turn_damping, limits.largest_stored, period)};
-  state.sent[state.samples % count] = next;
-  state.samples = (state.samples + 1) % count;
-  return next;
-}
-
-namespace {
-
-constexpr double kNothing = 1e-9;  // a share that is only the rounding of what fell
-
-glm::dvec3 at_most(const glm::dvec3& vector, double most) {
-  const double length = glm::length(vector);
-  return length > most ? vector * (most / length) : vector;
-}
-
-void change_state(OutputGuard& guard, const GuardLimits& limits, const GuardInput& input, bool good,
-                  double period) {
-  switch (guard.state) {
-    case GuardState::kWaiting:
-      guard.share = 0.0;
-      if (good && input.distance <= limits.near) {
-        guard.state = GuardState::kRising;
-      }
-      break;
-    case GuardState::kRising:
-      guard.share = std::min(1.0, guard.share + period / limits.rise);
-      guard.state = guard.share == 1.0 ? GuardState::kLive : GuardState::kRising;
-      break;
-    case GuardState::kLive:
-      break;
-    case GuardState::kFalling:
-      guard.share -= period / limits.fall;
-      guard.share = guard.share > kNothing ? guard.share : 0.0;
-      guard.state = guard.share == 0.0 ? GuardState::kWaiting : GuardState::kFalling;
-      break;
-  }
-}
-
-}  // namespace
-
-Wrench guard_output(OutputGuard& guard, const GuardLimits& limits, const GuardInput& input,
-                    double period) {
-  const bool good = !input.faulty && input.result_age <= limits.longest_silence &&
-                    finite(input.wanted) && std::isfinite(input.distance);
-  if (!good && (guard.state == GuardState::kLive || guard.state == GuardState::kRising)) {
-    // What was sent last decreases, from its whole size: it includes its share already.
-    guard.state = GuardState::kFalling;
-    guard.last_good = guard.sent;
-    guard.share = 1.0;
-  }
-  change_state(guard, limits, input, good, period);
-  const bool falling = guard.state == GuardState::kFalling;
-  const Wrench source = falling ? guard.last_good : good ? input.wanted : Wrench{};
-  const glm::dvec3 force = at_most(guard.share * source.force, limits.largest_force);
-  const glm::dvec3 torque = at_most(guard.share * source.torque, limits.largest_torque);
-  // A fall has its own rate, which is safer than any slower one.
-  const bool ended = guard.state == GuardState::kWaiting;
-  const double force_step =
-      falling || ended ? limits.largest_force : limits.largest_force_rate * period;
-  const double torque_step =
-      falling || ended ? limits.largest_torque : limits.largest_torque_rate * period;
-  guard.sent.force += at_most(force - guard.sent.force, force_step);
-  guard.sent.torque += at_most(torque - guard.sent.torque, torque_step);
-  return guard.sent;
-}
-
-namespace {
-
 constexpr double kNearHandle = 0.01;      // m: a hand finds that without a guide
 constexpr double kRiseTime = 0.01;        // s: from nothing to the largest force, at the fastest
+constexpr double kShareOfCheck = 0.05;    // of the largest force: may see whether it goes right
 constexpr double kUsualPeriod = 1e-3;     // s
 constexpr double kLongestPeriod = 20e-3;  // s: a gap, not a period
 
+/// As stiff as the device is able to display, by what is known of it now.
+void choose_springs(HandleSide& side, const DeviceTraits& traits) {
+  side.coupling = choose_coupling(traits).coupling;
+  side.couplings += 1;
+}
+
+double first_known(double said, double known) {
+  return said > 0.0 ? said : known;
+}
+
 void begin_epoch(HandleSide& side, const DeviceSample& sample, const Pose& tool) {
   side.epoch = sample.epoch;
-  side.coupling = choose_coupling(sample.traits).coupling;
+  choose_springs(side, sample.traits);
   side.books = {};
-  side.guard = {};
+  OutputGuard guard;
+  guard.force_heat = side.guard.force_heat;  // motors that are hot stay so
+  guard.torque_heat = side.guard.torque_heat;
+  guard.checked = !side.safety.checks_signs;
+  if (sample.plugged == side.plugged && side.couplings > 1) {
+    // The same device after a silence: its signs are what they were, and it is off if it was.
+    guard.checked = guard.checked || side.guard.checked;
+    guard.risen = side.guard.risen;
+    guard.signs = side.guard.signs;
+    guard.state = side.guard.state == GuardState::kOff ? GuardState::kOff : guard.state;
+    guard.reason = side.guard.state == GuardState::kOff ? side.guard.reason : guard.reason;
+  }
+  side.plugged = sample.plugged;
+  side.guard = guard;
+  side.velocity = glm::dvec3(0.0);
+  side.turn_speed = 0.0;
+  side.measured = sample.pose;
   side.limits.largest_force = side.coupling.largest_force;
   side.limits.largest_torque = side.coupling.largest_torque;
   side.limits.largest_force_rate = side.coupling.largest_force / kRiseTime;
   side.limits.largest_torque_rate = side.coupling.largest_torque / kRiseTime;
   side.limits.near = kNearHandle;
   side.map.origin = sample.steers_rate ? tool.position - sample.pose.position : side.home.position;
+}
+
+/// Of DeviceAxes: what is both measured and displayed.
+std::uint8_t felt_axes(const DeviceSample& sample) {
+  std::uint32_t axes = sample.sensed & sample.actuated & (kTranslationAxes | kRotationAxes);
+  const bool turns = (sample.sensed & (kTurnAxis | kRotationAxes)) != 0;
+  if ((axes & kRotationAxes) == 0 && turns && (sample.actuated & kTurnAxis) != 0) {
+    axes |= kTurnAxis;
+  }
+  return static_cast<std::uint8_t>(axes);
+}
+
+/// How fast the device's handle moves, smoothed over a few samples: one count in one short period
+/// is no speed.
+void measure_speed(HandleSide& side, const DeviceSample& sample, double period) {
+  constexpr double kMemory = 5e-3;  // s
+  if (!finite(sample.pose)) {
+    return;  // no force comes of it either
+  }
+  const double share = 1.0 / (period + kMemory);
+  side.velocity += share * (sample.pose.position - side.measured.position - side.velocity * period);
+  const double turn = glm::length(turn_between(side.measured.rotation, sample.pose.rotation));
+  side.turn_speed += share * (turn - side.turn_speed * period);
+  side.measured = sample.pose;
 }
 
 /// Until it takes hold, the handle has the tool's orientation, however it is held.
@@ -196,8 +90,38 @@ void wait_for_hold(HandleSide& side, const DeviceSample& sample, const Pose& too
   if (sample.steers_rate) {
     side.map.origin = tool.position - sample.pose.position;
   }
+  begin_sign_check(
+      side.signs, felt_axes(sample),
+      {kShareOfCheck * side.limits.largest_force, kShareOfCheck * side.limits.largest_torque},
+      side.home.rotation, sample.traits.delay);
   side.books = {};
   side.last = handle_pose(side.map, side.device);
+}
+
+/// What the guard is told of the device itself.
+GuardInput guard_input(HandleSide& side, const DeviceSample& sample, double period) {
+  GuardInput input;
+  input.live = sample.state == DeviceState::kLive;
+  input.held = side.safety.held_buttons == 0 || (sample.buttons & side.safety.held_buttons) != 0;
+  if (!input.live) {
+    return input;
+  }
+  if (!sample.steers_rate) {
+    measure_speed(side, sample, period);
+  }
+  input.velocity = side.velocity;
+  input.turn_speed = side.turn_speed;
+  if (side.guard.state == GuardState::kChecking) {
+    input.signs = take_sign_sample(side.signs, sample.pose, period);
+  }
+  input.probe = sign_probe(side.signs);
+  ThermalLimit& force = side.guard.force_heat;
+  ThermalLimit& torque = side.guard.torque_heat;
+  force.continuous = first_known(side.safety.continuous_force, sample.traits.continuous_force);
+  torque.continuous = first_known(side.safety.continuous_torque, sample.traits.continuous_torque);
+  force.time = first_known(sample.traits.thermal_time, ThermalLimit{}.time);
+  torque.time = force.time;
+  return input;
 }
 
 }  // namespace
@@ -218,8 +142,8 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
   }
   side.passivity = choose_passivity(sample.traits);  // the rate is measured all the time
   const bool waits = live && side.guard.state == GuardState::kWaiting;
-  const double period =
-      waits ? kUsualPeriod : std::clamp(now - side.last_time, 1e-5, kLongestPeriod);
+  const double elapsed = std::clamp(now - side.last_time, 1e-5, kLongestPeriod);
+  const double period = waits ? kUsualPeriod : elapsed;
   if (waits) {
     wait_for_hold(side, sample, tool);
   } else if (live) {
@@ -227,19 +151,26 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
                                 sample.traits.encoder_turn_step, period);
   }
   outcome.handle = live ? handle_pose(side.map, side.device) : side.last;
-  GuardInput input;
-  input.wanted =
+  const Wrench wanted =
       keep_passive(side.books, side.passivity,
                    felt_wrench(side.hold, side.coupling, outcome.handle, tool, result.contact),
                    outcome.handle.position - side.last.position,
                    turn_between(side.last.rotation, outcome.handle.rotation), period);
-  input.result_age = result.any ? now - result.time : 1.0;
-  input.faulty = !live || result.faulty;
   outcome.distance = glm::length(outcome.handle.position - tool.position);
+  GuardInput input = guard_input(side, sample, elapsed);
+  input.wanted = wanted;
+  input.result_age = result.any ? now - result.time : 1.0;
+  input.faulty = result.faulty;
   input.distance = outcome.distance;
+  const bool was_checked = side.guard.checked;
   outcome.wrench = guard_output(side.guard, side.limits, input, period);
+  note_sent(side.books, outcome.wrench);
+  if (side.guard.checked && !was_checked) {
+    choose_springs(side, sample.traits);
+  }
   if (sample.state == DeviceState::kAbsent) {  // nothing displays what falls
-    side.guard = {};
+    side.guard.state = GuardState::kWaiting;   // a device that was off has gone
+    side.guard.sent = {};
     outcome.wrench = {};
   }
   outcome.holds = live && side.guard.state != GuardState::kWaiting;

@@ -17,6 +17,9 @@ DeviceView live_view(std::uint8_t actuated) {
   view.sample.rate = 998.0;
   view.coupling = {450.0, 0.0, 0.5, 0.0, 3.0, 0.1};
   view.outcome.holds = true;
+  view.guard = GuardState::kLive;
+  view.reason = GuardReason::kNone;
+  view.signs = SignVerdict::kRight;
   return view;
 }
 
@@ -61,6 +64,8 @@ TEST(DeviceWordsTest, ABannerWhereThereIsNoForceAndNoneWhereAllIsWell) {
   EXPECT_EQ(device_banner(view, kStepsGoOn).text, "");
   EXPECT_TRUE(has(device_banner(view, !kStepsGoOn).text, "No force in a pause"));
   view.outcome.holds = false;
+  view.guard = GuardState::kWaiting;
+  view.reason = GuardReason::kFar;
   view.outcome.distance = 0.023;
   EXPECT_TRUE(has(device_banner(view, kStepsGoOn).text, "23 mm to go"));
   EXPECT_FALSE(device_banner(view, kStepsGoOn).failed);
@@ -73,6 +78,35 @@ TEST(DeviceWordsTest, ABannerWhereThereIsNoForceAndNoneWhereAllIsWell) {
   view.losses = 1;
   EXPECT_TRUE(device_banner(view, kStepsGoOn).failed);
   EXPECT_TRUE(has(device_banner(view, kStepsGoOn).text, "gone"));
+}
+
+TEST(DeviceWordsTest, WhatTakesAForceAwayIsSaidWithWhatToDo) {
+  DeviceView view = live_view(kTranslationAxes);
+  view.guard = GuardState::kChecking;
+  EXPECT_TRUE(has(device_banner(view, true).text, "goes where it is pushed"));
+  view.guard = GuardState::kOff;
+  view.reason = GuardReason::kReversed;
+  view.reversed_axes = 1U << 2U | 1U << 4U;
+  EXPECT_TRUE(device_banner(view, true).failed);
+  const std::string reversed = device_banner(view, true).text;
+  EXPECT_TRUE(has(reversed, "(z, turning about y)") && has(reversed, "plug it in again"))
+      << reversed;
+  EXPECT_TRUE(has(describe(view), "Mend the signs of its motors or encoders"));
+  view.reason = GuardReason::kRanAway;
+  EXPECT_TRUE(has(device_banner(view, true).text, "hold it firmly"));
+  view.guard = GuardState::kWaiting;
+  view.reason = GuardReason::kLetGo;
+  EXPECT_TRUE(has(device_banner(view, true).text, "hold the button"));
+  view.reason = GuardReason::kFar;
+  view.stopped_by = GuardReason::kTooFast;
+  EXPECT_TRUE(has(device_banner(view, true).text, "1.2 m/s")) << device_banner(view, true).text;
+  view.guard = GuardState::kLive;
+  view.stopped_by = GuardReason::kNone;
+  view.is_warm = true;
+  EXPECT_TRUE(has(device_banner(view, true).text, "warm"));
+  view.is_warm = false;
+  view.signs = SignVerdict::kUnresolved;
+  EXPECT_TRUE(has(describe(view), "could not be seen"));
 }
 
 TEST(DeviceWordsTest, AMotorsErrorIsNamedWithWhatToDoInBannerAndSummary) {

@@ -84,6 +84,7 @@ LoopOutcome hold(const HeldScene& scene, const HandTraits& traits, double until,
   EmulatedHand hand(traits, wanted);
   HandleSide side;
   side.home = wanted;
+  side.limits.first_rise = side.limits.rise;  // what comes after the first second is looked at
   DeviceSample sample;
   sample.state = DeviceState::kLive;
   sample.epoch = 1;

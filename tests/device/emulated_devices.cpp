@@ -94,6 +94,9 @@ Buffer told(EmulatedFalcon& device, Bytes packet) {
   for (std::size_t motor = 0; motor < 3; ++motor) {
     device.motors[motor] = nibbles_at(packet, 1 + 4 * motor);
   }
+  if (device.keeps_what_it_heard) {
+    device.heard.push_back(device.motors);
+  }
   const auto angles = falcon_inverse(device.place).value_or(glm::dvec3(0.6));
   Buffer answer = {'<'};
   for (glm::length_t leg = 0; leg < 3; ++leg) {

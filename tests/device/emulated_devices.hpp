@@ -28,8 +28,10 @@ struct EmulatedFalcon {
   std::uint8_t buttons = 0;
   glm::dvec3 place{0.0, 0.0, 0.115};     // m, device axes
   std::array<std::int16_t, 3> motors{};  // as told last
-  Buffer firmware;                       // as it arrived
-  std::size_t firmware_size = 0;         // how long it is to be
+  bool keeps_what_it_heard = false;
+  std::vector<std::array<std::int16_t, 3>> heard;  // of motors, where it keeps that
+  Buffer firmware;                                 // as it arrived
+  std::size_t firmware_size = 0;                   // how long it is to be
   bool echoes_wrongly = false;
   std::uint32_t loses_ready = 0;  // so many echoes of "ready" get lost; a second "ready" is a byte
                                   // of firmware

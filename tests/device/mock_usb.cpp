@@ -125,9 +125,10 @@ void MockDevice::unplug() {
     const std::lock_guard lock(mutex_);
     gone_ = true;
     claims_.clear();
-    while (!reads_.empty()) {  // the kernel gives all back; POLLERR does not come here
-      finish(std::move(reads_.front()), -ESHUTDOWN);
-      reads_.pop_front();
+    for (std::deque<Urb>* const queue : {&reads_, &writes_}) {
+      for (; !queue->empty(); queue->pop_front()) {  // the kernel gives all back; POLLERR does not
+        finish(std::move(queue->front()), -ESHUTDOWN);  // come here
+      }
     }
   }
   umockdev_testbed_uevent(bed_, sysfs_.c_str(), "remove");
@@ -149,6 +150,12 @@ void MockDevice::fail_next_read(int status) {
   const std::lock_guard lock(mutex_);
   fault_ = status;
   match();
+}
+
+void MockDevice::hang_writes(bool hangs) {
+  const std::lock_guard lock(mutex_);
+  hangs_ = hangs;
+  tell_all();
 }
 
 void MockDevice::refuse_claims(int error) {
@@ -188,6 +195,7 @@ void MockDevice::on_vanished(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* c
   device.done_.erase(client);
   std::erase_if(device.claims_, [client](const auto& claim) { return claim.second == client; });
   std::erase_if(device.reads_, [client](const Urb& urb) { return urb.client == client; });
+  std::erase_if(device.writes_, [client](const Urb& urb) { return urb.client == client; });
 }
 
 gboolean MockDevice::answer(UMockdevIoctlClient* client) {
@@ -316,14 +324,25 @@ gboolean MockDevice::submit(UMockdevIoctlClient* client, UMockdevIoctlData* argu
     reads_.push_back({client, std::move(data)});
     match();
   } else {
-    Buffer in = told(device_, Bytes(bytes, size));
-    finish({client, std::move(data)}, 0);
+    writes_.push_back({client, std::move(data)});
+    tell_all();
+  }
+  return granted(client);
+}
+
+void MockDevice::tell_all() {
+  while (!hangs_ && !writes_.empty()) {
+    Urb urb = std::move(writes_.front());
+    writes_.pop_front();
+    const auto* request = reinterpret_cast<const usbdevfs_urb*>(urb.data->data);
+    const auto size = static_cast<std::size_t>(request->buffer_length);
+    Buffer in = told(device_, Bytes(static_cast<const std::uint8_t*>(request->buffer), size));
+    finish(std::move(urb), 0);
     if (!in.empty()) {
       packets_.push_back(std::move(in));
       match();
     }
   }
-  return granted(client);
 }
 
 gboolean MockDevice::reap(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
@@ -356,15 +375,17 @@ gboolean MockDevice::reap(UMockdevIoctlClient* client, UMockdevIoctlData* argume
 gboolean MockDevice::discard(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
   gulong address = 0;  // the argument is the client's own pointer to the transfer
   std::memcpy(&address, argument->data, sizeof address);
-  const auto found = std::ranges::find_if(reads_, [&](const Urb& urb) {
-    return urb.client == client && urb.data->client_addr == address;
-  });
-  if (found == reads_.end()) {
-    return refused(client, EINVAL);
+  for (std::deque<Urb>* const queue : {&reads_, &writes_}) {
+    const auto found = std::ranges::find_if(*queue, [&](const Urb& urb) {
+      return urb.client == client && urb.data->client_addr == address;
+    });
+    if (found != queue->end()) {
+      finish(std::move(*found), -ENOENT);
+      queue->erase(found);
+      return granted(client);
+    }
   }
-  finish(std::move(*found), -ENOENT);
-  reads_.erase(found);
-  return granted(client);
+  return refused(client, EINVAL);
 }
 
 MockDevice& MockUsb::plug(EmulatedDevice device, std::string driver) {

@@ -36,6 +36,8 @@ class MockDevice {
   void send(const Buffer& packet);
   /// The next read ends with this, as the kernel says it: -EPIPE, -EOVERFLOW, -EPROTO.
   void fail_next_read(int status);
+  /// It takes no packet any more, until it does again: those of before that were not called back.
+  void hang_writes(bool hangs);
   /// Claims end with this errno; 0: they are granted, but of what another open file has.
   void refuse_claims(int error);
   /// Nobody but who may open everything may open its node. @pre it is plugged in
@@ -78,6 +80,8 @@ class MockDevice {
   gboolean release(UMockdevIoctlClient* client, UMockdevIoctlData* argument);
   void finish(Urb urb, int status, Buffer bytes = {});
   void match();
+  /// Packets get to the device, unless it takes none.
+  void tell_all();
   void show_driver(unsigned interface, const std::string& driver) const;
 
   UMockdevTestbed* bed_;
@@ -97,6 +101,8 @@ class MockDevice {
   int clears_ = 0;
   std::optional<int> fault_;
   std::deque<Urb> reads_;
+  bool hangs_ = false;
+  std::deque<Urb> writes_;  // that hang
   std::deque<Buffer> packets_;
   std::map<UMockdevIoctlClient*, std::deque<Done>> done_;
 };

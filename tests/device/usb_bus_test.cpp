@@ -169,6 +169,26 @@ TEST_F(UsbBusTest, AFalconAndAKnobAreOneDevice) {
   EXPECT_TRUE(falcon.without_force());
 }
 
+TEST_F(UsbBusTest, AForceThatADeviceDoesNotTakeIsCalledBack) {
+  MockDevice& falcon = usb_.plug(EmulatedFalcon{});
+  start();
+  ASSERT_TRUE(test::comes_true([&] { return !falcon.without_force(); }));
+  falcon.hang_writes(true);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  // What it hears of next is no force of a tenth of a second ago: by now it is to let go.
+  falcon.with<EmulatedFalcon>([](EmulatedFalcon& one) {
+    one.heard.clear();
+    one.keeps_what_it_heard = true;
+  });
+  falcon.hang_writes(false);
+  ASSERT_TRUE(test::comes_true([&] {
+    return falcon.with<EmulatedFalcon>([](EmulatedFalcon& one) { return !one.heard.empty(); });
+  }));
+  const auto first = falcon.with<EmulatedFalcon>([](EmulatedFalcon& one) { return one.heard[0]; });
+  EXPECT_EQ(first, (std::array<std::int16_t, 3>{}));
+  EXPECT_TRUE(test::comes_true([&] { return !falcon.without_force(); }));  // and it goes on
+}
+
 TEST_F(UsbBusTest, IgnoresWhatIsNoDeviceOfOurs) {
   usb_.plug(EmulatedOdrive{});
   UsbBusOptions options;

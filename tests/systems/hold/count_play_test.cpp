@@ -1,3 +1,5 @@
+#include "systems/hold/count_play.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -5,7 +7,6 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/hold/handle_side.hpp"
 #include "systems/math/frames.hpp"
 #include "tests/systems/hold/held_tool.hpp"
 

@@ -45,7 +45,7 @@ EmulatedHand::EmulatedHand(const HandTraits& traits, const Pose& start, std::uin
 
 Pose EmulatedHand::measured() const {
   const glm::dvec3 turn = turn_between(glm::dquat(1.0, 0.0, 0.0, 0.0), state_.pose.rotation);
-  return {counted(state_.pose.position, traits_.encoder_step),
+  return {counted(traits_.encoders * state_.pose.position, traits_.encoder_step),
           quaternion(counted(turn, traits_.encoder_turn_step))};
 }
 
@@ -57,8 +57,8 @@ void EmulatedHand::move(const Wrench& wrench, const Pose& wanted, double period)
   const Wrench& due = late_[(at_ + kLongestDelay - traits_.delay - later) % kLongestDelay];
   at_ += 1;
   if (std::uniform_real_distribution<double>()(random_) >= traits_.dropped) {
-    felt_ = {at_most(due.force, traits_.largest_force),
-             at_most(due.torque, traits_.largest_torque)};
+    felt_ = {traits_.motors * at_most(due.force, traits_.largest_force),
+             traits_.turn_motor * at_most(due.torque, traits_.largest_torque)};
   }
   std::normal_distribution<double> normal(0.0, 1.0);
   const double x = normal(random_);

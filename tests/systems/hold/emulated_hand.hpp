@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <random>
 
+#include <glm/mat3x3.hpp>
+
 #include "ecs/device_sample.hpp"
 #include "systems/hold/virtual_coupling.hpp"
 
@@ -29,6 +31,9 @@ struct HandTraits {
   std::uint32_t delay = 0;            // samples between a force computed and sent
   std::uint32_t jitter = 0;           // samples: up to this many later, at random
   double dropped = 0.0;               // share of samples that arrive too late to be sent
+  glm::dmat3 motors{1.0};             // what they make of a force: the identity where all are right
+  double turn_motor = 1.0;            // likewise of a torque
+  glm::dvec3 encoders{1.0};           // signs of what they say
 };
 
 /// What stability may know of it.

@@ -7,7 +7,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/hold/handle_side.hpp"
+#include "systems/hold/output_guard.hpp"
+#include "systems/hold/passivity.hpp"
 #include "systems/hold/tool_hold.hpp"
 #include "systems/hold/virtual_coupling.hpp"
 #include "systems/math/frames.hpp"
@@ -52,6 +53,7 @@ LoopOutcome run_loop(const HandTraits& traits, const DeviceTraits& device,
   guard_limits.largest_torque = traits.largest_torque;
   guard_limits.largest_force_rate = 1e5;
   guard_limits.largest_torque_rate = 1e4;
+  guard_limits.first_rise = guard_limits.rise;
   OutputGuard guard;
   LoopOutcome outcome;
   Pose last = hand.measured();
@@ -77,7 +79,9 @@ LoopOutcome run_loop(const HandTraits& traits, const DeviceTraits& device,
     GuardInput input;
     input.wanted = passive;
     input.faulty = physics.clock().faults != 0;
-    hand.move(guard_output(guard, guard_limits, input, kPeriod), wanted, kPeriod);
+    const Wrench sent = guard_output(guard, guard_limits, input, kPeriod);
+    note_sent(books, sent);
+    hand.move(sent, wanted, kPeriod);
     outcome.faults |= physics.clock().faults;
     outcome.most_gained = std::max(outcome.most_gained, hand.motor_work());
     if (i >= steps - quarter) {

@@ -1,10 +1,12 @@
+#include "systems/hold/output_guard.hpp"
+
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/hold/handle_side.hpp"
 #include "tests/systems/hold/held_tool.hpp"
 
 namespace torsion::engine {
@@ -18,6 +20,7 @@ GuardLimits limits() {
   limits.largest_torque = 0.2;
   limits.largest_force_rate = 4000.0;
   limits.largest_torque_rate = 100.0;
+  limits.first_rise = limits.rise;
   return limits;
 }
 
@@ -134,6 +137,103 @@ TEST(OutputGuardTest, AFaultWhileItRisesFallsFromWhereItIs) {
     guard_output(guard, limits(), faulty, kPeriod);
   }
   EXPECT_EQ(guard.sent.force, glm::dvec3(0.0));
+}
+
+TEST(OutputGuardTest, RisesOverASecondTheFirstTimeAndQuicklyAfterwards) {
+  GuardLimits slow = limits();
+  slow.first_rise = 1.0;
+  OutputGuard guard;
+  double before = 0.0;
+  for (int i = 0; i < 1100; ++i) {
+    const double force = guard_output(guard, slow, wants(4.0), kPeriod).force.y;
+    EXPECT_LE(force - before, 4.0 * kPeriod + 1e-12);
+    before = force;
+  }
+  EXPECT_EQ(guard.sent.force.y, 4.0);
+  GuardInput faulty = wants(4.0);
+  faulty.faulty = true;
+  for (int i = 0; i < 20; ++i) {
+    guard_output(guard, slow, faulty, kPeriod);
+  }
+  EXPECT_EQ(guard.sent.force, glm::dvec3(0.0));
+  for (int i = 0; i < 60; ++i) {
+    guard_output(guard, slow, wants(4.0), kPeriod);
+  }
+  EXPECT_EQ(guard.sent.force.y, 4.0);
+}
+
+/// Any of what takes a force away. @return how many samples until there is none
+int samples_to_fall(OutputGuard& guard, const GuardInput& input) {
+  int samples = 0;
+  for (; samples < 100 && guard.sent.force != glm::dvec3(0.0); ++samples) {
+    guard_output(guard, limits(), input, kPeriod);
+  }
+  return samples;
+}
+
+TEST(OutputGuardTest, FallsWhenTheButtonIsLetGoAndWhenTheHandleIsTooFast) {
+  GuardInput let_go = wants(4.0);
+  let_go.held = false;
+  GuardInput fast = wants(4.0);
+  fast.velocity = {0.0, 0.0, 1.3};
+  GuardInput spinning = wants(4.0);
+  spinning.turn_speed = 41.0;
+  for (const auto& [input, reason] :
+       {std::pair(let_go, GuardReason::kLetGo), std::pair(fast, GuardReason::kTooFast),
+        std::pair(spinning, GuardReason::kTooFast)}) {
+    OutputGuard guard = live(wants(4.0));
+    EXPECT_LE(samples_to_fall(guard, input), 11);  // 10 ms
+    EXPECT_EQ(guard.reason, reason);
+    guard_output(guard, limits(), input, kPeriod);
+    EXPECT_EQ(guard.state, GuardState::kWaiting);
+    for (int i = 0; i < 100; ++i) {  // nothing while it lasts
+      EXPECT_EQ(guard_output(guard, limits(), input, kPeriod).force, glm::dvec3(0.0));
+    }
+    for (int i = 0; i < 100; ++i) {
+      guard_output(guard, limits(), wants(4.0), kPeriod);
+    }
+    EXPECT_EQ(guard.sent.force.y, 4.0);
+  }
+}
+
+TEST(OutputGuardTest, OneThatGoesTheOtherWayStaysOff) {
+  OutputGuard guard;
+  GuardInput input = wants(4.0);
+  input.probe.force.y = 0.3;
+  input.signs = SignVerdict::kRunning;
+  for (int i = 0; i < 500; ++i) {
+    EXPECT_LE(guard_output(guard, limits(), input, kPeriod).force.y, 0.3);
+  }
+  ASSERT_EQ(guard.state, GuardState::kChecking);
+  EXPECT_EQ(guard.sent.force.y, 0.3);
+  input.signs = SignVerdict::kReversed;
+  EXPECT_LE(samples_to_fall(guard, input), 11);
+  for (int i = 0; i < 1000; ++i) {
+    guard_output(guard, limits(), wants(4.0), kPeriod);
+  }
+  EXPECT_EQ(guard.state, GuardState::kOff);
+  EXPECT_EQ(guard.reason, GuardReason::kReversed);
+  EXPECT_EQ(guard.sent.force, glm::dvec3(0.0));
+}
+
+TEST(OutputGuardTest, OneOfUnknownSignsThatRunsAgainstTheForceIsTurnedOff) {
+  for (const SignVerdict signs : {SignVerdict::kUnresolved, SignVerdict::kRight}) {
+    GuardLimits slow = limits();
+    slow.first_rise = 1.0;
+    OutputGuard guard;
+    GuardInput input = wants(4.0);
+    input.signs = signs;
+    for (int i = 0; i < 300; ++i) {
+      guard_output(guard, slow, input, kPeriod);
+    }
+    ASSERT_EQ(guard.state, GuardState::kRising);
+    input.velocity = {0.0, -0.4, 0.0};
+    for (int i = 0; i < 20; ++i) {
+      guard_output(guard, slow, input, kPeriod);
+    }
+    // A hand that pushes may well be as fast, where it is known that the device is right.
+    EXPECT_EQ(guard.state, signs == SignVerdict::kRight ? GuardState::kRising : GuardState::kOff);
+  }
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
+#include "systems/hold/passivity.hpp"
+
 #include <cmath>
 #include <random>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "systems/hold/handle_side.hpp"
 #include "tests/systems/hold/held_tool.hpp"
 
 namespace torsion::engine {

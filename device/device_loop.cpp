@@ -364,6 +364,19 @@ void rest(DeviceLoop& loop, std::size_t row, double now, UsbRequests& requests) 
   with_driver(loop, row, now, requests, [](auto& driver, DriverCall& call) { rest(driver, call); });
 }
 
+void plan_rest(const DeviceLoop& loop, std::size_t row, double now, UsbRequests& requests) {
+  const DeviceRow& device = loop.rows[row];
+  TORSION_ASSERT(device.used);
+  Driver driver = device.driver;
+  DriverReport report = device.report;
+  const auto no_wrench = [](void*, const DeviceSample&) {
+    return Wrench{};
+  };
+  DriverCall call{now,    device.identity, loop.options.drivers,
+                  report, requests,        {nullptr, no_wrench}};
+  std::visit([&](auto& one) { rest(one, call); }, driver);
+}
+
 void detach(DeviceLoop& loop, std::size_t row, double now) {
   DeviceRow& device = loop.rows[row];
   const bool mattered = device.role != DeviceRole::kNone;

@@ -80,6 +80,9 @@ void wake(DeviceLoop& loop, std::size_t row, double now, UsbRequests& requests);
 /// The device will be closed: what leaves its motors without force.
 void rest(DeviceLoop& loop, std::size_t row, double now, UsbRequests& requests);
 
+/// What rest() would ask for now, without asking.
+void plan_rest(const DeviceLoop& loop, std::size_t row, double now, UsbRequests& requests);
+
 /// The device is gone. From here on no other displays a force that counted on it.
 void detach(DeviceLoop& loop, std::size_t row, double now);
 

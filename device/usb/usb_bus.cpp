@@ -10,6 +10,7 @@
 #include <libusb-1.0/libusb.h>
 
 #include "device/steady_clock.hpp"
+#include "device/usb/release_process.hpp"
 #include "device/usb/usb_keeper.hpp"
 
 namespace torsion::engine {
@@ -32,6 +33,7 @@ struct UsbBus::State {
   std::vector<libusb_device*> left;  // only to compare with
   std::vector<KeeperJob> done;
   std::unique_ptr<UsbKeeper> keeper;
+  std::unique_ptr<ReleaseProcess> release;  // null: the system makes no process
   std::atomic<bool> stop = false;
   std::atomic<std::uint64_t> submits_after_loss = 0;
   double stop_at = kNever;     // s: when the devices are closed
@@ -45,6 +47,10 @@ struct UsbBus::State {
 
   /// The device is not used any more: the loop forgets it, its transfers end.
   void lose(UsbPort& port) {
+    if (port.looked_after) {
+      port.looked_after = false;
+      release->forget(port.row);
+    }
     if (port.attached) {
       port.attached = false;
       detach(loop, port.row, steady_now());
@@ -77,6 +83,18 @@ struct UsbBus::State {
     }
   }
 
+  /// From when a device is live until it is lost, another process knows how to let go of it.
+  void look_after(UsbPort& port) {
+    const DeviceRow& device = loop.rows[port.row];
+    if (port.looked_after || !release || device.report.sample.state != DeviceState::kLive) {
+      return;
+    }
+    port.looked_after = true;
+    UsbRequests last;
+    plan_rest(loop, port.row, steady_now(), last);
+    release->look_after(port.row, port.identity, last);
+  }
+
   void deliver(UsbPort& port, const UsbEvent& event) {
     if (!port.attached || port.state != UsbPortState::kOpen) {
       return;
@@ -84,6 +102,9 @@ struct UsbBus::State {
     UsbRequests requests;
     take(loop, port.row, event, steady_now(), requests);
     execute(port, requests);
+    if (port.attached) {
+      look_after(port);
+    }
   }
 
   static void LIBUSB_CALL on_transfer(libusb_transfer* usb) {
@@ -297,6 +318,7 @@ UsbBus::UsbBus(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 Result<std::unique_ptr<UsbBus>> UsbBus::start(const UsbBusOptions& options, SampleSink sink) {
   auto state = std::make_unique<State>();
+  state->release = ReleaseProcess::start();  // before there are threads and open devices
   const int error = libusb_init(&state->context);
   if (error != 0) {
     return Error{std::string("USB cannot be used: ") + libusb_strerror(error)};
@@ -328,6 +350,7 @@ UsbBus::~UsbBus() {
   libusb_interrupt_event_handler(state_->context);
   state_->thread.join();
   state_->keeper.reset();
+  state_->release.reset();  // all have been let go of
   const bool all_back =
       std::ranges::all_of(state_->ports, [](const UsbPort& port) { return port.under_way == 0; });
   if (!all_back) {

@@ -46,6 +46,7 @@ struct UsbPort {
   UsbPortState state = UsbPortState::kFree;
   bool attached = false;  // the device loop knows it
   bool cancelled = false;
+  bool looked_after = false;               // by the release process
   std::atomic<bool> left = false;          // the device has gone, perhaps while it is being opened
   libusb_device* device = nullptr;         // with a reference
   libusb_device_handle* handle = nullptr;  // written while nobody else looks at the port

@@ -163,6 +163,14 @@ void MockDevice::refuse_claims(int error) {
   refused_ = error;
 }
 
+void MockDevice::close_files() {
+  const std::lock_guard lock(mutex_);
+  claims_.clear();
+  done_.clear();
+  reads_.clear();
+  writes_.clear();
+}
+
 void MockDevice::close_node() {
   constexpr mode_t kMarksACharacterDevice = S_ISVTX;  // to umockdev
   ::chmod((root_ + node_).c_str(), kMarksACharacterDevice);
@@ -192,10 +200,14 @@ void MockDevice::on_vanished(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* c
                              gpointer self) {
   auto& device = *static_cast<MockDevice*>(self);
   const std::lock_guard lock(device.mutex_);
-  device.done_.erase(client);
-  std::erase_if(device.claims_, [client](const auto& claim) { return claim.second == client; });
-  std::erase_if(device.reads_, [client](const Urb& urb) { return urb.client == client; });
-  std::erase_if(device.writes_, [client](const Urb& urb) { return urb.client == client; });
+  device.forget(client);
+}
+
+void MockDevice::forget(UMockdevIoctlClient* client) {
+  done_.erase(client);
+  std::erase_if(claims_, [client](const auto& claim) { return claim.second == client; });
+  std::erase_if(reads_, [client](const Urb& urb) { return urb.client == client; });
+  std::erase_if(writes_, [client](const Urb& urb) { return urb.client == client; });
 }
 
 gboolean MockDevice::answer(UMockdevIoctlClient* client) {
@@ -241,6 +253,8 @@ gboolean MockDevice::answer(UMockdevIoctlClient* client) {
       return granted(client);
     case USBDEVFS_SUBMITURB:
       return submit(client, argument);
+    case USBDEVFS_BULK:
+      return bulk(client, argument);
     case USBDEVFS_REAPURB:
     case USBDEVFS_REAPURBNDELAY:
       return reap(client, argument);
@@ -306,10 +320,42 @@ void MockDevice::match() {
   }
 }
 
+bool MockDevice::may_use(UMockdevIoctlClient* client, std::uint8_t endpoint) const {
+  for (const UsbInterface& interface : identity_of(device_).interfaces) {
+    const bool has = std::ranges::any_of(interface.endpoints, [endpoint](const UsbEndpoint& one) {
+      return one.address == endpoint;
+    });
+    const auto claim = claims_.find(interface.number);
+    if (has && claim != claims_.end() && claim->second == client) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// A packet out, at once.
+gboolean MockDevice::bulk(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
+  const Data data(umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_bulktransfer), nullptr));
+  const auto* transfer = reinterpret_cast<const usbdevfs_bulktransfer*>(data->data);
+  if (!may_use(client, static_cast<std::uint8_t>(transfer->ep))) {
+    return refused(client, EBUSY);
+  }
+  const Data buffer(umockdev_ioctl_data_resolve(data.get(), offsetof(usbdevfs_bulktransfer, data),
+                                                transfer->len, nullptr));
+  if ((transfer->ep & kUsbIn) != 0 || hangs_) {
+    return refused(client, ETIMEDOUT);
+  }
+  told(device_, Bytes(reinterpret_cast<const std::uint8_t*>(buffer->data), transfer->len));
+  return complete(client, static_cast<int>(transfer->len), 0);
+}
+
 gboolean MockDevice::submit(UMockdevIoctlClient* client, UMockdevIoctlData* argument) {
   Data data(umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_urb), nullptr));
   const auto* urb = reinterpret_cast<const usbdevfs_urb*>(data->data);
   const auto size = static_cast<std::size_t>(urb->buffer_length);
+  if (urb->type != USBDEVFS_URB_TYPE_CONTROL && !may_use(client, urb->endpoint)) {
+    return refused(client, EBUSY);
+  }
   // What is resolved belongs to `data`, which keeps it until it is reaped.
   const Data buffer(
       umockdev_ioctl_data_resolve(data.get(), offsetof(usbdevfs_urb, buffer), size, nullptr));
@@ -368,6 +414,10 @@ gboolean MockDevice::reap(UMockdevIoctlClient* client, UMockdevIoctlData* argume
   }
   urb->actual_length = done.status == 0 ? static_cast<int>(size) : 0;
   const Data pointer(umockdev_ioctl_data_resolve(argument, 0, sizeof(gpointer), nullptr));
+  if (!pointer) {  // its process was killed in the middle of this, and nobody says that it vanished
+    forget(client);
+    return refused(client, EFAULT);
+  }
   umockdev_ioctl_data_set_ptr(pointer.get(), 0, done.data.get());
   return granted(client);
 }

@@ -40,6 +40,8 @@ class MockDevice {
   void hang_writes(bool hangs);
   /// Claims end with this errno; 0: they are granted, but of what another open file has.
   void refuse_claims(int error);
+  /// As the kernel does for a process that ends: umockdev does not say so of one that is killed.
+  void close_files();
   /// Nobody but who may open everything may open its node. @pre it is plugged in
   void close_node();
 
@@ -71,8 +73,13 @@ class MockDevice {
 
   static gboolean on_ioctl(UMockdevIoctlBase* base, UMockdevIoctlClient* client, gpointer self);
   static void on_vanished(UMockdevIoctlBase* base, UMockdevIoctlClient* client, gpointer self);
+  /// Its open file is closed.
+  void forget(UMockdevIoctlClient* client);
   gboolean answer(UMockdevIoctlClient* client);
   gboolean submit(UMockdevIoctlClient* client, UMockdevIoctlData* argument);
+  gboolean bulk(UMockdevIoctlClient* client, UMockdevIoctlData* argument);
+  /// As the kernel does: only whose file has the interface may talk to its endpoint.
+  [[nodiscard]] bool may_use(UMockdevIoctlClient* client, std::uint8_t endpoint) const;
   gboolean reap(UMockdevIoctlClient* client, UMockdevIoctlData* argument);
   gboolean discard(UMockdevIoctlClient* client, UMockdevIoctlData* argument);
   gboolean driver(UMockdevIoctlClient* client, UMockdevIoctlData* argument);

@@ -107,6 +107,7 @@ void compose_state(const DeviceLoop& loop, DeviceSample& whole) {
     if (whole.trouble == DeviceTrouble::kNone && sample.trouble != DeviceTrouble::kNone) {
       whole.trouble = sample.trouble;
       whole.motor_errors = sample.motor_errors;
+      whole.motor = sample.motor;
     }
     whole.state = DeviceState::kStarting;
   }

@@ -17,7 +17,7 @@ std::string trouble_text(const DeviceSample& sample) {
     case DeviceTrouble::kBadFirmware:
       return "it did not take the firmware file; is it the right one? Unplug it and plug it in";
     case DeviceTrouble::kWrongFirmware:
-      return "its firmware is another version than Torsion speaks to (ODrive: 0.5.4 to 0.5.6); "
+      return "its firmware is another version than Torsion speaks to (ODrive: 0.5.4 to 0.6); "
              "update it with its maker's tool, then unplug it and plug it in";
     case DeviceTrouble::kNotHomed:
       return "it does not know its zero yet; move it through its whole range (a WoodenHaptics: "
@@ -30,9 +30,10 @@ std::string trouble_text(const DeviceSample& sample) {
     case DeviceTrouble::kNoClient:
       return "no client speaks to the gateway; start one (docs/gateway.md)";
     case DeviceTrouble::kMotorError:
-      return fmt::format("its motor has no force ({}). {}", odrive_error_text(sample.motor_errors),
-                         sample.motor_errors == kOdriveWatchdog ? "It is set up anew"
-                                                                : "Then unplug it and plug it in");
+      return fmt::format(
+          "its motor has no force ({}). {}", odrive_error_text(sample.motor, sample.motor_errors),
+          only_unfed(sample.motor, sample.motor_errors) ? "It is set up anew"
+                                                        : "Then unplug it and plug it in");
   }
   return "";
 }

@@ -37,6 +37,9 @@ enum class DeviceTrouble : std::uint8_t {
   kMotorError,     // its motor's controller has let go: DeviceSample::motor_errors
 };
 
+/// Whose numbers DeviceSample::motor_errors are.
+enum class MotorKind : std::uint8_t { kOdrive5, kOdrive6, kMoteus };
+
 /// What a device is, as far as stability asks. Zero where it is not known.
 struct DeviceTraits {
   double damping = 0.0;            // b, N s/m: of the handle without motors on
@@ -63,7 +66,8 @@ struct DeviceSample {
   std::uint32_t buttons = 0;  // one bit each
   DeviceState state = DeviceState::kAbsent;
   DeviceTrouble trouble = DeviceTrouble::kNone;
-  std::uint32_t motor_errors = 0;   // of kMotorError: bits of an ODrive's axis.error
+  std::uint32_t motor_errors = 0;  // of kMotorError: as the motor's controller numbers them
+  MotorKind motor = MotorKind::kOdrive5;
   std::uint8_t sensed = kNoAxes;    // of DeviceAxes
   std::uint8_t actuated = kNoAxes;  // likewise
   bool steers_rate = false;   // it has no place of its own: its pose is where it was steered to

@@ -10,8 +10,9 @@
 namespace torsion::engine {
 namespace {
 
-constexpr double kArms = 0.25;           // s: until it obeys, after it was told to
-constexpr std::uint32_t kAskEvery = 20;  // steps: asked how it is
+constexpr double kArms = 0.25;            // s: until it obeys, after it was told to
+constexpr std::uint32_t kAskEvery = 20;   // steps: asked how it is
+constexpr std::uint32_t kAskEvery6 = 50;  // likewise: that step brings no place
 constexpr int kAxis = 0;
 constexpr std::uint8_t kCdcControl = 2;
 constexpr std::uint8_t kCdcData = 10;
@@ -46,8 +47,13 @@ void step(OdriveDriver& driver, DriverCall& call, double torque) {
   const double most = call.options.largest_knob_torque;
   const double limited = std::isfinite(torque) ? std::clamp(torque, -most, most) : 0.0;
   const bool asks = driver.until_ask == 0;
-  driver.until_ask = asks ? kAskEvery : driver.until_ask - 1;
-  write(driver, call, encode_odrive_step(kAxis, limited, asks).view());
+  const bool older = driver.language == MotorKind::kOdrive5;
+  driver.until_ask = asks ? (older ? kAskEvery : kAskEvery6) : driver.until_ask - 1;
+  driver.asked = !asks   ? OdriveQuestion::kPlace
+                 : older ? OdriveQuestion::kPlaceAndStatus
+                         : OdriveQuestion::kState;
+  driver.torque = limited;
+  write(driver, call, encode_odrive_step(kAxis, limited, driver.asked).view());
 }
 
 const UsbInterface* interface_of(const UsbIdentity& identity, std::uint8_t device_class) {
@@ -81,16 +87,35 @@ void take_status(OdriveDriver& driver, DriverCall& call, const OdriveStatus& sta
     return;
   }
   call.report.sample.motor_errors = status.errors;
+  call.report.sample.motor = driver.language;
   again_later(driver, call, DeviceTrouble::kMotorError);
-  if (status.errors != kOdriveWatchdog) {
+  if (!only_unfed(driver.language, status.errors)) {
     give_up(driver, call, DeviceTrouble::kMotorError);
+  }
+}
+
+/// A number in place of a place: how an axis with firmware 0.6 is.
+void take_number(OdriveDriver& driver, DriverCall& call, std::uint32_t number) {
+  heard(driver, call);
+  const bool lags = call.now - driver.set_up_at < kArms;
+  if (driver.asked == OdriveQuestion::kReason) {
+    take_status(driver, call, {number, 0});
+  } else if (number == kOdriveClosedLoop || lags) {
+    driver.asked = OdriveQuestion::kPlace;
+    write(driver, call, encode_odrive_step(kAxis, driver.torque).view());
+  } else {
+    driver.asked = OdriveQuestion::kReason;
+    write(driver, call, encode_odrive_step(kAxis, 0.0, driver.asked).view());
   }
 }
 
 /// Its firmware's version, before a line that another one might read otherwise.
 void take_version(OdriveDriver& driver, DriverCall& call, Bytes bytes) {
+  const std::size_t answers = driver.stream.version_lines;
   const auto version = take_odrive_version(driver.stream, text_of(bytes));
-  if (version && is_understood(*version)) {
+  const auto language = version ? language_of(*version) : std::nullopt;
+  if (language) {
+    driver.language = *language;
     driver.stream = {};
     driver.phase = OdrivePhase::kSettingUp;
     driver.heard_at = call.now;
@@ -98,6 +123,8 @@ void take_version(OdriveDriver& driver, DriverCall& call, Bytes bytes) {
     call.report.wake_at = call.now + kLost;
   } else if (version) {
     give_up(driver, call, DeviceTrouble::kWrongFirmware);
+  } else if (driver.stream.version_lines != answers) {
+    write(driver, call, kOdriveVersionQuestions[driver.stream.version_lines]);
   }
 }
 
@@ -108,8 +135,13 @@ void take_bytes(OdriveDriver& driver, DriverCall& call, Bytes bytes) {
   }
   const auto feedback = take_odrive_bytes(driver.stream, text_of(bytes));
   const auto status = std::exchange(driver.stream.status, std::nullopt);
-  if (status && driver.phase == OdrivePhase::kLive) {
+  if (status && driver.phase == OdrivePhase::kLive && driver.language == MotorKind::kOdrive5) {
     take_status(driver, call, *status);
+  }
+  const auto number = std::exchange(driver.stream.number, std::nullopt);
+  if (number && driver.phase == OdrivePhase::kLive && driver.language == MotorKind::kOdrive6) {
+    take_number(driver, call, *number);
+    return;
   }
   if (feedback && obeys(driver)) {
     take_feedback(driver, call, *feedback);
@@ -130,7 +162,7 @@ void take_claim(OdriveDriver& driver, DriverCall& call, const UsbEvent& event) {
     driver.phase = OdrivePhase::kAskingVersion;
     driver.heard_at = call.now;
     keep_reading(driver.reads, call);
-    write(driver, call, kOdriveVersionQuestion);
+    write(driver, call, kOdriveVersionQuestions[0]);
     call.report.wake_at = call.now + kLost;
   }
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// ODrive v3 as a knob: its motor's shaft is the tool's turn axis. Torque in N m goes out, turns
+// ODrive as a knob: its motor's shaft is the tool's turn axis. Torque in N m goes out, turns
 // come back, as lines of text.
 
 #include "device/drivers/motor_driver.hpp"
@@ -27,6 +27,9 @@ struct OdriveDriver {
   double heard_at = 0.0;        // s
   double set_up_at = 0.0;       // s: when it was told to obey
   std::uint32_t until_ask = 0;  // steps until it is asked how it is
+  MotorKind language = MotorKind::kOdrive5;
+  OdriveQuestion asked = OdriveQuestion::kPlace;
+  double torque = 0.0;  // N m, that the last step had
 };
 
 void begin(OdriveDriver& driver, DriverCall& call);

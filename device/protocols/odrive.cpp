@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -61,20 +62,56 @@ constexpr std::array kAxisErrors = {
     AxisError{0x20000, "HOMING_WITHOUT_ENDSTOP", kItsTool},
     AxisError{0x40000, "OVER_TEMP", "let it cool down"},
     AxisError{0x80000, "UNKNOWN_POSITION", kCalibrate}};
+// Of firmware 0.6: its API reference, ODrive.Error.
+constexpr std::array kErrors6 = {
+    AxisError{0x1, "INITIALIZING", kItsTool},
+    AxisError{0x2, "SYSTEM_LEVEL", kItsTool},
+    AxisError{0x4, "TIMING_ERROR", kItsTool},
+    AxisError{0x8, "MISSING_ESTIMATE", kCalibrate},
+    AxisError{0x10, "BAD_CONFIG", kCalibrate},
+    AxisError{0x20, "DRV_FAULT", kItsTool},
+    AxisError{0x40, "MISSING_INPUT", kItsTool},
+    AxisError{0x100, "DC_BUS_OVER_VOLTAGE", kSupply},
+    AxisError{0x200, "DC_BUS_UNDER_VOLTAGE", kSupply},
+    AxisError{0x400, "DC_BUS_OVER_CURRENT", kSupply},
+    AxisError{0x800, "DC_BUS_OVER_REGEN_CURRENT", "check its brake resistor"},
+    AxisError{0x1000, "CURRENT_LIMIT_VIOLATION", kItsTool},
+    AxisError{0x2000, "MOTOR_OVER_TEMP", "let it cool down"},
+    AxisError{0x4000, "INVERTER_OVER_TEMP", "let it cool down"},
+    AxisError{0x8000, "VELOCITY_LIMIT_VIOLATION", "turn it more slowly"},
+    AxisError{0x10000, "POSITION_LIMIT_VIOLATION", kEnds},
+    AxisError{kOdrive6Watchdog, "WATCHDOG_TIMER_EXPIRED", "it heard nothing for 50 ms"},
+    AxisError{0x2000000, "ESTOP_REQUESTED", "release its emergency stop"},
+    AxisError{0x4000000, "SPINOUT_DETECTED", "check its encoder"},
+    AxisError{0x8000000, "BRAKE_RESISTOR_DISARMED", "check its brake resistor"},
+    AxisError{0x10000000, "THERMISTOR_DISCONNECTED", "check its thermistor's cable"},
+    AxisError{0x40000000, "CALIBRATION_ERROR", kCalibrate}};
 
 }  // namespace
 
-OdriveLine encode_odrive_step(int axis, double torque, bool asks_status) {
+OdriveLine encode_odrive_step(int axis, double torque, OdriveQuestion question) {
   constexpr double kMost = 1000.0;  // N m: beyond any motor, and its digits fit in
   OdriveLine line;
-  const auto written =
-      fmt::format_to_n(line.text.data(), line.text.size(), "c {} {:.6f}\nf {}\n", axis,
-                       std::isfinite(torque) ? std::clamp(torque, -kMost, kMost) : 0.0, axis);
-  line.size = std::min(written.size, line.text.size());
-  if (asks_status) {
-    const auto more = fmt::format_to_n(line.text.data() + line.size, line.text.size() - line.size,
-                                       "r axis{0}.error\nr axis{0}.current_state\n", axis);
-    line.size = std::min(line.size + more.size, line.text.size());
+  const auto add = [&line](auto... words) {
+    const auto written =
+        fmt::format_to_n(line.text.data() + line.size, line.text.size() - line.size, words...);
+    line.size = std::min(line.size + written.size, line.text.size());
+  };
+  add(FMT_STRING("c {} {:.6f}\n"), axis,
+      std::isfinite(torque) ? std::clamp(torque, -kMost, kMost) : 0.0);
+  switch (question) {
+    case OdriveQuestion::kPlace:
+      add(FMT_STRING("f {}\n"), axis);
+      break;
+    case OdriveQuestion::kPlaceAndStatus:
+      add(FMT_STRING("f {0}\nr axis{0}.error\nr axis{0}.current_state\n"), axis);
+      break;
+    case OdriveQuestion::kState:
+      add(FMT_STRING("r axis{}.current_state\n"), axis);
+      break;
+    case OdriveQuestion::kReason:
+      add(FMT_STRING("r axis{}.disarm_reason\n"), axis);
+      break;
   }
   return line;
 }
@@ -97,6 +134,7 @@ std::optional<OdriveFeedback> take_line(OdriveStream& stream) {
   if (feedback) {
     stream.numbers = 0;
   } else if (number) {
+    stream.number = *number;
     stream.numbers += 1;
     if (stream.numbers == 1) {
       stream.coming.errors = *number;
@@ -127,8 +165,12 @@ std::optional<OdriveFeedback> take_odrive_bytes(OdriveStream& stream, std::strin
   return last;
 }
 
-bool is_understood(const OdriveVersion& version) {
-  return version.major == 0 && version.minor == 5 && version.revision >= 4;
+std::optional<MotorKind> language_of(const OdriveVersion& version) {
+  if (version.major == 0 && version.minor == 5 && version.revision >= 4) {
+    return MotorKind::kOdrive5;
+  }
+  return version.major == 0 && version.minor == 6 ? std::optional(MotorKind::kOdrive6)
+                                                  : std::nullopt;
 }
 
 std::optional<OdriveVersion> take_odrive_version(OdriveStream& stream, std::string_view bytes) {
@@ -152,10 +194,12 @@ std::optional<OdriveVersion> take_odrive_version(OdriveStream& stream, std::stri
   return std::nullopt;
 }
 
-std::string odrive_error_text(std::uint32_t errors) {
+std::string odrive_error_text(MotorKind language, std::uint32_t errors) {
   std::string names;
   const char* cure = kItsTool;
-  for (const AxisError& error : kAxisErrors) {
+  const bool older = language == MotorKind::kOdrive5;
+  for (const AxisError& error :
+       older ? std::span<const AxisError>(kAxisErrors) : std::span<const AxisError>(kErrors6)) {
     if ((errors & error.bit) != 0) {
       cure = names.empty() ? error.cure : cure;
       names += (names.empty() ? "" : ", ") + std::string(error.name);

@@ -135,11 +135,12 @@ Buffer told(EmulatedWooden& device, Bytes packet) {
   return answer;
 }
 
-/// As ODrive's firmware 0.5.6 has it: the watchdog's error comes one control cycle after it was
-/// enabled unfed, here with the next line; clearing errors does not feed it; an axis with an error
-/// does not arm; what was asked for as torque survives all of it.
+/// As ODrive's firmware 0.5.6 and 0.6 have it: the watchdog's error comes one control cycle after
+/// it was enabled unfed, here with the next line; clearing errors does not feed it; an axis with an
+/// error does not arm; what was asked for as torque survives all of it.
 void obey(EmulatedOdrive& device, const std::string& line, std::string& answer) {
-  constexpr std::uint32_t kWatchdogError = 0x800;
+  const bool newer = device.version[1] == std::string("6");
+  const std::uint32_t kWatchdogError = newer ? 0x1000000 : 0x800;
   if (device.watched && !device.fed) {
     device.errors |= kWatchdogError;
     device.closed_loop = false;
@@ -157,12 +158,14 @@ void obey(EmulatedOdrive& device, const std::string& line, std::string& answer) 
     answer += device.version[part == 'r' ? 2 : line[14] == 'a' ? 0 : 1] + std::string("\r\n");
   } else if (line == "f 0") {
     answer += std::to_string(device.turns) + " 0.0\r\n";
-  } else if (line == "r axis0.error") {
+  } else if (line == (newer ? "r axis0.disarm_reason" : "r axis0.error")) {
     answer += std::to_string(device.errors) + "\r\n";
   } else if (line == "r axis0.current_state") {
     answer += device.closed_loop ? "8\r\n" : "1\r\n";
   } else if (line == "sc") {
     device.errors = 0;
+  } else if (line.rfind("r ", 0) == 0) {
+    answer += "invalid property\r\n";
   } else if (line.rfind("w axis0.requested_state ", 0) == 0) {
     device.closed_loop = line.back() == '8' && device.calibrated && device.errors == 0;
     device.armed_with_torque =
@@ -175,7 +178,10 @@ Buffer told(EmulatedOdrive& device, Bytes packet) {
   std::string answer;
   for (const std::uint8_t byte : packet) {
     if (byte == '\n') {
-      obey(device, {device.line.begin(), device.line.end()}, answer);
+      std::string said;
+      obey(device, {device.line.begin(), device.line.end()}, said);
+      // 0.6 leaves out a reply while the one before is not sent.
+      answer += device.version[1] == std::string("6") && !answer.empty() ? "" : said;
       device.line.clear();
     } else {
       device.line.push_back(byte);

@@ -47,7 +47,7 @@ TEST(OdriveTest, PutsLinesTogetherWhereverTheyAreCut) {
 }
 
 TEST(OdriveTest, AsksForErrorsAndStateInTheSameTransfer) {
-  const OdriveLine line = encode_odrive_step(0, -1000.0, true);
+  const OdriveLine line = encode_odrive_step(0, -1000.0, OdriveQuestion::kPlaceAndStatus);
   EXPECT_EQ(line.view(), "c 0 -1000.000000\nf 0\nr axis0.error\nr axis0.current_state\n");
   EXPECT_LT(line.size, line.text.size());  // the longest that is sent, and whole
 }
@@ -75,12 +75,30 @@ TEST(OdriveTest, ReadsAStatusWhereverItIsCutAndOnlyAWholeOne) {
 }
 
 TEST(OdriveTest, NamesErrorsAsItsMakersToolsDo) {
-  EXPECT_EQ(odrive_error_text(kOdriveWatchdog),
+  EXPECT_EQ(odrive_error_text(MotorKind::kOdrive5, kOdriveWatchdog),
             "WATCHDOG_TIMER_EXPIRED; it heard nothing for 50 ms");
-  EXPECT_EQ(odrive_error_text(0x100 | 0x40000),
+  EXPECT_EQ(odrive_error_text(MotorKind::kOdrive5, 0x100 | 0x40000),
             "ENCODER_FAILED, OVER_TEMP; check its encoder's cable");
-  EXPECT_EQ(odrive_error_text(0x80000000U),
+  EXPECT_EQ(odrive_error_text(MotorKind::kOdrive5, 0x80000000U),
             "error 0x80000000; odrivetool says more: dump_errors(odrv0)");
+  EXPECT_EQ(odrive_error_text(MotorKind::kOdrive6, 0x2000 | 0x200),
+            "DC_BUS_UNDER_VOLTAGE, MOTOR_OVER_TEMP; check its power supply");
+  EXPECT_EQ(odrive_error_text(MotorKind::kOdrive6, kOdrive6Watchdog),
+            "WATCHDOG_TIMER_EXPIRED; it heard nothing for 50 ms");
+}
+
+TEST(OdriveTest, SpeaksTheLanguageOfTheFirmware) {
+  EXPECT_FALSE(language_of({0, 5, 3}));
+  EXPECT_EQ(language_of({0, 5, 4}), MotorKind::kOdrive5);
+  EXPECT_EQ(language_of({0, 6, 0}), MotorKind::kOdrive6);
+  EXPECT_EQ(language_of({0, 6, 11}), MotorKind::kOdrive6);
+  EXPECT_FALSE(language_of({0, 4, 12}));
+  EXPECT_FALSE(language_of({0, 7, 0}));
+  EXPECT_FALSE(language_of({1, 6, 0}));
+  EXPECT_EQ(encode_odrive_step(0, 0.05, OdriveQuestion::kState).view(),
+            "c 0 0.050000\nr axis0.current_state\n");
+  EXPECT_EQ(encode_odrive_step(0, 0.0, OdriveQuestion::kReason).view(),
+            "c 0 0.000000\nr axis0.disarm_reason\n");
 }
 
 TEST(OdriveTest, SkipsALineThatIsTooLongAndGoesOn) {

@@ -67,6 +67,13 @@ std::vector<std::string> notes_of(const ListedDevice& device) {
           "has the id of every mbed board that nobody gave another: --device usb leaves it alone, "
           "--device usb:woodenhaptics takes it");
       break;
+    case DeviceKind::kMoteus:
+      notes.emplace_back("measures and displays torque about the turn axis");
+      notes.emplace_back(
+          "has the id of many serial ports: --device usb leaves it alone, --device usb:moteus "
+          "takes "
+          "it");
+      break;
     case DeviceKind::kOdrive:
       notes.emplace_back("measures and displays torque about the turn axis");
       break;
@@ -117,7 +124,7 @@ int devices(const DevicesOptions& options) {
   if (listed.value().empty()) {
     fmt::print(
         "no device is plugged in that Torsion knows: SpaceMouse, Novint Falcon, WoodenHaptics, "
-        "ODrive v3\na mouse does, too: torsion view SCENE\n");
+        "ODrive, moteus\na mouse does, too: torsion view SCENE\n");
   }
   for (const ListedDevice& device : listed.value()) {
     print(device, options);
@@ -141,7 +148,9 @@ void add_device_options(CLI::App& subcommand, DeviceChoice& choice) {
           CLI::IsMember(std::vector<std::string>(kToolHoldNames.begin(), kToolHoldNames.end())));
   subcommand.add_option("--falcon-firmware", choice.falcon_firmware,
                         "The maker's file, where the usual place has none");
-  subcommand.add_option("--knob-torque", choice.largest_knob_torque, "Largest, N m, of an ODrive")
+  subcommand
+      .add_option("--knob-torque", choice.largest_knob_torque,
+                  "Largest, N m, of an ODrive or a moteus")
       ->check(CLI::Range(0.0, 5.0))
       ->capture_default_str();
   subcommand

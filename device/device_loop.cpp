@@ -75,7 +75,8 @@ void give_roles(DeviceLoop& loop) {
     DeviceRow* const falcon = first_of(loop, DeviceKind::kFalcon);
     DeviceRow* const wooden = first_of(loop, DeviceKind::kWoodenHaptics);
     DeviceRow* const mouse = first_of(loop, DeviceKind::kSpaceMouse);
-    DeviceRow* const knob = first_of(loop, DeviceKind::kOdrive);
+    DeviceRow* const odrive = first_of(loop, DeviceKind::kOdrive);
+    DeviceRow* const knob = odrive != nullptr ? odrive : first_of(loop, DeviceKind::kMoteus);
     DeviceRow* const mover = falcon != nullptr ? falcon : wooden;
     if (mover != nullptr) {
       mover->role = DeviceRole::kTranslation;

@@ -3,6 +3,15 @@
 #include <fmt/format.h>
 
 namespace torsion::engine {
+namespace {
+
+/// All that happened to its motor is that this machine was too busy to feed it.
+bool was_only_unfed(const DeviceSample& sample) {
+  return sample.motor == MotorKind::kMoteus ? sample.motor_errors == kMoteusUnfed
+                                            : only_unfed(sample.motor, sample.motor_errors);
+}
+
+}  // namespace
 
 std::string trouble_text(const DeviceSample& sample) {
   switch (sample.trouble) {
@@ -17,7 +26,8 @@ std::string trouble_text(const DeviceSample& sample) {
     case DeviceTrouble::kBadFirmware:
       return "it did not take the firmware file; is it the right one? Unplug it and plug it in";
     case DeviceTrouble::kWrongFirmware:
-      return "its firmware is another version than Torsion speaks to (ODrive: 0.5.4 to 0.6); "
+      return "its firmware is another version than Torsion speaks to (ODrive: 0.5.4 to 0.6; "
+             "moteus: register map 5); "
              "update it with its maker's tool, then unplug it and plug it in";
     case DeviceTrouble::kNotHomed:
       return "it does not know its zero yet; move it through its whole range (a WoodenHaptics: "
@@ -31,9 +41,10 @@ std::string trouble_text(const DeviceSample& sample) {
       return "no client speaks to the gateway; start one (docs/gateway.md)";
     case DeviceTrouble::kMotorError:
       return fmt::format(
-          "its motor has no force ({}). {}", odrive_error_text(sample.motor, sample.motor_errors),
-          only_unfed(sample.motor, sample.motor_errors) ? "It is set up anew"
-                                                        : "Then unplug it and plug it in");
+          "its motor has no force ({}). {}",
+          sample.motor == MotorKind::kMoteus ? moteus_fault_text(sample.motor_errors)
+                                             : odrive_error_text(sample.motor, sample.motor_errors),
+          was_only_unfed(sample) ? "It is set up anew" : "Then unplug it and plug it in");
   }
   return "";
 }

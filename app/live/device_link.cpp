@@ -62,10 +62,11 @@ Result<std::uint32_t> kinds_of(const std::string& what) {
   if (what == kUsb) {
     return kUsualDevices;
   }
-  const Error wrong{fmt::format(
-      "--device {}: expected usb, or usb: and some of spacemouse, falcon, woodenhaptics, odrive "
-      "with + between, or gateway",
-      what)};
+  const Error wrong{
+      fmt::format("--device {}: expected usb, or usb: and some of spacemouse, falcon, "
+                  "woodenhaptics, odrive, moteus "
+                  "with + between, or gateway",
+                  what)};
   if (what.rfind("usb:", 0) != 0) {
     return wrong;
   }

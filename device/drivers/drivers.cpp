@@ -15,6 +15,8 @@ struct Ids {
 constexpr Ids kFalconIds{0x0403, 0xCB48};
 constexpr Ids kOdriveIds{0x1209, 0x0D32};
 constexpr Ids kWoodenMbed{0x1234, 0x0006};
+constexpr Ids kFdcanusb{0x0483, 0x5740};
+constexpr Ids kMoteusUsb{0x1209, 0x2323};
 
 bool has_hid(const UsbIdentity& identity) {
   return std::ranges::any_of(identity.interfaces, [](const UsbInterface& interface) {
@@ -32,6 +34,8 @@ std::string_view name_of(DeviceKind kind) {
       return "Novint Falcon";
     case DeviceKind::kWoodenHaptics:
       return "WoodenHaptics";
+    case DeviceKind::kMoteus:
+      return "moteus knob";
     default:
       return "ODrive knob";
   }
@@ -45,6 +49,8 @@ std::string_view word_of(DeviceKind kind) {
       return "falcon";
     case DeviceKind::kWoodenHaptics:
       return "woodenhaptics";
+    case DeviceKind::kMoteus:
+      return "moteus";
     default:
       return "odrive";
   }
@@ -60,6 +66,9 @@ std::optional<DeviceKind> kind_of(const UsbIdentity& identity) {
   }
   if (ids == kWoodenMbed) {
     return DeviceKind::kWoodenHaptics;
+  }
+  if (ids == kFdcanusb || ids == kMoteusUsb) {
+    return DeviceKind::kMoteus;
   }
   if (is_not_a_space_mouse(ids.vendor, ids.product)) {
     return std::nullopt;
@@ -78,6 +87,8 @@ Driver driver_for(DeviceKind kind) {
       return FalconDriver{};
     case DeviceKind::kWoodenHaptics:
       return WoodenDriver{};
+    case DeviceKind::kMoteus:
+      return MoteusDriver{};
     default:
       return OdriveDriver{};
   }

@@ -5,20 +5,23 @@
 #include <variant>
 
 #include "device/drivers/falcon_driver.hpp"
+#include "device/drivers/moteus_driver.hpp"
 #include "device/drivers/odrive_driver.hpp"
 #include "device/drivers/space_mouse_driver.hpp"
 #include "device/drivers/wooden_driver.hpp"
 
 namespace torsion::engine {
 
-enum class DeviceKind : std::uint8_t { kSpaceMouse, kFalcon, kWoodenHaptics, kOdrive };
+enum class DeviceKind : std::uint8_t { kSpaceMouse, kFalcon, kWoodenHaptics, kOdrive, kMoteus };
 
-inline constexpr std::uint32_t kDeviceKinds = 4;
+inline constexpr std::uint32_t kDeviceKinds = 5;
 
 /// Bits 1 << DeviceKind: those whose ids are their own. A WoodenHaptics has that of every mbed
-/// board that nobody gave another, so it has to be asked for by name.
+/// board that nobody gave another, a moteus' adapter that of every serial port on an STM32, so they
+/// have to be asked for by name.
 inline constexpr std::uint32_t kUsualDevices =
-    ~(1U << static_cast<std::uint32_t>(DeviceKind::kWoodenHaptics));
+    ~(1U << static_cast<std::uint32_t>(DeviceKind::kWoodenHaptics) |
+      1U << static_cast<std::uint32_t>(DeviceKind::kMoteus));
 
 /// For a person, and as a word in options.
 std::string_view name_of(DeviceKind kind);
@@ -28,7 +31,8 @@ std::string_view word_of(DeviceKind kind);
 /// @return nothing for what Torsion does not use
 std::optional<DeviceKind> kind_of(const UsbIdentity& identity);
 
-using Driver = std::variant<SpaceMouseDriver, FalconDriver, WoodenDriver, OdriveDriver>;
+using Driver =
+    std::variant<SpaceMouseDriver, FalconDriver, WoodenDriver, OdriveDriver, MoteusDriver>;
 
 Driver driver_for(DeviceKind kind);
 

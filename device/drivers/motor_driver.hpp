@@ -6,12 +6,17 @@
 //   let_go       takes the force off the motors, which the device answers
 //   again_later  does that and sets the device up anew in a while
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "device/drivers/driver.hpp"
 
 namespace torsion::engine {
 
 inline constexpr double kSilence = 5e-3;  // s: then it is told to let go and asked again
 inline constexpr double kLost = 0.25;     // s: then it is set up anew
+inline constexpr double kArms = 0.25;     // s: until a motor obeys, after it was told to
 
 /// What motors bear for ever where no data sheet says it: half of their largest, warm after ten
 /// seconds.
@@ -52,6 +57,67 @@ void claim_for(D& driver, DriverCall& call, const UsbEndpoint* in, const UsbEndp
   driver.writes.endpoint = out->address;
   set_state(call, DeviceState::kStarting, call.report.sample.trouble);
   claim_usb(call.requests, interface);
+}
+
+inline const UsbInterface* find_interface(const UsbIdentity& identity, std::uint8_t device_class) {
+  const auto found =
+      std::ranges::find(identity.interfaces, device_class, &UsbInterface::device_class);
+  return found != identity.interfaces.end() ? &*found : nullptr;
+}
+
+/// Begins to claim a serial port (CDC ACM): the kernel's driver holds both of its interfaces. Such
+/// a driver has a phase kClaimingData, too, and the number of its interface `data`.
+template <class D>
+void claim_serial(D& driver, DriverCall& call) {
+  constexpr std::uint8_t kCdcControl = 2;
+  constexpr std::uint8_t kCdcData = 10;
+  const UsbInterface* control = find_interface(call.identity, kCdcControl);
+  const UsbInterface* data = find_interface(call.identity, kCdcData);
+  if (control == nullptr || data == nullptr) {
+    give_up(driver, call, DeviceTrouble::kNotUnderstood);
+    return;
+  }
+  driver.data = data->number;
+  claim_for(driver, call, find_endpoint(*data, UsbEndpointKind::kBulk, kUsbIn),
+            find_endpoint(*data, UsbEndpointKind::kBulk, 0), control->number);
+}
+
+/// The end of a claim. @return true once both interfaces are there; its reads are under way
+template <class D>
+bool take_serial_claim(D& driver, DriverCall& call, const UsbEvent& event) {
+  using Phase = decltype(D::phase);
+  if (event.status != UsbStatus::kCompleted) {
+    driver.phase = Phase::kClaiming;
+    retry_claim(call, event);
+    return false;
+  }
+  if (driver.phase == Phase::kClaiming) {
+    driver.phase = Phase::kClaimingData;
+    claim_usb(call.requests, driver.data);
+    return false;
+  }
+  driver.heard_at = call.now;
+  call.report.wake_at = call.now + kLost;
+  keep_reading(driver.reads, call);
+  return true;
+}
+
+/// A knob's handle, turned by so many turns about its axis.
+inline Pose knob_pose(double turns) {
+  const double angle = 2.0 * std::numbers::pi * std::remainder(turns, 1.0);
+  return {glm::dvec3(0.0), glm::angleAxis(angle, glm::dvec3(0.0, 1.0, 0.0))};
+}
+
+/// What every knob says of itself.
+/// @param counts  of its encoder, a turn
+inline void describe_knob(DriverCall& call, double counts) {
+  DeviceSample& sample = call.report.sample;
+  sample.sensed = kTurnAxis;
+  sample.actuated = kTurnAxis;
+  sample.traits = {};
+  sample.traits.largest_torque = call.options.largest_knob_torque;
+  sample.traits.encoder_turn_step = 2.0 * std::numbers::pi / counts;
+  set_cautious_heat(sample.traits);
 }
 
 /// It was heard of, and is to be again before long.

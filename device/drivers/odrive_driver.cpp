@@ -3,19 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string_view>
 #include <utility>
 
 namespace torsion::engine {
 namespace {
 
-constexpr double kArms = 0.25;            // s: until it obeys, after it was told to
 constexpr std::uint32_t kAskEvery = 20;   // steps: asked how it is
 constexpr std::uint32_t kAskEvery6 = 50;  // likewise: that step brings no place
 constexpr int kAxis = 0;
-constexpr std::uint8_t kCdcControl = 2;
-constexpr std::uint8_t kCdcData = 10;
 
 // Torque control with the axis's own watchdog, so that it lets go when it hears nothing. "u 0"
 // feeds that: enabled before it was fed, it is an error one control cycle later, which "sc" clears
@@ -56,19 +52,11 @@ void step(OdriveDriver& driver, DriverCall& call, double torque) {
   write(driver, call, encode_odrive_step(kAxis, limited, driver.asked).view());
 }
 
-const UsbInterface* interface_of(const UsbIdentity& identity, std::uint8_t device_class) {
-  const auto found =
-      std::ranges::find(identity.interfaces, device_class, &UsbInterface::device_class);
-  return found != identity.interfaces.end() ? &*found : nullptr;
-}
-
 void take_feedback(OdriveDriver& driver, DriverCall& call, const OdriveFeedback& feedback) {
   heard(driver, call);
   driver.phase = OdrivePhase::kLive;
   set_state(call, DeviceState::kLive);
-  const double angle = 2.0 * std::numbers::pi * std::remainder(feedback.position, 1.0);
-  const Wrench wrench =
-      publish_pose(call, {glm::dvec3(0.0), glm::angleAxis(angle, glm::dvec3(0.0, 1.0, 0.0))}, 0);
+  const Wrench wrench = publish_pose(call, knob_pose(feedback.position), 0);
   step(driver, call, wrench.torque.y);
 }
 
@@ -152,18 +140,9 @@ void take_bytes(OdriveDriver& driver, DriverCall& call, Bytes bytes) {
 }
 
 void take_claim(OdriveDriver& driver, DriverCall& call, const UsbEvent& event) {
-  if (event.status != UsbStatus::kCompleted) {
-    driver.phase = OdrivePhase::kClaiming;
-    retry_claim(call, event);
-  } else if (driver.phase == OdrivePhase::kClaiming) {
-    driver.phase = OdrivePhase::kClaimingData;
-    claim_usb(call.requests, driver.data);
-  } else {
+  if (take_serial_claim(driver, call, event)) {
     driver.phase = OdrivePhase::kAskingVersion;
-    driver.heard_at = call.now;
-    keep_reading(driver.reads, call);
     write(driver, call, kOdriveVersionQuestions[0]);
-    call.report.wake_at = call.now + kLost;
   }
 }
 
@@ -193,23 +172,8 @@ void again_later(OdriveDriver& driver, DriverCall& call, DeviceTrouble trouble) 
 
 void begin(OdriveDriver& driver, DriverCall& call) {
   driver = fresh(driver);
-  DeviceSample& sample = call.report.sample;
-  sample.sensed = kTurnAxis;
-  sample.actuated = kTurnAxis;
-  sample.traits = {};
-  sample.traits.largest_torque = call.options.largest_knob_torque;
-  set_cautious_heat(sample.traits);
-  sample.traits.encoder_turn_step = 2.0 * std::numbers::pi / 8192.0;  // rad: its usual encoder
-  const UsbInterface* control = interface_of(call.identity, kCdcControl);
-  const UsbInterface* data = interface_of(call.identity, kCdcData);
-  if (control == nullptr || data == nullptr) {
-    give_up(driver, call, DeviceTrouble::kNotUnderstood);
-    return;
-  }
-  driver.data = data->number;
-  // The kernel's driver holds both interfaces.
-  claim_for(driver, call, find_endpoint(*data, UsbEndpointKind::kBulk, kUsbIn),
-            find_endpoint(*data, UsbEndpointKind::kBulk, 0), control->number);
+  describe_knob(call, 8192.0);  // its usual encoder's
+  claim_serial(driver, call);
 }
 
 void take(OdriveDriver& driver, DriverCall& call, const UsbEvent& event) {

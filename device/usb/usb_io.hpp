@@ -65,7 +65,7 @@ struct UsbSetup {
   std::uint16_t length = 0;  // of the data stage
 };
 
-inline constexpr std::size_t kLargestUsbWrite = 64;
+inline constexpr std::size_t kLargestUsbWrite = 128;
 inline constexpr std::size_t kLargestUsbRead = 4096;
 
 struct UsbRequest {

@@ -15,6 +15,7 @@ namespace {
 using test::Buffer;
 using test::DeviceClient;
 using test::EmulatedFalcon;
+using test::EmulatedMoteus;
 using test::EmulatedOdrive;
 using test::EmulatedSpaceMouse;
 using test::EmulatedWooden;
@@ -31,12 +32,13 @@ struct WireFault {
 class WireFaultTest : public testing::TestWithParam<WireFault> {};
 
 TEST_P(WireFaultTest, LetsGoOrKeepsTheLastPoseAndIsLiveAgain) {
-  for (const int kind : {0, 1, 2, 3}) {
+  for (const int kind : {0, 1, 2, 3, 4}) {
     DeviceClient client;
     FakeBus bus({}, client.sink());
     test::EmulatedDevice device;
     kind == 1 ? device = EmulatedFalcon{} : kind == 2 ? device = EmulatedWooden{} : device;
     kind == 3 ? device = EmulatedOdrive{} : device;
+    kind == 4 ? device = EmulatedMoteus{} : device;
     const std::size_t row = bus.plug(device);
     bus.run(kStartTime);
     SCOPED_TRACE(testing::Message() << GetParam().name << ", kind " << kind);
@@ -105,12 +107,13 @@ TEST(DriverFaultsTest, AnEndpointOutThatStallsIsClearedAndLetsTheForceGo) {
 }
 
 TEST(DriverFaultsTest, ASilentDeviceIsToldToLetGoAndComesBack) {
-  for (const int kind : {1, 2, 3}) {
+  for (const int kind : {1, 2, 3, 4}) {
     DeviceClient client;
     FakeBus bus({}, client.sink());
     const std::size_t row = kind == 1   ? bus.plug(EmulatedFalcon{})
                             : kind == 2 ? bus.plug(EmulatedWooden{})
-                                        : bus.plug(EmulatedOdrive{});
+                            : kind == 3 ? bus.plug(EmulatedOdrive{})
+                                        : bus.plug(EmulatedMoteus{});
     bus.run(kStartTime);
     SCOPED_TRACE(kind);
     ASSERT_EQ(client.last.state, DeviceState::kLive);
@@ -127,13 +130,14 @@ TEST(DriverFaultsTest, ASilentDeviceIsToldToLetGoAndComesBack) {
 
 TEST(DriverFaultsTest, SaysWhoKeepsItFromTheDeviceAndTriesAgain) {
   for (const UsbStatus status : {UsbStatus::kBusy, UsbStatus::kNoAccess}) {
-    for (const int kind : {0, 1, 2, 3}) {
+    for (const int kind : {0, 1, 2, 3, 4}) {
       DeviceClient client;
       FakeBus bus({}, client.sink());
       const std::size_t row = kind == 0   ? bus.plug(EmulatedSpaceMouse{})
                               : kind == 1 ? bus.plug(EmulatedFalcon{})
                               : kind == 2 ? bus.plug(EmulatedWooden{})
-                                          : bus.plug(EmulatedOdrive{});
+                              : kind == 3 ? bus.plug(EmulatedOdrive{})
+                                          : bus.plug(EmulatedMoteus{});
       bus.claims(row, status);
       bus.run(1.0);
       SCOPED_TRACE(kind);

@@ -64,8 +64,22 @@ struct EmulatedOdrive {
   Buffer line;
 };
 
-using EmulatedDevice =
-    std::variant<EmulatedSpaceMouse, EmulatedFalcon, EmulatedWooden, EmulatedOdrive>;
+/// A moteus behind an fdcanusb: registers, and the lines that carry them.
+struct EmulatedMoteus {
+  double turns = 0.0;
+  double torque = 0.0;  // N m, that its motor has
+  std::uint8_t mode = 0;
+  std::uint8_t fault = 0;  // its mode is 1 then, until it is stopped
+  double watchdog = 0.0;   // s, as told last
+  std::uint32_t register_map = 5;
+  bool bus_is_on = false;
+  bool is_stiff = false;     // it was told to go somewhere, or to damp
+  std::uint32_t errors = 0;  // lines and frames that it could not read
+  Buffer line;
+};
+
+using EmulatedDevice = std::variant<EmulatedSpaceMouse, EmulatedFalcon, EmulatedWooden,
+                                    EmulatedOdrive, EmulatedMoteus>;
 
 /// What it does not remember when it was without power.
 void switch_on(EmulatedDevice& device);

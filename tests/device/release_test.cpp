@@ -23,6 +23,7 @@ namespace torsion::engine {
 namespace {
 
 using test::EmulatedFalcon;
+using test::EmulatedMoteus;
 using test::EmulatedOdrive;
 using test::EmulatedWooden;
 using test::MockDevice;
@@ -75,6 +76,7 @@ TEST_P(ReleaseTest, AKilledProgramLeavesNoForceBehind) {
   test::EmulatedDevice device = EmulatedFalcon{};
   GetParam() == 1 ? device = EmulatedWooden{} : device;
   GetParam() == 2 ? device = EmulatedOdrive{} : device;
+  GetParam() == 3 ? device = EmulatedMoteus{} : device;
   MockDevice& plugged = usb.plug(device);
   // Within 20 ms; a machine that is busy with something else may be late once or twice.
   double quickest = 1e9;
@@ -100,7 +102,7 @@ TEST_P(ReleaseTest, AKilledProgramLeavesNoForceBehind) {
   EXPECT_LT(quickest, 20e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(EachDevice, ReleaseTest, testing::Range(0, 3));
+INSTANTIATE_TEST_SUITE_P(EachDevice, ReleaseTest, testing::Range(0, 4));
 
 }  // namespace
 }  // namespace torsion::engine

@@ -19,6 +19,7 @@ namespace torsion::engine {
 namespace {
 
 using test::EmulatedFalcon;
+using test::EmulatedMoteus;
 using test::EmulatedOdrive;
 using test::EmulatedSpaceMouse;
 using test::EmulatedWooden;
@@ -80,15 +81,17 @@ test::EmulatedDevice device_of(int kind) {
       return EmulatedFalcon{};
     case 2:
       return EmulatedWooden{};
-    default:
+    case 3:
       return EmulatedOdrive{};
+    default:
+      return EmulatedMoteus{};
   }
 }
 
 class UsbLifeTest : public UsbBusTest, public testing::WithParamInterface<int> {};
 
 TEST_P(UsbLifeTest, OpensStreamsAndSurvivesWhatComesOverTheWire) {
-  const char* const drivers[] = {"usbhid", "ftdi_sio", "usbhid", "cdc_acm"};
+  const char* const drivers[] = {"usbhid", "ftdi_sio", "usbhid", "cdc_acm", "cdc_acm"};
   MockDevice& device = usb_.plug(device_of(GetParam()), drivers[GetParam()]);
   start();
   ASSERT_TRUE(becomes(DeviceState::kLive));
@@ -118,7 +121,7 @@ TEST_P(UsbLifeTest, OpensStreamsAndSurvivesWhatComesOverTheWire) {
   EXPECT_TRUE(device.kernel_has_it());
 }
 
-INSTANTIATE_TEST_SUITE_P(EachDevice, UsbLifeTest, testing::Range(0, 4));
+INSTANTIATE_TEST_SUITE_P(EachDevice, UsbLifeTest, testing::Range(0, 5));
 
 TEST_F(UsbBusTest, StartsAndEndsWithNothingPluggedIn) {
   start();

@@ -7,6 +7,7 @@
 
 #include "device/protocols/falcon.hpp"
 #include "device/protocols/falcon_kinematics.hpp"
+#include "device/protocols/moteus.hpp"
 #include "device/protocols/odrive.hpp"
 #include "device/protocols/wooden_haptics.hpp"
 
@@ -15,6 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   torsion::engine::FalconStream falcon;
   torsion::engine::OdriveStream odrive;
   torsion::engine::OdriveStream version;
+  torsion::engine::MoteusStream moteus;
   bool versioned = false;
   while (!rest.empty()) {
     const std::size_t length = std::min<std::size_t>(rest[0] % 64 + 1, rest.size());
@@ -26,6 +28,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                       {0.0, 0.0, 0.115});
     }
     torsion::engine::take_odrive_bytes(odrive, text);
+    torsion::engine::take_moteus_bytes(moteus, text, [](std::string_view line) {
+      static_cast<void>(torsion::engine::decode_moteus_reply(line));
+      static_cast<void>(torsion::engine::decode_moteus_register_map(line));
+    });
     versioned = versioned || torsion::engine::take_odrive_version(version, text).has_value();
     if (const auto input = torsion::engine::decode_wooden(transfer)) {
       const auto geometry = torsion::engine::wooden_haptics_2015();

@@ -27,6 +27,7 @@ void take_trouble(MoteusDriver& driver, DriverCall& call, const MoteusReply& rep
   sample.motor_errors = unfed ? kMoteusUnfed : reply.fault;
   again_later(driver, call, DeviceTrouble::kMotorError);
   if (!unfed) {
+    driver.last_words = kLastWords;
     give_up(driver, call, DeviceTrouble::kMotorError);
   }
 }
@@ -100,7 +101,11 @@ void begin(MoteusDriver& driver, DriverCall& call) {
 
 void take(MoteusDriver& driver, DriverCall& call, const UsbEvent& event) {
   if (event.job == UsbJob::kWrite) {
-    if (take_write(driver.writes, call, event)) {
+    const bool owed = take_write(driver.writes, call, event);
+    if (driver.last_words > 0) {
+      driver.last_words -= 1;
+      write_through(driver.writes, call, bytes_of(encode_moteus_stop()));
+    } else if (owed) {
       let_go(driver, call);
     }
     return;

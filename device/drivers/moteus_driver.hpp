@@ -23,8 +23,9 @@ struct MoteusDriver {
   std::uint8_t data = 0;  // number of the interface that has it
   ReadQueue reads;
   MoteusStream stream;
-  double heard_at = 0.0;   // s
-  double set_up_at = 0.0;  // s: when it was told to obey
+  std::uint32_t last_words = 0;  // packets that let go, still to be sent
+  double heard_at = 0.0;         // s
+  double set_up_at = 0.0;        // s: when it was told to obey
 };
 
 void begin(MoteusDriver& driver, DriverCall& call);

@@ -14,7 +14,7 @@
 
 namespace torsion::engine {
 
-inline constexpr double kSilence = 5e-3;  // s: then it is told to let go and asked again
+inline constexpr double kSilence = 4e-3;  // s: then it is told to let go and asked again
 inline constexpr double kLost = 0.25;     // s: then it is set up anew
 inline constexpr double kArms = 0.25;     // s: until a motor obeys, after it was told to
 
@@ -43,6 +43,9 @@ void give_up(D& driver, DriverCall& call, DeviceTrouble trouble) {
   set_state(call, DeviceState::kStarting, trouble);
   call.report.wake_at = kNever;
 }
+
+/// How often a motor is told to let go before nothing more is tried: one packet may get lost.
+inline constexpr std::uint32_t kLastWords = 3;
 
 /// Begins to claim; all its talk will be through these endpoints. Null ones: gives up.
 template <class D>

@@ -78,6 +78,7 @@ void take_status(OdriveDriver& driver, DriverCall& call, const OdriveStatus& sta
   call.report.sample.motor = driver.language;
   again_later(driver, call, DeviceTrouble::kMotorError);
   if (!only_unfed(driver.language, status.errors)) {
+    driver.last_words = kLastWords;
     give_up(driver, call, DeviceTrouble::kMotorError);
   }
 }
@@ -178,7 +179,11 @@ void begin(OdriveDriver& driver, DriverCall& call) {
 
 void take(OdriveDriver& driver, DriverCall& call, const UsbEvent& event) {
   if (event.job == UsbJob::kWrite) {
-    if (take_write(driver.writes, call, event)) {
+    const bool owed = take_write(driver.writes, call, event);
+    if (driver.last_words > 0) {
+      driver.last_words -= 1;
+      write_through(driver.writes, call, bytes_of(kIdle));
+    } else if (owed) {
       let_go(driver, call);
     } else if (driver.phase == OdrivePhase::kSettingUp) {
       go_on(driver, call);

@@ -24,9 +24,10 @@ struct OdriveDriver {
   std::uint8_t data = 0;  // number of the interface that has it
   ReadQueue reads;
   OdriveStream stream;
-  double heard_at = 0.0;        // s
-  double set_up_at = 0.0;       // s: when it was told to obey
-  std::uint32_t until_ask = 0;  // steps until it is asked how it is
+  std::uint32_t last_words = 0;  // packets that let go, still to be sent
+  double heard_at = 0.0;         // s
+  double set_up_at = 0.0;        // s: when it was told to obey
+  std::uint32_t until_ask = 0;   // steps until it is asked how it is
   MotorKind language = MotorKind::kOdrive5;
   OdriveQuestion asked = OdriveQuestion::kPlace;
   double torque = 0.0;  // N m, that the last step had

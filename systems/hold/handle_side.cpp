@@ -18,6 +18,10 @@ constexpr double kRiseTime = 0.01;        // s: from nothing to the largest forc
 constexpr double kShareOfCheck = 0.05;    // of the largest force: may see whether it goes right
 constexpr double kUsualPeriod = 1e-3;     // s
 constexpr double kLongestPeriod = 20e-3;  // s: a gap, not a period
+// After a silence that is longer than this, or than some periods of a slow device, its driver has
+// told the motors to let go.
+constexpr double kSilentFor = 4e-3;  // s
+constexpr double kSilentPeriods = 2.5;
 
 /// As stiff as the device is able to display, by what is known of it now.
 void choose_springs(HandleSide& side, const DeviceTraits& traits) {
@@ -37,6 +41,7 @@ void begin_epoch(HandleSide& side, const DeviceSample& sample, const Pose& tool)
   guard.force_heat = side.guard.force_heat;  // motors that are hot stay so
   guard.torque_heat = side.guard.torque_heat;
   guard.checked = !side.safety.checks_signs;
+  guard.signs = guard.checked ? SignVerdict::kRight : guard.signs;  // as somebody has said
   if (sample.plugged == side.plugged && side.couplings > 1) {
     // The same device after a silence: its signs are what they were, and it is off if it was.
     guard.checked = guard.checked || side.guard.checked;
@@ -141,6 +146,12 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
     begin_epoch(side, sample, tool);
   }
   side.passivity = choose_passivity(sample.traits);  // the rate is measured all the time
+  const bool was_silent =
+      now - side.last_time > std::max(kSilentFor, kSilentPeriods * sample.traits.period);
+  if (live && !begins && was_silent) {
+    // What the motors hold is nothing: the force comes back as after any fault.
+    side.guard.sent = {};
+  }
   const bool waits = live && side.guard.state == GuardState::kWaiting;
   const double elapsed = std::clamp(now - side.last_time, 1e-5, kLongestPeriod);
   const double period = waits ? kUsualPeriod : elapsed;
@@ -161,6 +172,7 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
   input.wanted = wanted;
   input.result_age = result.any ? now - result.time : 1.0;
   input.faulty = result.faulty;
+  input.live = input.live && (begins || !was_silent);
   input.distance = outcome.distance;
   const bool was_checked = side.guard.checked;
   outcome.wrench = guard_output(side.guard, side.limits, input, period);

@@ -17,16 +17,21 @@ glm::dvec3 at_most(const glm::dvec3& vector, double most) {
   return length > most ? vector * (most / length) : vector;
 }
 
-/// It goes against a force that it should follow, faster than anybody would begin to push.
-bool runs_away(const OutputGuard& guard, const GuardLimits& limits, const GuardInput& input) {
-  return guard.state == GuardState::kRising && !guard.risen && guard.signs != SignVerdict::kRight &&
-         glm::dot(guard.sent.force, input.velocity) < 0.0 &&
-         glm::length(input.velocity) > limits.largest_unchecked_speed;
+/// It goes against a force that it should follow, faster and for longer than anybody would begin to
+/// push.
+bool runs_away(OutputGuard& guard, const GuardLimits& limits, const GuardInput& input,
+               double period) {
+  const bool against = guard.state == GuardState::kRising && !guard.risen &&
+                       guard.signs != SignVerdict::kRight &&
+                       glm::dot(guard.sent.force, input.velocity) < 0.0 &&
+                       glm::length(input.velocity) > limits.largest_unchecked_speed;
+  guard.against_for = against ? guard.against_for + period : 0.0;
+  return guard.against_for > limits.longest_against;
 }
 
 /// What stands against a force.
-GuardReason reason_against(const OutputGuard& guard, const GuardLimits& limits,
-                           const GuardInput& input) {
+GuardReason reason_against(OutputGuard& guard, const GuardLimits& limits, const GuardInput& input,
+                           double period) {
   if (!input.live) {
     return GuardReason::kNotLive;
   }
@@ -40,7 +45,7 @@ GuardReason reason_against(const OutputGuard& guard, const GuardLimits& limits,
   if (guard.state == GuardState::kChecking && input.signs == SignVerdict::kReversed) {
     return GuardReason::kReversed;
   }
-  if (runs_away(guard, limits, input)) {
+  if (runs_away(guard, limits, input, period)) {
     return GuardReason::kRanAway;
   }
   const bool slow = glm::length(input.velocity) <= limits.largest_speed &&
@@ -113,7 +118,7 @@ Wrench share_of_wanted(const OutputGuard& guard, const GuardInput& input, bool g
 
 Wrench guard_output(OutputGuard& guard, const GuardLimits& limits, const GuardInput& input,
                     double period) {
-  const GuardReason against = reason_against(guard, limits, input);
+  const GuardReason against = reason_against(guard, limits, input, period);
   const bool good = against == GuardReason::kNone;
   const bool sends = guard.state == GuardState::kChecking || guard.state == GuardState::kRising ||
                      guard.state == GuardState::kLive;

@@ -21,8 +21,10 @@ struct GuardLimits {
   double near = 5e-3;                // m: between handle and tool, to begin with
   double largest_speed = 1.2;        // m/s, as OpenHaptics has it (HD_SOFTWARE_VELOCITY_LIMIT)
   double largest_turn_speed = 40.0;  // rad/s: a wrist makes half of it
-  /// m/s: what is pushed no faster than this against the force before its signs are known
+  // Nobody pushes as fast as this for as long against a first force of unknown signs: m/s, s. One
+  // packet that is wrong is over sooner.
   double largest_unchecked_speed = 0.3;
+  double longest_against = 30e-3;
 };
 
 enum class GuardState : std::uint8_t {
@@ -53,7 +55,8 @@ struct OutputGuard {
   bool risen = false;                      // it was live once
   SignVerdict signs = SignVerdict::kRunning;
   double share = 0.0;
-  Wrench last_good;  // what falls
+  double against_for = 0.0;  // s: that it has gone against the force so fast
+  Wrench last_good;          // what falls
   Wrench sent;
   ThermalLimit force_heat;
   ThermalLimit torque_heat;

@@ -445,6 +445,44 @@ std::optional<Buffer> controlled(EmulatedDevice& device, const UsbSetup& setup, 
   return std::visit([&](auto& one) { return controlled(one, setup, data); }, device);
 }
 
+double share_pushed(const EmulatedDevice& device) {
+  constexpr double kMostOfAMotor = 4095.0;  // of a Falcon's
+  constexpr double kMostCurrent = 2000.0;   // mA, of a WoodenHaptics' (haptikfabrikenapi)
+  constexpr double kMostTorque = 0.2;       // N m, of a knob unless said otherwise
+  double most = 0.0;
+  if (const auto* const falcon = std::get_if<EmulatedFalcon>(&device)) {
+    for (const std::int16_t motor : falcon->motors) {
+      most = std::max(most, std::abs(motor) / kMostOfAMotor);
+    }
+  } else if (const auto* const wooden = std::get_if<EmulatedWooden>(&device)) {
+    for (const std::int16_t current : wooden->currents) {
+      most = std::max(most, std::abs(current) / kMostCurrent);
+    }
+  } else if (const auto* const odrive = std::get_if<EmulatedOdrive>(&device)) {
+    most = std::abs(odrive->torque) / kMostTorque;
+  } else if (const auto* const moteus = std::get_if<EmulatedMoteus>(&device)) {
+    most = std::abs(moteus->torque) / kMostTorque;
+  }
+  return most;
+}
+
+void brown_out(EmulatedDevice& device) {
+  if (auto* const falcon = std::get_if<EmulatedFalcon>(&device)) {
+    falcon->motors = {};
+    falcon->homed = false;
+  } else if (auto* const wooden = std::get_if<EmulatedWooden>(&device)) {
+    wooden->currents = {};
+    wooden->encoders = {};
+  } else if (auto* const odrive = std::get_if<EmulatedOdrive>(&device)) {
+    const auto version = odrive->version;
+    *odrive = EmulatedOdrive{};
+    odrive->version = version;
+  } else if (std::holds_alternative<EmulatedMoteus>(device)) {
+    device = EmulatedMoteus{};
+  }
+  switch_on(device);
+}
+
 bool without_force(const EmulatedDevice& device) {
   return std::visit([](const auto& one) { return without_force(one); }, device);
 }

@@ -91,6 +91,12 @@ Buffer told(EmulatedDevice& device, Bytes packet);
 /// A control transfer. @return the data stage of one that comes in; nothing: the device stalls
 std::optional<Buffer> controlled(EmulatedDevice& device, const UsbSetup& setup, Bytes data);
 
+/// What its motors hold, of what they may at most.
+double share_pushed(const EmulatedDevice& device);
+
+/// It was without power for a moment: what it forgets, and its motors hold nothing.
+void brown_out(EmulatedDevice& device);
+
 /// True where the device's motors hold nothing.
 bool without_force(const EmulatedDevice& device);
 

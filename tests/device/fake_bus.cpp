@@ -1,6 +1,7 @@
 #include "tests/device/fake_bus.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace torsion::engine::test {
 namespace {
@@ -98,17 +99,19 @@ void FakeBus::execute_one(std::size_t row, const UsbRequest& request) {
         schedule(row, kSoon, due);
         return;
       }
+      if (std::exchange(plugged.loses_write, false)) {
+        schedule(row, kSoon, due);
+        return;
+      }
       const bool before = without_force(plugged.device);
-      const Buffer answer = told(plugged.device, request.data());
+      const Buffer said = told(plugged.device, request.data());
       if (!before || !without_force(plugged.device)) {
         plugged.let_go_at = now_;
       }
+      plugged.most_pushed = std::max(plugged.most_pushed, share_pushed(plugged.device));
       schedule(row, kSoon, due);
-      if (!answer.empty() && !plugged.silent) {
-        Due arrival;
-        arrival.arrives = true;
-        arrival.bytes = answer;
-        schedule(row, kAnswer, arrival);
+      if (!said.empty() && !plugged.silent) {
+        answer(row, said);
       }
       return;
     }
@@ -130,6 +133,42 @@ void FakeBus::execute_one(std::size_t row, const UsbRequest& request) {
     default:
       schedule(row, kSoon, due);
       return;
+  }
+}
+
+void FakeBus::spoil_next_answer(std::size_t row, std::uint32_t flips, bool lose, bool twice) {
+  devices_[row].flips = flips;
+  devices_[row].loses_answer = lose;
+  devices_[row].doubles_answer = twice;
+}
+
+void FakeBus::brown_out(std::size_t row) {
+  if (!without_force(devices_[row].device)) {
+    devices_[row].let_go_at = now_;
+  }
+  test::brown_out(devices_[row].device);
+}
+
+void FakeBus::make_ready(std::size_t row) {
+  if (auto* const falcon = std::get_if<EmulatedFalcon>(&devices_[row].device)) {
+    falcon->homed = true;
+  }
+}
+
+void FakeBus::answer(std::size_t row, Buffer packet) {
+  Plugged& plugged = devices_[row];
+  for (; plugged.flips > 0; --plugged.flips) {
+    const std::size_t bit = random_() % (8 * packet.size());
+    packet[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
+  }
+  const int times = plugged.loses_answer ? 0 : plugged.doubles_answer ? 2 : 1;
+  plugged.loses_answer = false;
+  plugged.doubles_answer = false;
+  for (int i = 0; i < times; ++i) {
+    Due arrival;
+    arrival.arrives = true;
+    arrival.bytes = packet;
+    schedule(row, kAnswer, arrival);
   }
 }
 

@@ -40,6 +40,17 @@ class FakeBus {
   void halt_writes(std::size_t row) { devices_[row].halted_out = true; }
   /// The device does not answer any more.
   void silence(std::size_t row, bool silent) { devices_[row].silent = silent; }
+  /// What becomes of the device's next answer: bits that are turned over at random, or the packet
+  /// is lost or comes twice.
+  void spoil_next_answer(std::size_t row, std::uint32_t flips, bool lose, bool twice);
+  /// The next packet to the device does not get there, though its transfer ends well.
+  void lose_next_write(std::size_t row) { devices_[row].loses_write = true; }
+  /// The most that its motors were ever told, of what they may be.
+  [[nodiscard]] double most_pushed(std::size_t row) const { return devices_[row].most_pushed; }
+  /// Without power for a moment.
+  void brown_out(std::size_t row);
+  /// What a person does so that it knows its zero.
+  void make_ready(std::size_t row);
   /// Claims end like this from now on.
   void claims(std::size_t row, UsbStatus status) { devices_[row].claim = status; }
 
@@ -64,6 +75,11 @@ class FakeBus {
     bool halted_out = false;
     std::optional<UsbStatus> fault;
     bool silent = false;
+    std::uint32_t flips = 0;
+    bool loses_answer = false;
+    bool doubles_answer = false;
+    bool loses_write = false;
+    double most_pushed = 0.0;
     UsbStatus claim = UsbStatus::kCompleted;
     double let_go_at = 0.0;  // s: since when the motors hold nothing
     std::uint64_t writes = 0;
@@ -86,6 +102,7 @@ class FakeBus {
   void execute(std::size_t row, const UsbRequests& requests);
   void execute_one(std::size_t row, const UsbRequest& request);
   void match(std::size_t row);
+  void answer(std::size_t row, Buffer packet);
   void happen(const Due& due);
 
   DeviceLoop loop_;

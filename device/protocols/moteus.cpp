@@ -206,7 +206,7 @@ std::optional<MoteusReply> decode_moteus_reply(std::string_view line) {
   bool has_mode = false;
   bool has_place = false;
   const bool whole = read_frame(line, [&](std::uint8_t kind, std::uint32_t at, std::uint32_t bits) {
-    const double value = std::bit_cast<float>(bits);
+    const auto value = static_cast<double>(std::bit_cast<float>(bits));
     if (kind == kReplyInt8 && at == 0x00) {
       reply.mode = static_cast<std::uint8_t>(bits);
       has_mode = true;

@@ -173,7 +173,7 @@ ReleaseProcess::~ReleaseProcess() {
 }
 
 void ReleaseProcess::look_after(std::size_t row, const UsbIdentity& identity,
-                                const UsbRequests& last) {
+                                const UsbRequests& last) const {
   Entry entry;
   entry.row = static_cast<std::uint32_t>(row);
   entry.bus = identity.bus;
@@ -193,7 +193,7 @@ void ReleaseProcess::look_after(std::size_t row, const UsbIdentity& identity,
   }
 }
 
-void ReleaseProcess::forget(std::size_t row) {
+void ReleaseProcess::forget(std::size_t row) const {
   Entry entry;
   entry.row = static_cast<std::uint32_t>(row);
   send(pipe_, entry);

@@ -26,10 +26,10 @@ class ReleaseProcess {
   /// From here on this device is to be let go of by these packets. Waits for nothing.
   /// @param row   of the devices, under kMostDevices
   /// @param last  what a driver's rest() asks for; its writes count
-  void look_after(std::size_t row, const UsbIdentity& identity, const UsbRequests& last);
+  void look_after(std::size_t row, const UsbIdentity& identity, const UsbRequests& last) const;
 
   /// The device has gone, or has no force any more.
-  void forget(std::size_t row);
+  void forget(std::size_t row) const;
 
  private:
   ReleaseProcess(int pipe, int process) : pipe_(pipe), process_(process) {}

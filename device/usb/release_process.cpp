@@ -11,6 +11,7 @@
 #include <linux/usbdevice_fs.h>
 #include <sys/ioctl.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -27,7 +28,7 @@ struct LastWrite {
   std::array<std::uint8_t, kLargestUsbWrite> bytes{};
 };
 
-/// What crosses the pipe, whole: it is shorter than what a pipe takes in one piece.
+/// What crosses the socket.
 struct Entry {
   std::uint32_t row = 0;
   std::uint32_t writes = 0;  // 0: forget it
@@ -67,7 +68,7 @@ void take_entry(std::array<Watched, kMostRows>& devices, const Entry& entry) {
   device.node = ::open(path.data(), O_RDWR | O_CLOEXEC);
 }
 
-/// The program's claims end with its open files, which may be a moment after its pipe.
+/// The program's claims end with its open files, which may be a moment after its socket.
 bool claim(int node, unsigned interface) {
   constexpr int kTries = 200;
   constexpr timespec kPause{0, 200000};  // ns: 40 ms in all
@@ -104,17 +105,17 @@ void close_all_but(int kept) {
   ::close_range(std::max(3U, number + 1), ~0U, 0);
 }
 
-[[noreturn]] void run(int pipe) {
+[[noreturn]] void run(int socket) {
   ::setsid();  // what ends the program's terminal or group does not end this
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
     ::signal(signal, SIG_IGN);  // NOLINT(cert-err33-c): there is nobody to tell
   }
   ::prctl(PR_SET_NAME, "torsion-release");
-  close_all_but(pipe);
+  close_all_but(socket);
   std::array<Watched, kMostRows> devices{};
   Entry entry;
   while (true) {
-    const ssize_t size = ::read(pipe, &entry, sizeof entry);
+    const ssize_t size = ::read(socket, &entry, sizeof entry);
     if (size == static_cast<ssize_t>(sizeof entry)) {
       take_entry(devices, entry);
     } else if (size == 0) {
@@ -140,16 +141,17 @@ std::uint8_t interface_with(const UsbIdentity& identity, std::uint8_t endpoint) 
   return 0;
 }
 
-void send(int pipe, const Entry& entry) {
-  // The pipe is never full: a device comes and goes seldom. One that is has no reader any more.
-  static_cast<void>(!::write(pipe, &entry, sizeof entry));
+void tell(int socket, const Entry& entry) {
+  // It is never full: a device comes and goes seldom. Without the other process, which somebody may
+  // have killed, this program goes on alone.
+  static_cast<void>(::send(socket, &entry, sizeof entry, MSG_DONTWAIT | MSG_NOSIGNAL));
 }
 
 }  // namespace
 
 std::unique_ptr<ReleaseProcess> ReleaseProcess::start() {
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return nullptr;
   }
   const pid_t process = ::fork();
@@ -162,14 +164,13 @@ std::unique_ptr<ReleaseProcess> ReleaseProcess::start() {
     ::close(ends[1]);
     return nullptr;
   }
-  ::fcntl(ends[1], F_SETFL, O_NONBLOCK);
   return std::unique_ptr<ReleaseProcess>(new ReleaseProcess(ends[1], process));
 }
 
 ReleaseProcess::~ReleaseProcess() {
   ::kill(process_, SIGKILL);
   ::waitpid(process_, nullptr, 0);
-  ::close(pipe_);
+  ::close(socket_);
 }
 
 void ReleaseProcess::look_after(std::size_t row, const UsbIdentity& identity,
@@ -189,14 +190,14 @@ void ReleaseProcess::look_after(std::size_t row, const UsbIdentity& identity,
     }
   }
   if (entry.writes > 0) {
-    send(pipe_, entry);
+    tell(socket_, entry);
   }
 }
 
 void ReleaseProcess::forget(std::size_t row) const {
   Entry entry;
   entry.row = static_cast<std::uint32_t>(row);
-  send(pipe_, entry);
+  tell(socket_, entry);
 }
 
 }  // namespace torsion::engine

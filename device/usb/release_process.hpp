@@ -2,7 +2,7 @@
 
 // A process beside the program that takes the force off the motors should the program die without a
 // word (kill -9, a crash, no memory): most devices hold their last force then, some for good. It
-// waits at a pipe, and its end says that the program is no more.
+// waits at a socket, whose end says that the program is no more.
 
 #include <memory>
 
@@ -28,13 +28,15 @@ class ReleaseProcess {
   /// @param last  what a driver's rest() asks for; its writes count
   void look_after(std::size_t row, const UsbIdentity& identity, const UsbRequests& last) const;
 
+  [[nodiscard]] int process() const { return process_; }
+
   /// The device has gone, or has no force any more.
   void forget(std::size_t row) const;
 
  private:
-  ReleaseProcess(int pipe, int process) : pipe_(pipe), process_(process) {}
+  ReleaseProcess(int socket, int process) : socket_(socket), process_(process) {}
 
-  int pipe_;
+  int socket_;
   int process_;
 };
 

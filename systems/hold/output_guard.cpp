@@ -65,7 +65,6 @@ void change_state(OutputGuard& guard, const GuardLimits& limits, const GuardInpu
       if (against != GuardReason::kNone) {
         guard.reason = against;
       } else if (input.distance > limits.near) {
-        // Why it fell is said until the hand moves away from there.
         guard.reason = GuardReason::kFar;
       } else {
         guard.state = guard.checked ? GuardState::kRising : GuardState::kChecking;

@@ -15,6 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "device/usb/release_process.hpp"
 #include "device/usb/usb_bus.hpp"
 #include "tests/device/mock_usb.hpp"
 #include "tests/support/waiting.hpp"
@@ -69,9 +70,9 @@ double seconds_until_without_force(MockDevice& device, Time start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-class ReleaseTest : public testing::TestWithParam<int> {};
+class KilledProgramTest : public testing::TestWithParam<int> {};
 
-TEST_P(ReleaseTest, AKilledProgramLeavesNoForceBehind) {
+TEST_P(KilledProgramTest, LeavesNoForceBehind) {
   MockUsb usb;
   test::EmulatedDevice device = EmulatedFalcon{};
   GetParam() == 1 ? device = EmulatedWooden{} : device;
@@ -102,7 +103,18 @@ TEST_P(ReleaseTest, AKilledProgramLeavesNoForceBehind) {
   EXPECT_LT(quickest, 20e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(EachDevice, ReleaseTest, testing::Range(0, 4));
+TEST(ReleaseTest, TheProgramGoesOnWithoutIt) {
+  const auto release = ReleaseProcess::start();
+  ASSERT_TRUE(release);
+  ::kill(release->process(), SIGKILL);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  UsbRequests last;
+  write_usb(last, 0x02, std::array<std::uint8_t, 1>{0});
+  release->look_after(0, identity_of(EmulatedFalcon{}), last);  // no SIGPIPE
+  release->forget(0);
+}
+
+INSTANTIATE_TEST_SUITE_P(EachDevice, KilledProgramTest, testing::Range(0, 4));
 
 }  // namespace
 }  // namespace torsion::engine

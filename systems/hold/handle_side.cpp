@@ -33,6 +33,16 @@ double first_known(double said, double known) {
   return said > 0.0 ? said : known;
 }
 
+/// Of DeviceAxes: what is both measured and displayed.
+std::uint8_t felt_axes(const DeviceSample& sample) {
+  std::uint32_t axes = sample.sensed & sample.actuated & (kTranslationAxes | kRotationAxes);
+  const bool turns = (sample.sensed & (kTurnAxis | kRotationAxes)) != 0;
+  if ((axes & kRotationAxes) == 0 && turns && (sample.actuated & kTurnAxis) != 0) {
+    axes |= kTurnAxis;
+  }
+  return static_cast<std::uint8_t>(axes);
+}
+
 void begin_epoch(HandleSide& side, const DeviceSample& sample, const Pose& tool) {
   side.epoch = sample.epoch;
   choose_springs(side, sample.traits);
@@ -42,13 +52,19 @@ void begin_epoch(HandleSide& side, const DeviceSample& sample, const Pose& tool)
   guard.torque_heat = side.guard.torque_heat;
   guard.checked = !side.safety.checks_signs;
   guard.signs = guard.checked ? SignVerdict::kRight : guard.signs;  // as somebody has said
-  if (sample.plugged == side.plugged && side.couplings > 1) {
-    // The same device after a silence: its signs are what they were, and it is off if it was.
+  const bool same = sample.plugged == side.plugged && side.couplings > 1;
+  if (same) {
+    // After a silence: its signs are what they were, and it is off if it was.
     guard.checked = guard.checked || side.guard.checked;
     guard.risen = side.guard.risen;
     guard.signs = side.guard.signs;
     guard.state = side.guard.state == GuardState::kOff ? GuardState::kOff : guard.state;
     guard.reason = side.guard.state == GuardState::kOff ? side.guard.reason : guard.reason;
+  } else {
+    begin_sign_check(
+        side.signs, felt_axes(sample),
+        {kShareOfCheck * side.coupling.largest_force, kShareOfCheck * side.coupling.largest_torque},
+        side.home.rotation, sample.traits.delay);
   }
   side.plugged = sample.plugged;
   side.guard = guard;
@@ -61,16 +77,6 @@ void begin_epoch(HandleSide& side, const DeviceSample& sample, const Pose& tool)
   side.limits.largest_torque_rate = side.coupling.largest_torque / kRiseTime;
   side.limits.near = kNearHandle;
   side.map.origin = sample.steers_rate ? tool.position - sample.pose.position : side.home.position;
-}
-
-/// Of DeviceAxes: what is both measured and displayed.
-std::uint8_t felt_axes(const DeviceSample& sample) {
-  std::uint32_t axes = sample.sensed & sample.actuated & (kTranslationAxes | kRotationAxes);
-  const bool turns = (sample.sensed & (kTurnAxis | kRotationAxes)) != 0;
-  if ((axes & kRotationAxes) == 0 && turns && (sample.actuated & kTurnAxis) != 0) {
-    axes |= kTurnAxis;
-  }
-  return static_cast<std::uint8_t>(axes);
 }
 
 /// How fast the device's handle moves, smoothed over a few samples: one count in one short period
@@ -95,10 +101,7 @@ void wait_for_hold(HandleSide& side, const DeviceSample& sample, const Pose& too
   if (sample.steers_rate) {
     side.map.origin = tool.position - sample.pose.position;
   }
-  begin_sign_check(
-      side.signs, felt_axes(sample),
-      {kShareOfCheck * side.limits.largest_force, kShareOfCheck * side.limits.largest_torque},
-      side.home.rotation, sample.traits.delay);
+  begin_group_anew(side.signs);
   side.books = {};
   side.last = handle_pose(side.map, side.device);
 }

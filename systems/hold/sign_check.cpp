@@ -153,11 +153,7 @@ bool take_window(SignCheck& check, const Pose& measured) {
   const bool again = check.windows < kMostWindows && (reversed != 0U || was_moved(check, resolved));
   if (!twice && !again) {
     check.group += 1;
-    check.windows = 0;
-    check.reversed = 0;
-    check.first = {};
-    check.second = {};
-    check.noise = {};
+    begin_group_anew(check);
     skip_empty_groups(check);
   }
   check.start = measured;
@@ -182,6 +178,15 @@ void begin_sign_check(SignCheck& check, std::uint8_t checks, std::array<double, 
   check.axes = axes;
   check.delay = delay;
   skip_empty_groups(check);
+}
+
+void begin_group_anew(SignCheck& check) {
+  check.time = 0.0;
+  check.windows = 0;
+  check.reversed = 0;
+  check.first = {};
+  check.second = {};
+  check.noise = {};
 }
 
 SignVerdict take_sign_sample(SignCheck& check, const Pose& measured, double period) {

@@ -51,6 +51,9 @@ struct SignCheck {
 void begin_sign_check(SignCheck& check, std::uint8_t checks, std::array<double, 2> largest,
                       const glm::dquat& axes, double delay);
 
+/// It was interrupted: the group that was looked at begins anew, what is done stays done.
+void begin_group_anew(SignCheck& check);
+
 /// One sample.
 /// @param measured  the handle, world axes
 /// @param period    s

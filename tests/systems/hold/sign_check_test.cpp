@@ -185,7 +185,8 @@ struct Session {
 };
 
 /// `seconds` with a person who pushes 4 mm down after a second.
-Session session(const Person& person, double seconds) {
+/// @param fault_at  s: when the physics has a fault for 20 ms; never where it is negative
+Session session(const Person& person, double seconds, double fault_at = -1.0) {
   Session outcome;
   EmulatedHand hand(person.hand, {}, person.seed);
   DeviceSample sample;
@@ -200,6 +201,8 @@ Session session(const Person& person, double seconds) {
     const double now = 10.0 + i * person.period;
     sample.pose = hand.measured();
     physics.time = now;
+    const double since_fault = i * person.period - fault_at;
+    physics.faulty = fault_at >= 0.0 && since_fault >= 0.0 && since_fault < 0.02;
     outcome.last = take_handle_sample(outcome.side, sample, physics, now);
     Pose wanted;
     wanted.position.y = -4e-3 * std::clamp(i * person.period - 1.0, 0.0, 1.0);
@@ -243,6 +246,14 @@ TEST(SignCheckTest, ARightDeviceGetsItsForceWithinASecondAfterTheCheck) {
     const double force = 4e-3 * stiffness * grip / (stiffness + grip);
     EXPECT_NEAR(seen.last.wrench.force.y, force, 0.05 * force) << grip;
   }
+}
+
+TEST(SignCheckTest, GoesOnAfterAnInterruptionWithWhatItHasNotSeen) {
+  // The translation is seen after 1.1 s: only the turning begins anew, and all is there 1.62 s, 1.1
+  // s and 1 s after the beginning; all of it anew would take 1.1 s more.
+  const Session seen = session({}, 4.0, 1.6);
+  EXPECT_EQ(seen.side.guard.signs, SignVerdict::kRight);
+  EXPECT_EQ(seen.side.guard.state, GuardState::kLive);
 }
 
 TEST(SignCheckTest, IsDoneOnceForEachDeviceAndAnOffOneStaysOffAfterASilence) {

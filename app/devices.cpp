@@ -70,9 +70,7 @@ std::vector<std::string> notes_of(const ListedDevice& device) {
     case DeviceKind::kMoteus:
       notes.emplace_back("measures and displays torque about the turn axis");
       notes.emplace_back(
-          "has the id of many serial ports: --device usb leaves it alone, --device usb:moteus "
-          "takes "
-          "it");
+          "has the id of many serial ports: --device usb:moteus takes it, --device usb does not");
       break;
     case DeviceKind::kOdrive:
       notes.emplace_back("measures and displays torque about the turn axis");

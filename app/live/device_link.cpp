@@ -64,8 +64,7 @@ Result<std::uint32_t> kinds_of(const std::string& what) {
   }
   const Error wrong{
       fmt::format("--device {}: expected usb, or usb: and some of spacemouse, falcon, "
-                  "woodenhaptics, odrive, moteus "
-                  "with + between, or gateway",
+                  "woodenhaptics, odrive, moteus with + between, or gateway",
                   what)};
   if (what.rfind("usb:", 0) != 0) {
     return wrong;
@@ -104,7 +103,10 @@ DeviceLink::~DeviceLink() = default;
 
 std::unique_ptr<DeviceLink> DeviceLink::held_as(const DeviceChoice& choice, const Pose& tool) {
   auto link = std::make_unique<DeviceLink>(tool);
-  link->side_.limits.longest_silence = choice.longest_silence;
+  GuardLimits& limits = link->side_.limits;
+  limits.longest_silence = choice.longest_silence;
+  // Who bears a silent physics for longer bears a device that is.
+  limits.longest_gap = std::max(limits.longest_gap, choice.longest_silence);
   link->side_.hold = choice.hold;
   link->side_.safety = choice.safety;
   return link;

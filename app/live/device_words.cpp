@@ -79,14 +79,16 @@ std::string off_words(const DeviceView& view) {
 }
 
 /// What ended the last force, and what to do; empty where nothing did.
-const char* stop_words(GuardReason reason) {
+std::string stop_words(GuardReason reason) {
+  const GuardLimits limits;
   switch (reason) {
     case GuardReason::kLetGo:
       return "hold the button that enables the force";
     case GuardReason::kPhysics:
       return "the simulation was silent or had a fault";
     case GuardReason::kTooFast:
-      return "it moved faster than 1.2 m/s or 40 rad/s; move it more slowly";
+      return fmt::format("it moved faster than {} m/s or {} rad/s; move it more slowly",
+                         limits.largest_speed, limits.largest_turn_speed);
     default:
       return "";
   }

@@ -17,11 +17,9 @@ constexpr double kNearHandle = 0.01;      // m: a hand finds that without a guid
 constexpr double kRiseTime = 0.01;        // s: from nothing to the largest force, at the fastest
 constexpr double kShareOfCheck = 0.05;    // of the largest force: may see whether it goes right
 constexpr double kUsualPeriod = 1e-3;     // s
+constexpr double kShortestPeriod = 1e-5;  // s
 constexpr double kLongestPeriod = 20e-3;  // s: a gap, not a period
-// After a silence that is longer than this, or than some periods of a slow device, its driver has
-// told the motors to let go.
-constexpr double kSilentFor = 4e-3;  // s
-constexpr double kSilentPeriods = 2.5;
+constexpr double kGapPeriods = 2.5;       // of a slow device
 
 /// As stiff as the device is able to display, by what is known of it now.
 void choose_springs(HandleSide& side, const DeviceTraits& traits) {
@@ -150,13 +148,13 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
   }
   side.passivity = choose_passivity(sample.traits);  // the rate is measured all the time
   const bool was_silent =
-      now - side.last_time > std::max(kSilentFor, kSilentPeriods * sample.traits.period);
+      now - side.last_time > std::max(side.limits.longest_gap, kGapPeriods * sample.traits.period);
   if (live && !begins && was_silent) {
     // What the motors hold is nothing: the force comes back as after any fault.
     side.guard.sent = {};
   }
   const bool waits = live && side.guard.state == GuardState::kWaiting;
-  const double elapsed = std::clamp(now - side.last_time, 1e-5, kLongestPeriod);
+  const double elapsed = std::clamp(now - side.last_time, kShortestPeriod, kLongestPeriod);
   const double period = waits ? kUsualPeriod : elapsed;
   if (waits) {
     wait_for_hold(side, sample, tool);
@@ -171,7 +169,7 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
                    outcome.handle.position - side.last.position,
                    turn_between(side.last.rotation, outcome.handle.rotation), period);
   outcome.distance = glm::length(outcome.handle.position - tool.position);
-  GuardInput input = guard_input(side, sample, elapsed);
+  GuardInput input = guard_input(side, sample, std::max(now - side.last_time, kShortestPeriod));
   input.wanted = wanted;
   input.result_age = result.any ? now - result.time : 1.0;
   input.faulty = result.faulty;

@@ -15,6 +15,9 @@ struct GuardLimits {
   double largest_force_rate = 0.0;   // N/s
   double largest_torque_rate = 0.0;  // N m/s
   double longest_silence = 3e-3;     // s: without a result of the physics
+  // s: between two samples of the device, or two and a half of its periods; after longer its driver
+  // has told the motors to let go
+  double longest_gap = 4e-3;
   double fall = 10e-3;               // s: from any wrench to none
   double first_rise = 1.0;           // s: to what is wanted, the first time
   double rise = 50e-3;               // s: back

@@ -37,6 +37,7 @@ struct Held {
     DeviceChoice choice;
     choice.what = "usb";
     choice.longest_silence = test::kPatience;
+    choice.safety.checks_signs = false;  // this hand goes where it wants
     link = std::move(DeviceLink::open(choice, home)).value();
     loop.wants_privileges = false;
     reserve(loop, session, session.simulation);

@@ -38,10 +38,6 @@ std::vector<std::string> hold_lines(const DeviceView& view) {
   return lines;
 }
 
-bool felt_anything(const DeviceSample& sample) {
-  return sample.actuated != kNoAxes;
-}
-
 /// The axes of a set of bits, for a person.
 std::string axis_words(std::uint8_t axes) {
   std::vector<std::string> words;
@@ -130,7 +126,7 @@ std::string describe(const DeviceView& view) {
                   actuated_text(sample.actuated), fmt::join(hold_lines(view), "; "));
   const std::string guard = guard_words(view);
   text += guard.empty() ? "" : "; " + guard;
-  if (view.signs == SignVerdict::kUnresolved && felt_anything(sample)) {
+  if (view.signs == SignVerdict::kUnresolved && sample.actuated != kNoAxes) {
     text += "; whether all its axes go where they are pushed could not be seen";
   }
   return trouble.empty() ? text : text + "; another one: " + trouble;

@@ -81,6 +81,9 @@ struct EmulatedMoteus {
 using EmulatedDevice = std::variant<EmulatedSpaceMouse, EmulatedFalcon, EmulatedWooden,
                                     EmulatedOdrive, EmulatedMoteus>;
 
+/// Takes a packet on the OUT endpoint, as below.
+Buffer told(EmulatedMoteus& device, Bytes packet);
+
 /// What it does not remember when it was without power.
 void switch_on(EmulatedDevice& device);
 

@@ -72,6 +72,14 @@ std::vector<std::string> notes_of(const ListedDevice& device) {
       notes.emplace_back(
           "has the id of many serial ports: --device usb:moteus takes it, --device usb does not");
       break;
+    case DeviceKind::kWheel:
+      notes.emplace_back(
+          "measures turn; displays torque about the turn axis where --wheel-torque says how much "
+          "its full scale is");
+      notes.emplace_back(
+          "any device that plays effects counts as a wheel, a joystick too: --device usb:wheel "
+          "takes it, --device usb does not");
+      break;
     case DeviceKind::kOdrive:
       notes.emplace_back("measures and displays torque about the turn axis");
       break;
@@ -122,7 +130,7 @@ int devices(const DevicesOptions& options) {
   if (listed.value().empty()) {
     fmt::print(
         "no device is plugged in that Torsion knows: SpaceMouse, Novint Falcon, WoodenHaptics, "
-        "ODrive, moteus\na mouse does, too: torsion view SCENE\n");
+        "ODrive, moteus, force-feedback wheel\na mouse does, too: torsion view SCENE\n");
   }
   for (const ListedDevice& device : listed.value()) {
     print(device, options);
@@ -148,9 +156,21 @@ void add_device_options(CLI::App& subcommand, DeviceChoice& choice) {
                         "The maker's file, where the usual place has none");
   subcommand
       .add_option("--knob-torque", choice.largest_knob_torque,
-                  "Largest, N m, of an ODrive or a moteus")
+                  "Largest, N m, of an ODrive, a moteus or a wheel")
       ->check(CLI::Range(0.0, 5.0))
       ->capture_default_str();
+  subcommand
+      .add_option("--wheel-torque", choice.wheel_torque,
+                  "N m that a force-feedback wheel has at its full scale, as it is set up; without "
+                  "this it displays none")
+      ->check(CLI::Range(0.1, 50.0));
+  subcommand
+      .add_option("--wheel-range", choice.wheel_range,
+                  "Degrees that it turns from lock to lock, as it is set up")
+      ->check(CLI::Range(90.0, 3600.0))
+      ->capture_default_str();
+  subcommand.add_flag("--wheel-reversed", choice.wheel_reversed,
+                      "Its torque goes the other way than those of most wheels");
   subcommand
       .add_option_function<std::pair<std::uint32_t, std::uint32_t>>(
           "--turn-buttons",

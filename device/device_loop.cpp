@@ -76,7 +76,9 @@ void give_roles(DeviceLoop& loop) {
     DeviceRow* const wooden = first_of(loop, DeviceKind::kWoodenHaptics);
     DeviceRow* const mouse = first_of(loop, DeviceKind::kSpaceMouse);
     DeviceRow* const odrive = first_of(loop, DeviceKind::kOdrive);
-    DeviceRow* const knob = odrive != nullptr ? odrive : first_of(loop, DeviceKind::kMoteus);
+    DeviceRow* const moteus = first_of(loop, DeviceKind::kMoteus);
+    DeviceRow* const wheel = first_of(loop, DeviceKind::kWheel);
+    DeviceRow* const knob = odrive != nullptr ? odrive : moteus != nullptr ? moteus : wheel;
     DeviceRow* const mover = falcon != nullptr ? falcon : wooden;
     if (mover != nullptr) {
       mover->role = DeviceRole::kTranslation;
@@ -211,7 +213,7 @@ void compose(DeviceLoop& loop) {
       const double angle = 2.0 * std::atan2(sample.pose.rotation.y, sample.pose.rotation.w);
       knob_turn = glm::angleAxis(angle, loop.options.turn_axis);
       whole.sensed |= kTurnAxis;
-      whole.actuated |= kTurnAxis;
+      whole.actuated |= sample.actuated & kTurnAxis;
     }
   }
   whole.pose = {pose.position, pose.rotation * knob_turn};

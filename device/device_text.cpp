@@ -7,8 +7,25 @@ namespace {
 
 /// All that happened to its motor is that this machine was too busy to feed it.
 bool was_only_unfed(const DeviceSample& sample) {
-  return sample.motor == MotorKind::kMoteus ? sample.motor_errors == kMoteusUnfed
-                                            : only_unfed(sample.motor, sample.motor_errors);
+  switch (sample.motor) {
+    case MotorKind::kMoteus:
+      return sample.motor_errors == kMoteusUnfed;
+    case MotorKind::kWheel:
+      return false;
+    default:
+      return only_unfed(sample.motor, sample.motor_errors);
+  }
+}
+
+std::string motor_text(const DeviceSample& sample) {
+  switch (sample.motor) {
+    case MotorKind::kMoteus:
+      return moteus_fault_text(sample.motor_errors);
+    case MotorKind::kWheel:
+      return std::string(wheel_error_text(sample.motor_errors));
+    default:
+      return odrive_error_text(sample.motor, sample.motor_errors);
+  }
 }
 
 }  // namespace
@@ -41,9 +58,7 @@ std::string trouble_text(const DeviceSample& sample) {
       return "no client speaks to the gateway; start one (docs/gateway.md)";
     case DeviceTrouble::kMotorError:
       return fmt::format(
-          "its motor has no force ({}). {}",
-          sample.motor == MotorKind::kMoteus ? moteus_fault_text(sample.motor_errors)
-                                             : odrive_error_text(sample.motor, sample.motor_errors),
+          "its motor has no force ({}). {}", motor_text(sample),
           was_only_unfed(sample) ? "It is set up anew" : "Then unplug it and plug it in");
   }
   return "";

@@ -38,7 +38,7 @@ enum class DeviceTrouble : std::uint8_t {
 };
 
 /// Whose numbers DeviceSample::motor_errors are.
-enum class MotorKind : std::uint8_t { kOdrive5, kOdrive6, kMoteus };
+enum class MotorKind : std::uint8_t { kOdrive5, kOdrive6, kMoteus, kWheel };
 
 /// What a device is, as far as stability asks. Zero where it is not known.
 struct DeviceTraits {

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -64,7 +65,7 @@ Result<std::uint32_t> kinds_of(const std::string& what) {
   }
   const Error wrong{
       fmt::format("--device {}: expected usb, or usb: and some of spacemouse, falcon, "
-                  "woodenhaptics, odrive, moteus with + between, or gateway",
+                  "woodenhaptics, odrive, moteus, wheel with + between, or gateway",
                   what)};
   if (what.rfind("usb:", 0) != 0) {
     return wrong;
@@ -144,6 +145,9 @@ Result<std::unique_ptr<DeviceLink>> DeviceLink::open(const DeviceChoice& choice,
   options.loop.turn_axis = tool.rotation * glm::dvec3(0.0, 1.0, 0.0);
   options.loop.drivers.falcon_firmware = link->firmware_;
   options.loop.drivers.largest_knob_torque = choice.largest_knob_torque;
+  options.loop.drivers.wheel_torque = choice.wheel_torque;
+  options.loop.drivers.wheel_range = choice.wheel_range / 180.0 * std::numbers::pi;
+  options.loop.drivers.wheel_reversed = choice.wheel_reversed;
   options.loop.turn_buttons = choice.turn_buttons;
   options.on_start = [] {
     become_realtime();

@@ -20,6 +20,9 @@ struct DeviceChoice {
   std::string what;                       // "usb", "usb:falcon+odrive", "gateway:7747"; empty: none
   std::filesystem::path falcon_firmware;  // empty: in the user's data folder, if there
   double largest_knob_torque = 0.2;       // N m
+  double wheel_torque = 0.0;              // N m, of a wheel's full scale; 0: not known
+  double wheel_range = 900.0;             // degrees, of a wheel from lock to lock
+  bool wheel_reversed = false;
   TurnButtons turn_buttons;               // of a device that senses no turn
   ToolHold hold = ToolHold::kMassless;    // a mouse's too
   HandleSafety safety;

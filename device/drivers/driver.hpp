@@ -8,6 +8,7 @@
 // Each gets a DriverCall, reads the time from it and puts requests into it, and never waits.
 
 #include <limits>
+#include <numbers>
 #include <span>
 
 #include "device/usb/usb_io.hpp"
@@ -21,6 +22,9 @@ inline constexpr double kNever = std::numeric_limits<double>::infinity();
 struct DriverOptions {
   std::span<const std::uint8_t> falcon_firmware;  // empty: none is known
   double largest_knob_torque = 0.2;               // N m
+  double wheel_torque = 0.0;                      // N m, of a wheel's full scale; 0: not known
+  double wheel_range = 5.0 * std::numbers::pi;    // rad, of a wheel from lock to lock
+  bool wheel_reversed = false;                    // its torque goes the other way
 };
 
 /// What went wrong on the wire so far.

@@ -17,6 +17,7 @@ constexpr Ids kOdriveIds{0x1209, 0x0D32};
 constexpr Ids kWoodenMbed{0x1234, 0x0006};
 constexpr Ids kFdcanusb{0x0483, 0x5740};
 constexpr Ids kMoteusUsb{0x1209, 0x2323};
+constexpr Ids kOpenFfbBoard{0x1209, 0xFFB0};
 
 bool has_hid(const UsbIdentity& identity) {
   return std::ranges::any_of(identity.interfaces, [](const UsbInterface& interface) {
@@ -36,6 +37,8 @@ std::string_view name_of(DeviceKind kind) {
       return "WoodenHaptics";
     case DeviceKind::kMoteus:
       return "moteus knob";
+    case DeviceKind::kWheel:
+      return "force-feedback wheel";
     default:
       return "ODrive knob";
   }
@@ -51,6 +54,8 @@ std::string_view word_of(DeviceKind kind) {
       return "woodenhaptics";
     case DeviceKind::kMoteus:
       return "moteus";
+    case DeviceKind::kWheel:
+      return "wheel";
     default:
       return "odrive";
   }
@@ -69,6 +74,10 @@ std::optional<DeviceKind> kind_of(const UsbIdentity& identity) {
   }
   if (ids == kFdcanusb || ids == kMoteusUsb) {
     return DeviceKind::kMoteus;
+  }
+  if (ids == kOpenFfbBoard ||
+      std::ranges::any_of(identity.interfaces, &UsbInterface::plays_effects)) {
+    return DeviceKind::kWheel;
   }
   if (is_not_a_space_mouse(ids.vendor, ids.product)) {
     return std::nullopt;
@@ -89,6 +98,8 @@ Driver driver_for(DeviceKind kind) {
       return WoodenDriver{};
     case DeviceKind::kMoteus:
       return MoteusDriver{};
+    case DeviceKind::kWheel:
+      return WheelDriver{};
     default:
       return OdriveDriver{};
   }

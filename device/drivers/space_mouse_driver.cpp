@@ -4,6 +4,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "device/drivers/hid_requests.hpp"
+
 namespace torsion::engine {
 namespace {
 
@@ -11,12 +13,7 @@ constexpr double kTick = 1e-3;             // s: the pose goes on at the rate of
 constexpr double kLongestReport = 0.25;    // s: a deflection that nobody repeats is forgotten
 constexpr double kLargestSpeed = 0.1;      // m/s
 constexpr double kLargestTurnSpeed = 2.0;  // rad/s
-constexpr std::uint16_t kLongestDescriptor = 1024;
-// Source: Device Class Definition for HID 1.11, 7.1.1 and 7.2.2
-constexpr std::uint16_t kReportDescriptor = 0x2200;
-constexpr std::uint8_t kGetDescriptor = 6;
-constexpr std::uint8_t kSetReport = 9;
-constexpr std::uint16_t kLightReport = 0x0204;  // output report 4
+constexpr std::uint8_t kLightReport = 4;
 
 bool is_candidate(const UsbInterface& interface) {
   return interface.device_class == kHidClass && interface.protocol == 0 &&
@@ -48,9 +45,9 @@ void claim_next(SpaceMouseDriver& driver, DriverCall& call) {
 }
 
 void set_light(SpaceMouseDriver& driver, DriverCall& call, bool on) {
-  const std::array<std::uint8_t, 2> report = {4, on ? std::uint8_t{1} : std::uint8_t{0}};
-  control_usb(call.requests, {0x21, kSetReport, kLightReport, interface_of(driver, call).number, 2},
-              report);
+  const std::array<std::uint8_t, 2> report = {kLightReport, on ? std::uint8_t{1} : std::uint8_t{0}};
+  set_hid_report(call.requests, interface_of(driver, call).number, HidReportKind::kOutput,
+                 kLightReport, report);
 }
 
 void start_reading(SpaceMouseDriver& driver, DriverCall& call, const SpaceMouseLayout& layout) {
@@ -74,14 +71,14 @@ void start_reading(SpaceMouseDriver& driver, DriverCall& call, const SpaceMouseL
 }
 
 void take_descriptor(SpaceMouseDriver& driver, DriverCall& call, const UsbEvent& event) {
-  const auto inputs = event.status == UsbStatus::kCompleted && !event.bytes.empty()
-                          ? parse_hid_descriptor(event.bytes)
-                          : std::nullopt;
-  if (const auto layout = inputs ? space_mouse_layout(*inputs) : std::nullopt) {
+  const auto reports = event.status == UsbStatus::kCompleted && !event.bytes.empty()
+                           ? parse_hid_descriptor(event.bytes)
+                           : std::nullopt;
+  if (const auto layout = reports ? space_mouse_layout(*reports) : std::nullopt) {
     start_reading(driver, call, *layout);
     return;
   }
-  if (!inputs && !driver.without_descriptor) {
+  if (!reports && !driver.without_descriptor) {
     driver.without_descriptor = driver.candidate;
   }
   release_usb(call.requests, interface_of(driver, call).number);
@@ -96,8 +93,7 @@ void take_claim(SpaceMouseDriver& driver, DriverCall& call, const UsbEvent& even
     start_reading(driver, call, usual_space_mouse_layout());
   } else {
     driver.phase = SpaceMousePhase::kAsking;
-    control_usb(call.requests, {0x81, kGetDescriptor, kReportDescriptor,
-                                interface_of(driver, call).number, kLongestDescriptor});
+    ask_report_descriptor(call.requests, interface_of(driver, call).number);
   }
 }
 

@@ -13,11 +13,15 @@ constexpr std::size_t kDeepest = 32;  // nested collections, pushed states
 // Item prefixes without their two bits of size: HID 1.11, 6.2.2.4, 6.2.2.7 and 6.2.2.8.
 enum class Tag : std::uint8_t {
   kInput = 0x80,
+  kOutput = 0x90,
+  kFeature = 0xB0,
   kCollection = 0xA0,
   kEndCollection = 0xC0,
   kUsagePage = 0x04,
   kLogicalMinimum = 0x14,
   kLogicalMaximum = 0x24,
+  kUnitExponent = 0x54,
+  kUnit = 0x64,
   kReportSize = 0x74,
   kReportId = 0x84,
   kReportCount = 0x94,
@@ -74,6 +78,8 @@ struct Globals {
   std::uint32_t usage_page = 0;
   std::int32_t logical_min = 0;
   Item logical_max;  // signed or not as the minimum is
+  std::int32_t unit_exponent = 0;
+  std::uint32_t unit = 0;
   std::uint32_t report_size = 0;
   std::uint32_t report_count = 0;
   std::uint8_t report_id = 0;
@@ -84,9 +90,8 @@ struct Parser {
   std::vector<Globals> pushed;
   std::vector<HidUsage> usages;  // of the next main item
   HidUsage usage_min = 0;
-  std::vector<HidUsage> collections;
-  std::array<std::uint32_t, 256> bits{};  // so far, of each report
-  HidInputs inputs;
+  std::vector<std::uint32_t> open;  // collections, of reports.collections
+  HidReports reports;
 
   /// A usage of up to two bytes belongs to the page in force.
   [[nodiscard]] HidUsage usage_of(const Item& item) const {
@@ -104,28 +109,56 @@ struct Parser {
     return usages.size() <= kMostFields;
   }
 
-  bool add_input(std::uint32_t flags) {
-    std::uint32_t& at = bits[globals.report_id];
+  [[nodiscard]] HidField field_at(HidReportKind kind, std::uint32_t bit_offset) const {
+    HidField field;
+    field.application = open.empty() ? 0 : reports.collections[open.front()].usage;
+    field.report_id = globals.report_id;
+    field.bit_offset = bit_offset;
+    field.bit_size = globals.report_size;
+    field.logical_min = globals.logical_min;
+    field.logical_max = globals.logical_min < 0
+                            ? globals.logical_max.signed_data()
+                            : static_cast<std::int32_t>(globals.logical_max.data);
+    field.kind = kind;
+    field.collection = open.empty() ? 0 : open.back();
+    field.unit = globals.unit;
+    field.unit_exponent = globals.unit_exponent;
+    return field;
+  }
+
+  bool add_fields(HidReportKind kind, std::uint32_t flags) {
+    std::uint32_t& at = reports.bits[static_cast<std::size_t>(kind)][globals.report_id];
     const std::uint64_t all = std::uint64_t{globals.report_size} * globals.report_count;
     if (at + all > kMostBits) {
       return false;
     }
-    const bool has_value = (flags & kConstant) == 0 && (flags & kVariable) != 0 &&
-                           !usages.empty() && globals.report_size >= 1 && globals.report_size <= 32;
-    if (has_value && inputs.fields.size() + globals.report_count > kMostFields) {
+    const bool variable = (flags & kVariable) != 0;
+    const bool chooses = !variable && kind != HidReportKind::kInput;
+    const bool has_value = (flags & kConstant) == 0 && (variable || chooses) && !usages.empty() &&
+                           globals.report_count > 0 && globals.report_size >= 1 &&
+                           globals.report_size <= 32;
+    const std::uint64_t count = !has_value ? 0
+                                : variable ? std::uint64_t{globals.report_count}
+                                           : usages.size();
+    if (reports.fields.size() + count > kMostFields) {
       return false;
     }
-    const bool below_zero = globals.logical_min < 0;
-    for (std::uint32_t i = 0; has_value && i < globals.report_count; ++i) {
-      inputs.fields.push_back({usages[std::min<std::size_t>(i, usages.size() - 1)],
-                               collections.empty() ? 0 : collections.front(), globals.report_id,
-                               at + i * globals.report_size, globals.report_size,
-                               globals.logical_min,
-                               below_zero ? globals.logical_max.signed_data()
-                                          : static_cast<std::int32_t>(globals.logical_max.data)});
+    for (std::uint32_t i = 0; i < count; ++i) {
+      HidField field = field_at(kind, variable ? at + i * globals.report_size : at);
+      field.usage = usages[std::min<std::size_t>(i, usages.size() - 1)];
+      field.chosen =
+          variable ? 1 : static_cast<std::int32_t>(std::int64_t{globals.logical_min} + i);
+      reports.fields.push_back(field);
     }
     at += static_cast<std::uint32_t>(all);
     return true;
+  }
+
+  bool open_collection() {
+    const std::uint32_t parent = open.empty() ? 0 : open.back();
+    reports.collections.push_back({usages.empty() ? 0 : usages.back(), parent});
+    open.push_back(static_cast<std::uint32_t>(reports.collections.size() - 1));
+    return open.size() <= kDeepest && reports.collections.size() <= kMostFields;
   }
 
   bool take_global(const Item& item) {
@@ -139,6 +172,13 @@ struct Parser {
       case Tag::kLogicalMaximum:
         globals.logical_max = item;
         return true;
+      case Tag::kUnitExponent:
+        // Four bits with a sign; some fill the byte up with it.
+        globals.unit_exponent = static_cast<std::int32_t>((item.data & 0xFU) ^ 8U) - 8;
+        return true;
+      case Tag::kUnit:
+        globals.unit = item.data;
+        return true;
       case Tag::kReportSize:
         globals.report_size = item.data;
         return true;
@@ -147,7 +187,7 @@ struct Parser {
         return true;
       case Tag::kReportId:
         globals.report_id = static_cast<std::uint8_t>(item.data);
-        inputs.numbered = true;
+        reports.numbered = true;
         return item.data >= 1 && item.data <= 255;
       case Tag::kPush:
         pushed.push_back(globals);
@@ -168,16 +208,21 @@ struct Parser {
     bool good = true;
     switch (static_cast<Tag>(item.tag)) {
       case Tag::kInput:
-        good = add_input(item.data);
+        good = add_fields(HidReportKind::kInput, item.data);
+        break;
+      case Tag::kOutput:
+        good = add_fields(HidReportKind::kOutput, item.data);
+        break;
+      case Tag::kFeature:
+        good = add_fields(HidReportKind::kFeature, item.data);
         break;
       case Tag::kCollection:
-        collections.push_back(usages.empty() ? 0 : usages.back());
-        good = collections.size() <= kDeepest;
+        good = open_collection();
         break;
       case Tag::kEndCollection:
-        good = !collections.empty();
+        good = !open.empty();
         if (good) {
-          collections.pop_back();
+          open.pop_back();
         }
         break;
       default:
@@ -219,7 +264,7 @@ struct Parser {
 
 }  // namespace
 
-std::optional<HidInputs> parse_hid_descriptor(Bytes descriptor) {
+std::optional<HidReports> parse_hid_descriptor(Bytes descriptor) {
   Parser parser;
   Item item;
   while (!descriptor.empty()) {
@@ -227,10 +272,19 @@ std::optional<HidInputs> parse_hid_descriptor(Bytes descriptor) {
       return std::nullopt;
     }
   }
-  if (!parser.collections.empty()) {
+  if (!parser.open.empty()) {
     return std::nullopt;
   }
-  return std::move(parser.inputs);
+  return std::move(parser.reports);
+}
+
+bool is_within(const HidReports& reports, const HidField& field, HidUsage collection) {
+  for (std::uint32_t i = field.collection; i != 0; i = reports.collections[i].parent) {
+    if (reports.collections[i].usage == collection) {
+      return true;
+    }
+  }
+  return false;
 }
 
 std::optional<std::int32_t> hid_value(const HidField& field, bool numbered, Bytes report) {
@@ -256,6 +310,18 @@ std::optional<std::int32_t> hid_value(const HidField& field, bool numbered, Byte
     bits = (bits ^ sign) - sign;
   }
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(bits));
+}
+
+void put_hid_value(const HidField& field, bool numbered, std::int32_t value,
+                   std::span<std::uint8_t> report) {
+  report = report.subspan(numbered ? 1 : 0);
+  const auto bits = static_cast<std::uint32_t>(value);
+  for (std::uint32_t i = 0; i < field.bit_size; ++i) {
+    const std::uint32_t at = field.bit_offset + i;
+    const auto mask = static_cast<std::uint8_t>(1U << at % 8);
+    std::uint8_t& byte = report[at / 8];
+    byte = static_cast<std::uint8_t>((bits >> i & 1U) != 0 ? byte | mask : byte & ~mask);
+  }
 }
 
 }  // namespace torsion::engine

@@ -38,11 +38,11 @@ double share_of(const HidField& axis, std::int32_t value) {
 
 }  // namespace
 
-std::optional<SpaceMouseLayout> space_mouse_layout(const HidInputs& inputs) {
+std::optional<SpaceMouseLayout> space_mouse_layout(const HidReports& reports) {
   SpaceMouseLayout layout;
-  layout.numbered = inputs.numbered;
-  for (const HidField& field : inputs.fields) {
-    if (field.application != kHidMultiAxisController) {
+  layout.numbered = reports.numbered;
+  for (const HidField& field : reports.fields) {
+    if (field.application != kHidMultiAxisController || field.kind != HidReportKind::kInput) {
       continue;
     }
     const std::uint32_t axis = field.usage - kHidX;  // wraps round below

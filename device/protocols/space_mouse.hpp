@@ -27,7 +27,7 @@ struct SpaceMouseLayout {
 /// What the device's own report descriptor says.
 /// @return nothing where it is no multi-axis controller with all six axes: the mouse or keyboard
 ///         interface of a receiver, for example
-std::optional<SpaceMouseLayout> space_mouse_layout(const HidInputs& inputs);
+std::optional<SpaceMouseLayout> space_mouse_layout(const HidReports& reports);
 
 /// Where the descriptor cannot be had: translation in report 1, rotation in report 2 or after the
 /// translation when report 1 is long enough; buttons in report 3; full deflection 350.

@@ -1,11 +1,49 @@
 #include "device/usb/usb_identity.hpp"
 
+#include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <span>
 
+#include <fmt/format.h>
 #include <libusb-1.0/libusb.h>
+
+#include "device/protocols/wheel.hpp"
 
 namespace torsion::engine {
 namespace {
+
+namespace fs = std::filesystem;
+
+int number_in(const fs::path& file) {
+  std::ifstream stream(file);
+  int number = -1;
+  stream >> number;
+  return number;
+}
+
+/// An interface's report descriptor, as the kernel's driver has read it; empty where none has.
+std::vector<std::uint8_t> report_descriptor(const fs::path& device, std::uint8_t interface) {
+  const std::string ending = fmt::format(":1.{}", interface);
+  std::error_code error;
+  for (const fs::directory_entry& part : fs::directory_iterator(device, error)) {
+    if (!part.path().filename().string().ends_with(ending)) {
+      continue;
+    }
+    for (const fs::directory_entry& entry : fs::directory_iterator(part.path(), error)) {
+      std::ifstream file(entry.path() / "report_descriptor", std::ios::binary);
+      if (file) {
+        return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+      }
+    }
+  }
+  return {};
+}
+
+bool plays_effects(const std::vector<std::uint8_t>& descriptor) {
+  const auto reports = descriptor.empty() ? std::nullopt : parse_hid_descriptor(descriptor);
+  return reports && has_effects(*reports);
+}
 
 UsbInterface read_interface(const libusb_interface_descriptor& from) {
   UsbInterface to;
@@ -47,7 +85,31 @@ std::optional<UsbIdentity> read_identity(libusb_device* device) {
     }
   }
   libusb_free_config_descriptor(config);
+  const fs::path folder = sysfs_folder(identity);
+  for (UsbInterface& interface : identity.interfaces) {
+    interface.plays_effects = interface.device_class == kHidClass &&
+                              plays_effects(report_descriptor(folder, interface.number));
+  }
   return identity;
+}
+
+bool may_say_more(const UsbIdentity& identity) {
+  const fs::path folder = sysfs_folder(identity);
+  return std::ranges::any_of(identity.interfaces, [&](const UsbInterface& interface) {
+    return interface.device_class == kHidClass &&
+           report_descriptor(folder, interface.number).empty();
+  });
+}
+
+fs::path sysfs_folder(const UsbIdentity& identity) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator("/sys/bus/usb/devices", error)) {
+    if (number_in(entry.path() / "busnum") == identity.bus &&
+        number_in(entry.path() / "devnum") == identity.address) {
+      return entry.path();
+    }
+  }
+  return {};
 }
 
 }  // namespace torsion::engine

@@ -31,6 +31,8 @@ struct UsbInterface {
   std::uint8_t subclass = 0;
   std::uint8_t protocol = 0;  // of HID: 1 a keyboard, 2 a mouse
   std::vector<UsbEndpoint> endpoints;
+  // Of HID: its report descriptor has effects of the PID class, as far as the system has read it.
+  bool plays_effects = false;
 };
 
 /// What a device says of itself, and where it is.

@@ -29,25 +29,6 @@ std::string driver_of(const fs::path& device, const UsbInterface& interface) {
   return "";
 }
 
-int number_in(const fs::path& file) {
-  std::ifstream stream(file);
-  int number = -1;
-  stream >> number;
-  return number;
-}
-
-/// The device's folder in sysfs; empty where there is none.
-fs::path sysfs_folder(const UsbIdentity& identity) {
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator("/sys/bus/usb/devices", error)) {
-    if (number_in(entry.path() / "busnum") == identity.bus &&
-        number_in(entry.path() / "devnum") == identity.address) {
-      return entry.path();
-    }
-  }
-  return {};
-}
-
 /// The programs that have the device's node open, as far as this user may look.
 std::string holder_of(const UsbIdentity& identity) {
   const std::string node = fmt::format("/dev/bus/usb/{:03}/{:03}", identity.bus, identity.address);

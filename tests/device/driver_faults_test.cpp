@@ -18,6 +18,7 @@ using test::EmulatedFalcon;
 using test::EmulatedMoteus;
 using test::EmulatedOdrive;
 using test::EmulatedSpaceMouse;
+using test::EmulatedWheel;
 using test::EmulatedWooden;
 using test::FakeBus;
 using test::kStartTime;
@@ -32,13 +33,14 @@ struct WireFault {
 class WireFaultTest : public testing::TestWithParam<WireFault> {};
 
 TEST_P(WireFaultTest, LetsGoOrKeepsTheLastPoseAndIsLiveAgain) {
-  for (const int kind : {0, 1, 2, 3, 4}) {
+  for (const int kind : {0, 1, 2, 3, 4, 5}) {
     DeviceClient client;
-    FakeBus bus({}, client.sink());
+    FakeBus bus(test::with_wheel_torque(), client.sink());
     test::EmulatedDevice device;
     kind == 1 ? device = EmulatedFalcon{} : kind == 2 ? device = EmulatedWooden{} : device;
     kind == 3 ? device = EmulatedOdrive{} : device;
     kind == 4 ? device = EmulatedMoteus{} : device;
+    kind == 5 ? device = EmulatedWheel{} : device;
     const std::size_t row = bus.plug(device);
     bus.run(kStartTime);
     SCOPED_TRACE(testing::Message() << GetParam().name << ", kind " << kind);
@@ -56,7 +58,7 @@ TEST_P(WireFaultTest, LetsGoOrKeepsTheLastPoseAndIsLiveAgain) {
     bus.run(1.0);
     EXPECT_EQ(client.last.state, DeviceState::kLive);
     if (kind != 0) {
-      EXPECT_GT(client.last.rate, 900.0);
+      EXPECT_GT(client.last.rate, kind == 5 ? 700.0 : 900.0);  // a wheel at rest
     }
   }
 }
@@ -74,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(DriverFaultsTest, AStallLetsGoOfTheForceAtOnce) {
   for (const bool falcon : {true, false}) {
     DeviceClient client;
-    FakeBus bus({}, client.sink());
+    FakeBus bus(test::with_wheel_torque(), client.sink());
     const std::size_t row = falcon ? bus.plug(EmulatedFalcon{}) : bus.plug(EmulatedOdrive{});
     bus.run(kStartTime);
     ASSERT_EQ(bus.without_force_for(row), 0.0);
@@ -91,7 +93,7 @@ TEST(DriverFaultsTest, AStallLetsGoOfTheForceAtOnce) {
 TEST(DriverFaultsTest, AnEndpointOutThatStallsIsClearedAndLetsTheForceGo) {
   for (const bool falcon : {true, false}) {
     DeviceClient client;
-    FakeBus bus({}, client.sink());
+    FakeBus bus(test::with_wheel_torque(), client.sink());
     const std::size_t row = falcon ? bus.plug(EmulatedFalcon{}) : bus.plug(EmulatedOdrive{});
     bus.run(kStartTime);
     ASSERT_EQ(client.last.state, DeviceState::kLive);
@@ -107,13 +109,14 @@ TEST(DriverFaultsTest, AnEndpointOutThatStallsIsClearedAndLetsTheForceGo) {
 }
 
 TEST(DriverFaultsTest, ASilentDeviceIsToldToLetGoAndComesBack) {
-  for (const int kind : {1, 2, 3, 4}) {
+  for (const int kind : {1, 2, 3, 4, 5}) {
     DeviceClient client;
-    FakeBus bus({}, client.sink());
+    FakeBus bus(test::with_wheel_torque(), client.sink());
     const std::size_t row = kind == 1   ? bus.plug(EmulatedFalcon{})
                             : kind == 2 ? bus.plug(EmulatedWooden{})
                             : kind == 3 ? bus.plug(EmulatedOdrive{})
-                                        : bus.plug(EmulatedMoteus{});
+                            : kind == 4 ? bus.plug(EmulatedMoteus{})
+                                        : bus.plug(EmulatedWheel{});
     bus.run(kStartTime);
     SCOPED_TRACE(kind);
     ASSERT_EQ(client.last.state, DeviceState::kLive);
@@ -130,14 +133,15 @@ TEST(DriverFaultsTest, ASilentDeviceIsToldToLetGoAndComesBack) {
 
 TEST(DriverFaultsTest, SaysWhoKeepsItFromTheDeviceAndTriesAgain) {
   for (const UsbStatus status : {UsbStatus::kBusy, UsbStatus::kNoAccess}) {
-    for (const int kind : {0, 1, 2, 3, 4}) {
+    for (const int kind : {0, 1, 2, 3, 4, 5}) {
       DeviceClient client;
-      FakeBus bus({}, client.sink());
+      FakeBus bus(test::with_wheel_torque(), client.sink());
       const std::size_t row = kind == 0   ? bus.plug(EmulatedSpaceMouse{})
                               : kind == 1 ? bus.plug(EmulatedFalcon{})
                               : kind == 2 ? bus.plug(EmulatedWooden{})
                               : kind == 3 ? bus.plug(EmulatedOdrive{})
-                                          : bus.plug(EmulatedMoteus{});
+                              : kind == 4 ? bus.plug(EmulatedMoteus{})
+                                          : bus.plug(EmulatedWheel{});
       bus.claims(row, status);
       bus.run(1.0);
       SCOPED_TRACE(kind);

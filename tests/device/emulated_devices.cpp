@@ -237,6 +237,9 @@ bool without_force(const EmulatedOdrive& device) {
 bool without_force(const EmulatedMoteus& device) {
   return device.torque == 0.0;
 }
+bool without_force(const EmulatedWheel& device) {
+  return torque_of(device) == 0.0;
+}
 
 UsbInterface interface(std::uint8_t number, std::uint8_t device_class,
                        std::vector<UsbEndpoint> endpoints) {
@@ -248,6 +251,12 @@ UsbInterface interface(std::uint8_t number, std::uint8_t device_class,
 void switch_on(EmulatedDevice& device) {
   if (auto* const wooden = std::get_if<EmulatedWooden>(&device)) {
     wooden->says_pressed = EmulatedWooden{}.says_pressed;
+  }
+}
+
+void set_time(EmulatedDevice& device, double now) {
+  if (auto* const wheel = std::get_if<EmulatedWheel>(&device)) {
+    wheel->now = now;
   }
 }
 
@@ -276,6 +285,8 @@ double share_pushed(const EmulatedDevice& device) {
     most = std::abs(odrive->torque) / kMostTorque;
   } else if (const auto* const moteus = std::get_if<EmulatedMoteus>(&device)) {
     most = std::abs(moteus->torque) / kMostTorque;
+  } else if (const auto* const wheel = std::get_if<EmulatedWheel>(&device)) {
+    most = std::abs(torque_of(*wheel)) / kMostTorque;
   }
   return most;
 }
@@ -293,6 +304,8 @@ void brown_out(EmulatedDevice& device) {
     odrive->version = version;
   } else if (std::holds_alternative<EmulatedMoteus>(device)) {
     device = EmulatedMoteus{};
+  } else if (auto* const wheel = std::get_if<EmulatedWheel>(&device)) {
+    forget_effects(*wheel);
   }
   switch_on(device);
 }
@@ -322,6 +335,18 @@ UsbIdentity identity_of(const EmulatedDevice& device) {
               2,
               {interface(0, 2, {{0x82, kInterrupt, 8}}),
                interface(1, 10, {{0x01, kBulk, 64}, {0x81, kBulk, 64}})}};
+    case 5: {
+      const bool other = std::get<EmulatedWheel>(device).is_other;
+      UsbIdentity wheel{other ? std::uint16_t{0x346E} : std::uint16_t{0x1209},
+                        other ? std::uint16_t{0x0004} : std::uint16_t{0xFFB0},
+                        1,
+                        2,
+                        {interface(0, 2, {{0x82, kInterrupt, 8}}),
+                         interface(1, 10, {{0x01, kBulk, 64}, {0x81, kBulk, 64}}),
+                         interface(2, 3, {{0x83, kInterrupt, 64}, {0x02, kInterrupt, 64}})}};
+      wheel.interfaces[2].plays_effects = true;  // as the system reads it from its descriptor
+      return wheel;
+    }
     default:
       return {0x1209,
               0x0D32,

@@ -78,11 +78,54 @@ struct EmulatedMoteus {
   Buffer line;
 };
 
+/// A force-feedback wheel that plays effects: an OpenFFBoard, or one that differs from it wherever
+/// the class allows. It reports when it has turned, and ten times a second.
+struct EmulatedWheel {
+  bool is_other = false;
+  bool plays_for_ever = false;  // its effects do not end by themselves, as they should
+  double turn = 0.0;            // rad, to the right
+  double range = 15.7079;       // rad, from lock to lock
+  double full_scale = 2.5;      // N m
+  std::uint8_t buttons = 0;
+  double now = 0.0;  // s
+  bool powered = true;
+  bool enabled = false;
+  bool created = false;  // its effect
+  bool plays = false;
+  double gain = 0.5;         // of all effects: another program's
+  double duration = 0.0;     // s, of its effect
+  double direction = 0.0;    // share of the torque that acts, to the left
+  double share = 0.0;        // of the full scale
+  double started_at = 0.0;   // s
+  std::uint32_t errors = 0;  // packets that it could not read, or in a wrong order
+  std::uint32_t pings = 0;
+  bool said_enabled = false;  // as it reported last
+  bool said_powered = false;
+  std::int32_t said_count = 0;
+  double said_at = 0.0;
+};
+
 using EmulatedDevice = std::variant<EmulatedSpaceMouse, EmulatedFalcon, EmulatedWooden,
-                                    EmulatedOdrive, EmulatedMoteus>;
+                                    EmulatedOdrive, EmulatedMoteus, EmulatedWheel>;
 
 /// Takes a packet on the OUT endpoint, as below.
 Buffer told(EmulatedMoteus& device, Bytes packet);
+Buffer told(EmulatedWheel& device, Bytes packet);
+
+/// A control transfer, as below.
+std::optional<Buffer> controlled(EmulatedWheel& device, const UsbSetup& setup, Bytes data);
+
+/// It says where it is, though it has not turned.
+Buffer place_of(EmulatedWheel& device);
+
+/// Torque that its motor has, N m, to the left: counter-clockwise for who sits before it.
+double torque_of(const EmulatedWheel& device);
+
+/// What a reset, or a moment without power, does.
+void forget_effects(EmulatedWheel& device);
+
+/// It is so late: s, of any clock. Devices that do something by themselves have to know.
+void set_time(EmulatedDevice& device, double now);
 
 /// What it does not remember when it was without power.
 void switch_on(EmulatedDevice& device);

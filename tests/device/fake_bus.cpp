@@ -6,9 +6,10 @@
 namespace torsion::engine::test {
 namespace {
 
-constexpr double kSoon = 1e-4;     // s: a transfer's end
-constexpr double kControl = 1e-3;  // s: a control's
-constexpr double kAnswer = 8e-4;   // s: from a packet to the device's answer
+constexpr double kSoon = 1e-4;           // s: a transfer's end
+constexpr double kControl = 1e-3;        // s: a control's
+constexpr double kControlTimeout = 0.5;  // s
+constexpr double kAnswer = 8e-4;         // s: from a packet to the device's answer
 
 }  // namespace
 
@@ -76,6 +77,7 @@ void FakeBus::execute(std::size_t row, const UsbRequests& requests) {
 
 void FakeBus::execute_one(std::size_t row, const UsbRequest& request) {
   Plugged& plugged = devices_[row];
+  set_time(plugged.device, now_);
   Due due;
   due.event.job = request.job;
   due.event.endpoint = request.endpoint;
@@ -116,6 +118,11 @@ void FakeBus::execute_one(std::size_t row, const UsbRequest& request) {
       return;
     }
     case UsbJob::kControl: {
+      if (plugged.silent) {
+        due.event.status = UsbStatus::kTimedOut;
+        schedule(row, kControlTimeout, due);
+        return;
+      }
       const auto answer = controlled(plugged.device, request.setup,
                                      (request.setup.type & kUsbIn) != 0 ? Bytes{} : request.data());
       due.event.status = answer ? UsbStatus::kCompleted : UsbStatus::kStall;
@@ -236,6 +243,9 @@ void FakeBus::run_until(double time) {
     }
   }
   now_ = time;
+  for (Plugged& plugged : devices_) {
+    set_time(plugged.device, now_);
+  }
 }
 
 }  // namespace torsion::engine::test

@@ -15,6 +15,14 @@ namespace torsion::engine::test {
 
 inline constexpr double kStartTime = 0.5;  // s: by then a device that needs nobody is live
 
+/// Where a wheel's full scale is known.
+inline LoopOptions with_wheel_torque() {
+  LoopOptions options;
+  options.drivers.wheel_torque = EmulatedWheel{}.full_scale;
+  options.drivers.wheel_range = EmulatedWheel{}.range;
+  return options;
+}
+
 class FakeBus {
  public:
   explicit FakeBus(const LoopOptions& options, SampleSink sink) {

@@ -19,6 +19,7 @@ using test::EmulatedDevice;
 using test::EmulatedFalcon;
 using test::EmulatedMoteus;
 using test::EmulatedOdrive;
+using test::EmulatedWheel;
 using test::EmulatedWooden;
 using test::FakeBus;
 using test::kStartTime;
@@ -65,12 +66,14 @@ EmulatedDevice device_of(std::uint32_t kind) {
       newer.version = {"0", "6", "9"};
       return newer;
     }
-    default:
+    case 4:
       return EmulatedMoteus{};
+    default:
+      return EmulatedWheel{};
   }
 }
-constexpr std::array<const char*, 5> kNames = {"Falcon", "WoodenHaptics", "ODrive 0.5",
-                                               "ODrive 0.6", "moteus"};
+constexpr std::array<const char*, 6> kNames = {"Falcon",     "WoodenHaptics", "ODrive 0.5",
+                                               "ODrive 0.6", "moteus",        "wheel"};
 
 /// Of the faults of one kind of device.
 struct Tally {
@@ -130,11 +133,11 @@ class FaultCampaignTest : public testing::TestWithParam<std::uint32_t> {};
 TEST_P(FaultCampaignTest, ForceStaysWithinItsLimitsAndEndsWithATrustedDevice) {
   const bool all = std::getenv("TORSION_ALL_CASES") != nullptr;  // NOLINT(concurrency-mt-unsafe)
   Tally tally;
-  tally.sessions = all ? 2000 : 100;  // of each of five devices
+  tally.sessions = all ? 2000 : 100;  // of each of six devices
   Random random{std::mt19937(GetParam() + 1)};
   for (int session = 0; session < tally.sessions; ++session) {
     Person person;
-    FakeBus bus({}, person.sink());
+    FakeBus bus(test::with_wheel_torque(), person.sink());
     std::size_t row = bus.plug(device_of(GetParam()));
     bus.run(random.below(2) == 0 ? kStartTime : 1e-3 * random.below(100));  // in its set-up, too
     for (int fault = 0; fault < 20; ++fault) {
@@ -176,7 +179,7 @@ TEST_P(FaultCampaignTest, ForceStaysWithinItsLimitsAndEndsWithATrustedDevice) {
   EXPECT_GT(tally.most, 0.02);  // or it would say little
 }
 
-INSTANTIATE_TEST_SUITE_P(EachDevice, FaultCampaignTest, testing::Range(0U, 5U));
+INSTANTIATE_TEST_SUITE_P(EachDevice, FaultCampaignTest, testing::Range(0U, 6U));
 
 }  // namespace
 }  // namespace torsion::engine

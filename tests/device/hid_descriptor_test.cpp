@@ -12,12 +12,12 @@ namespace {
 using test::kSpaceMouseDescriptor;
 
 TEST(HidDescriptorTest, FindsFieldsWhereTheDescriptorPutsThem) {
-  const auto inputs = parse_hid_descriptor(kSpaceMouseDescriptor);
-  ASSERT_TRUE(inputs);
-  EXPECT_TRUE(inputs->numbered);
-  ASSERT_EQ(inputs->fields.size(), 8U);  // six axes, two buttons; what is padding is left out
+  const auto reports = parse_hid_descriptor(kSpaceMouseDescriptor);
+  ASSERT_TRUE(reports);
+  EXPECT_TRUE(reports->numbered);
+  ASSERT_EQ(reports->fields.size(), 9U);  // axes, buttons and the light; not what is padding
   for (std::uint32_t axis = 0; axis < 6; ++axis) {
-    const HidField& field = inputs->fields[axis];
+    const HidField& field = reports->fields[axis];
     EXPECT_EQ(field.usage, kHidX + axis);
     EXPECT_EQ(field.application, kHidMultiAxisController);
     EXPECT_EQ(field.report_id, axis < 3 ? 1 : 2);
@@ -26,9 +26,9 @@ TEST(HidDescriptorTest, FindsFieldsWhereTheDescriptorPutsThem) {
     EXPECT_EQ(field.logical_min, -350);
     EXPECT_EQ(field.logical_max, 350);
   }
-  EXPECT_EQ(inputs->fields[7].usage, 0x0009'0002U);
-  EXPECT_EQ(inputs->fields[7].bit_offset, 1U);
-  EXPECT_EQ(inputs->fields[7].logical_max, 1);
+  EXPECT_EQ(reports->fields[7].usage, 0x0009'0002U);
+  EXPECT_EQ(reports->fields[7].bit_offset, 1U);
+  EXPECT_EQ(reports->fields[7].logical_max, 1);
 }
 
 TEST(HidDescriptorTest, ReadsValuesAcrossBytesWithTheirSign) {
@@ -52,11 +52,11 @@ TEST(HidDescriptorTest, TakesAMaximumForUnsignedWhereTheMinimumIsNotNegative) {
   // usage page 1, usage X, minimum 0, maximum 255 in one byte, 8 bits, one
   const std::array<std::uint8_t, 14> descriptor = {0x05, 0x01, 0x09, 0x30, 0x15, 0x00, 0x25,
                                                    0xFF, 0x75, 0x08, 0x95, 0x01, 0x81, 0x02};
-  const auto inputs = parse_hid_descriptor(descriptor);
-  ASSERT_TRUE(inputs);
-  ASSERT_EQ(inputs->fields.size(), 1U);
-  EXPECT_EQ(inputs->fields[0].logical_max, 255);
-  EXPECT_FALSE(inputs->numbered);
+  const auto reports = parse_hid_descriptor(descriptor);
+  ASSERT_TRUE(reports);
+  ASSERT_EQ(reports->fields.size(), 1U);
+  EXPECT_EQ(reports->fields[0].logical_max, 255);
+  EXPECT_FALSE(reports->numbered);
 }
 
 TEST(HidDescriptorTest, RefusesWhatIsCutOffOrDoesNotNest) {
@@ -76,11 +76,11 @@ TEST(HidDescriptorTest, UsagesMayEndWithTheLargest) {
   // usages 0xFFFFFFFE to 0xFFFFFFFF, two values of 8 bits; once this never ended
   const std::array<std::uint8_t, 16> descriptor = {0x1B, 0xFE, 0xFF, 0xFF, 0xFF, 0x2B, 0xFF, 0xFF,
                                                    0xFF, 0xFF, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02};
-  const auto inputs = parse_hid_descriptor(descriptor);
-  ASSERT_TRUE(inputs);
-  ASSERT_EQ(inputs->fields.size(), 2U);
-  EXPECT_EQ(inputs->fields[0].usage, 0xFFFFFFFEU);
-  EXPECT_EQ(inputs->fields[1].usage, 0xFFFFFFFFU);
+  const auto reports = parse_hid_descriptor(descriptor);
+  ASSERT_TRUE(reports);
+  ASSERT_EQ(reports->fields.size(), 2U);
+  EXPECT_EQ(reports->fields[0].usage, 0xFFFFFFFEU);
+  EXPECT_EQ(reports->fields[1].usage, 0xFFFFFFFFU);
 }
 
 TEST(HidDescriptorTest, SurvivesAnyBytes) {
@@ -91,12 +91,12 @@ TEST(HidDescriptorTest, SurvivesAnyBytes) {
     for (unsigned change = 0; change < changes; ++change) {
       bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
     }
-    const auto inputs = parse_hid_descriptor(bytes);
-    for (const HidField& field : inputs ? inputs->fields : std::vector<HidField>{}) {
+    const auto reports = parse_hid_descriptor(bytes);
+    for (const HidField& field : reports ? reports->fields : std::vector<HidField>{}) {
       std::array<std::uint8_t, 8> report{};
       report[0] = field.report_id;
-      const auto value = hid_value(field, inputs->numbered, report);
-      EXPECT_TRUE(!value || *value == 0 || !inputs->numbered || field.report_id == 0);
+      const auto value = hid_value(field, reports->numbered, report);
+      EXPECT_TRUE(!value || *value == 0 || !reports->numbered || field.report_id == 0);
     }
   }
 }

@@ -4,10 +4,13 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <utility>
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+
+#include "device/steady_clock.hpp"
 // usbdevice_fs.h uses what ioctl.h defines.
 #include <linux/ioctl.h>
 #include <linux/usbdevice_fs.h>
@@ -106,6 +109,9 @@ void MockDevice::plug() {
         sysfs_.substr(4), number_, interface.number);
     umockdev_testbed_add_from_string(bed_, part.c_str(), nullptr);
     show_driver(interface.number, own_driver_);
+    if (interface.device_class == kHidClass) {
+      show_report_descriptor(interface.number);
+    }
   }
 }
 
@@ -118,6 +124,23 @@ void MockDevice::show_driver(unsigned interface, const std::string& driver) cons
   if (!driver.empty()) {
     fs::create_symlink("../../../../bus/usb/drivers/" + driver, link, ignored);
   }
+}
+
+/// What usbhid has read of an interface while it has it.
+void MockDevice::show_report_descriptor(std::uint8_t interface) {
+  namespace fs = std::filesystem;
+  constexpr UsbSetup kAsks{0x81, 6, 0x2200, 0, 4096};
+  const auto descriptor = controlled(device_, kAsks, {});
+  if (own_driver_ != "usbhid" || !descriptor) {
+    return;
+  }
+  const UsbIdentity identity = identity_of(device_);
+  const fs::path folder = fmt::format("{}{}/1-{}:1.{}/0003:{:04X}:{:04X}.0001", root_, sysfs_,
+                                      number_, interface, identity.vendor, identity.product);
+  fs::create_directories(folder);
+  std::ofstream(folder / "report_descriptor", std::ios::binary)
+      .write(reinterpret_cast<const char*>(descriptor->data()),
+             static_cast<std::streamsize>(descriptor->size()));
 }
 
 void MockDevice::unplug() {
@@ -178,6 +201,7 @@ void MockDevice::close_node() {
 
 bool MockDevice::without_force() {
   const std::lock_guard lock(mutex_);
+  set_time(device_, steady_now());
   return test::without_force(device_);
 }
 
@@ -382,6 +406,7 @@ void MockDevice::tell_all() {
     writes_.pop_front();
     const auto* request = reinterpret_cast<const usbdevfs_urb*>(urb.data->data);
     const auto size = static_cast<std::size_t>(request->buffer_length);
+    set_time(device_, steady_now());
     Buffer in = told(device_, Bytes(static_cast<const std::uint8_t*>(request->buffer), size));
     finish(std::move(urb), 0);
     if (!in.empty()) {

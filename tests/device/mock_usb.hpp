@@ -89,6 +89,7 @@ class MockDevice {
   void match();
   /// Packets get to the device, unless it takes none.
   void tell_all();
+  void show_report_descriptor(std::uint8_t interface);
   void show_driver(unsigned interface, const std::string& driver) const;
 
   UMockdevTestbed* bed_;

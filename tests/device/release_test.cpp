@@ -26,6 +26,7 @@ namespace {
 using test::EmulatedFalcon;
 using test::EmulatedMoteus;
 using test::EmulatedOdrive;
+using test::EmulatedWheel;
 using test::EmulatedWooden;
 using test::MockDevice;
 using test::MockUsb;
@@ -41,6 +42,7 @@ std::atomic<bool> hangs = false;
   ::signal(SIGUSR1, [](int) { hangs = true; });  // NOLINT(cert-err33-c)
   UsbBusOptions options;
   options.loop.kinds = ~0U;
+  options.loop.drivers.wheel_torque = EmulatedWheel{}.full_scale;
   const auto push = [](void*, const DeviceSample&) {
     while (hangs) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -78,6 +80,11 @@ TEST_P(KilledProgramTest, LeavesNoForceBehind) {
   GetParam() == 1 ? device = EmulatedWooden{} : device;
   GetParam() == 2 ? device = EmulatedOdrive{} : device;
   GetParam() == 3 ? device = EmulatedMoteus{} : device;
+  if (GetParam() == 4) {
+    EmulatedWheel wheel;
+    wheel.plays_for_ever = true;
+    device = wheel;
+  }
   MockDevice& plugged = usb.plug(device);
   // Within 20 ms; a machine that is busy with something else may be late once or twice.
   double quickest = 1e9;
@@ -114,7 +121,7 @@ TEST(ReleaseTest, TheProgramGoesOnWithoutIt) {
   release->forget(0);
 }
 
-INSTANTIATE_TEST_SUITE_P(EachDevice, KilledProgramTest, testing::Range(0, 4));
+INSTANTIATE_TEST_SUITE_P(EachDevice, KilledProgramTest, testing::Range(0, 5));
 
 }  // namespace
 }  // namespace torsion::engine

@@ -100,9 +100,9 @@ TEST(SpaceMouseTest, HasNoLayoutForAMouse) {
   const std::array<std::uint8_t, 19> mouse = {0x05, 0x01, 0x09, 0x02, 0xA1, 0x01, 0x09,
                                               0x30, 0x09, 0x31, 0x15, 0x81, 0x75, 0x08,
                                               0x95, 0x02, 0x81, 0x06, 0xC0};
-  const auto inputs = parse_hid_descriptor(mouse);
-  ASSERT_TRUE(inputs);
-  EXPECT_FALSE(space_mouse_layout(*inputs));
+  const auto reports = parse_hid_descriptor(mouse);
+  ASSERT_TRUE(reports);
+  EXPECT_FALSE(space_mouse_layout(*reports));
 }
 
 TEST(SpaceMouseTest, KnowsTheFamilyAndWhatIsNotOfIt) {

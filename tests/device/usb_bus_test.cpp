@@ -22,6 +22,7 @@ using test::EmulatedFalcon;
 using test::EmulatedMoteus;
 using test::EmulatedOdrive;
 using test::EmulatedSpaceMouse;
+using test::EmulatedWheel;
 using test::EmulatedWooden;
 using test::MockDevice;
 using test::MockUsb;
@@ -47,6 +48,7 @@ struct Client {
 UsbBusOptions with_all_kinds() {
   UsbBusOptions options;
   options.loop.kinds = ~0U;
+  options.loop.drivers.wheel_torque = EmulatedWheel{}.full_scale;
   return options;
 }
 
@@ -83,15 +85,21 @@ test::EmulatedDevice device_of(int kind) {
       return EmulatedWooden{};
     case 3:
       return EmulatedOdrive{};
-    default:
+    case 4:
       return EmulatedMoteus{};
+    default: {
+      EmulatedWheel wheel;
+      wheel.is_other = kind == 6;
+      return wheel;
+    }
   }
 }
 
 class UsbLifeTest : public UsbBusTest, public testing::WithParamInterface<int> {};
 
 TEST_P(UsbLifeTest, OpensStreamsAndSurvivesWhatComesOverTheWire) {
-  const char* const drivers[] = {"usbhid", "ftdi_sio", "usbhid", "cdc_acm", "cdc_acm"};
+  const char* const drivers[] = {"usbhid",  "ftdi_sio", "usbhid", "cdc_acm",
+                                 "cdc_acm", "usbhid",   "usbhid"};
   MockDevice& device = usb_.plug(device_of(GetParam()), drivers[GetParam()]);
   start();
   ASSERT_TRUE(becomes(DeviceState::kLive));
@@ -121,7 +129,7 @@ TEST_P(UsbLifeTest, OpensStreamsAndSurvivesWhatComesOverTheWire) {
   EXPECT_TRUE(device.kernel_has_it());
 }
 
-INSTANTIATE_TEST_SUITE_P(EachDevice, UsbLifeTest, testing::Range(0, 5));
+INSTANTIATE_TEST_SUITE_P(EachDevice, UsbLifeTest, testing::Range(0, 7));
 
 TEST_F(UsbBusTest, StartsAndEndsWithNothingPluggedIn) {
   start();

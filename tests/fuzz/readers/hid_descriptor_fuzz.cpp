@@ -9,8 +9,8 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const torsion::engine::Bytes bytes(data, size);
   const std::size_t cut = size > 0 ? std::min<std::size_t>(data[0] * std::size_t{4}, size) : 0;
-  const auto inputs = torsion::engine::parse_hid_descriptor(bytes.first(cut));
-  const auto layout = inputs ? torsion::engine::space_mouse_layout(*inputs) : std::nullopt;
+  const auto reports = torsion::engine::parse_hid_descriptor(bytes.first(cut));
+  const auto layout = reports ? torsion::engine::space_mouse_layout(*reports) : std::nullopt;
   torsion::engine::SpaceMouseState state;
   for (const auto& one : {layout, std::optional(torsion::engine::usual_space_mouse_layout())}) {
     if (one) {

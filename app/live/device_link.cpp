@@ -1,12 +1,14 @@
 #include "app/live/device_link.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <numbers>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "app/live/periodic_clock.hpp"
 #include "app/live/realtime_mode.hpp"
@@ -172,7 +174,38 @@ void DeviceLink::describe(void* link, GatewayAnswer& answer) {
   answer.state = gateway_state(self.now_.guard);
 }
 
-Wrench DeviceLink::take(const DeviceSample& sample) {
+void DeviceLink::carry(const MouseCarry& carry) {
+  carries_.back() = carry;
+  carries_.publish();
+}
+
+/// As if the device measured the mouse's way: smoothed, as a mouse moves in jumps, and no faster
+/// than a hand is let.
+void DeviceLink::add_carried(DeviceSample& sample) {
+  constexpr double kFollowTime = 0.03;      // s
+  constexpr double kLargestSpeed = 0.5;     // m/s
+  constexpr double kLongestElapsed = 0.02;  // s
+  constexpr std::uint32_t kCarried = 1U << 31U;
+  carries_.refresh();
+  const MouseCarry& carry = carries_.front();
+  if ((sample.sensed & kTranslationAxes) != 0 || carry.stiffness == 0.0) {
+    return;
+  }
+  const double elapsed = std::clamp(sample.time - carried_at_, 0.0, kLongestElapsed);
+  carried_at_ = sample.time;
+  const glm::dvec3 step = (carry.moved - carried_) * -std::expm1(-elapsed / kFollowTime);
+  const double length = glm::length(step);
+  const double most = kLargestSpeed * elapsed;
+  carried_ += length > most ? step * (most / length) : step;
+  sample.pose.position += carried_;
+  sample.traits.largest_stiffness = carry.stiffness;
+  sample.traits.largest_force = carry.largest_force;
+  sample.epoch |= kCarried;  // from when it is carried on it has another coupling
+}
+
+Wrench DeviceLink::take(const DeviceSample& said) {
+  DeviceSample sample = said;
+  add_carried(sample);
   slot_.answer.refresh();
   const HandleAnswer& answer = slot_.answer.front();
   PhysicsResult result;

@@ -23,11 +23,18 @@ struct DeviceChoice {
   double wheel_torque = 0.0;              // N m, of a wheel's full scale; 0: not known
   double wheel_range = 900.0;             // degrees, of a wheel from lock to lock
   bool wheel_reversed = false;
-  TurnButtons turn_buttons;               // of a device that senses no turn
-  ToolHold hold = ToolHold::kMassless;    // a mouse's too
+  TurnButtons turn_buttons;             // of a device that senses no turn
+  ToolHold hold = ToolHold::kMassless;  // a mouse's too
   HandleSafety safety;
   // s: without a result of the physics, then the force falls
   double longest_silence = GuardLimits{}.longest_silence;
+};
+
+/// A mouse that carries the tool of a device that only turns it.
+struct MouseCarry {
+  glm::dvec3 moved{0.0};       // m, world: so far
+  double stiffness = 0.0;      // N/m, of the coupling in translation; 0: nobody carries
+  double largest_force = 0.0;  // N, likewise
 };
 
 /// What the device's thread shows of itself.
@@ -64,6 +71,10 @@ class DeviceLink {
   /// For one thread that shows it: the newest.
   [[nodiscard]] const DeviceView& view();
 
+  /// For that thread: how far a mouse has carried the tool, of a device that measures no
+  /// translation.
+  void carry(const MouseCarry& carry);
+
   /// One sample, in the device's thread: tells the physics, and answers with the wrench to display.
   static Wrench on_sample(void* link, const DeviceSample& sample);
 
@@ -76,11 +87,15 @@ class DeviceLink {
  private:
   static std::unique_ptr<DeviceLink> held_as(const DeviceChoice& choice, const Pose& tool);
   Wrench take(const DeviceSample& sample);
+  void add_carried(DeviceSample& sample);
   void show_guard();
 
   HandleSlot slot_;
   HandleSide side_;
-  DeviceView now_;  // the device thread's
+  TripleBuffer<MouseCarry> carries_;
+  glm::dvec3 carried_{0.0};  // m: as far as the tool has come after the mouse
+  double carried_at_ = 0.0;  // s
+  DeviceView now_;           // the device thread's
   TripleBuffer<DeviceView> views_;
   std::uint64_t number_ = 0;
   std::vector<std::uint8_t> firmware_;

@@ -67,7 +67,7 @@ std::string off_words(const DeviceView& view) {
   if (view.reason == GuardReason::kReversed) {
     return fmt::format(
         "it goes the other way than it is pushed ({}): no force. Mend the signs of its motors or "
-        "encoders (a gateway's client: its axes), then plug it in again",
+        "encoders (a gateway's client: its axes; a wheel: --wheel-reversed), then plug it in again",
         axis_words(view.reversed_axes));
   }
   return "it ran against the force, faster and faster: no force. Are its motors and encoders the "

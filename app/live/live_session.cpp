@@ -104,6 +104,20 @@ void LiveSession::give(SceneDevice device) {
   tool.from = PoseFrom::kHandle;
   tool.at_start = PoseFrom::kHandle;
   device_view_ = &device_.link->view();
+  carry_.stiffness = couplings_[device_.tool].stiffness;
+  carry_.largest_force = couplings_[device_.tool].largest_force;
+  device_.link->carry(carry_);
+}
+
+bool LiveSession::carries(std::uint32_t tool) const {
+  return on_device(tool) && device_view_->sample.state == DeviceState::kLive &&
+         (device_view_->sample.sensed & kTranslationAxes) == 0;
+}
+
+void LiveSession::carry(std::uint32_t tool, const glm::dvec3& by) {
+  TORSION_ASSERT(carries(tool));
+  carry_.moved += by;
+  device_.link->carry(carry_);
 }
 
 void LiveSession::hold_by(ToolHold way) {

@@ -35,6 +35,11 @@ class LiveSession {
     return device_.link != nullptr && device_.tool == tool;
   }
 
+  /// Whether a device holds the tool that turns it only, so that a mouse is to carry it.
+  [[nodiscard]] bool carries(std::uint32_t tool) const;
+  /// Carries it on. @pre carries(tool)
+  void carry(std::uint32_t tool, const glm::dvec3& by);
+
   /// How tools are held, by a mouse or a device. @pre not started
   void hold_by(ToolHold way);
   [[nodiscard]] ToolHold way() const { return way_; }
@@ -116,6 +121,7 @@ class LiveSession {
   std::vector<std::unique_ptr<HandleSlot>> slots_;
   SceneDevice device_;
   const DeviceView* device_view_ = nullptr;
+  MouseCarry carry_;
   std::vector<std::uint64_t> samples_;  // so many were sent, one count a tool
   std::vector<std::uint8_t> held_;
   std::vector<VirtualCoupling> couplings_;

@@ -117,7 +117,7 @@ void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
   const auto& tools = session_->frame().snapshot.tools;
   double nearest = 1e300;
   for (std::uint32_t tool = 0; tool < tools.size(); ++tool) {
-    if (session_->on_device(tool)) {
+    if (session_->on_device(tool) && !session_->carries(tool)) {
       continue;
     }
     const auto met =
@@ -132,7 +132,10 @@ void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
   grab_.orbiting = !grab_.on_tool;
   if (grab_.on_tool) {
     const std::uint32_t tool = grab_.drag.tool;
-    if (!session_->held(tool)) {
+    const bool carries = session_->carries(tool);
+    if (carries) {
+      handles_[tool] = session_->device()->outcome.handle;
+    } else if (!session_->held(tool)) {
       handles_[tool] = session_->taking_handle(tool);
     }
     state_.tool = tool;
@@ -142,7 +145,9 @@ void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
     grab_.turn_left = 0.0;
     move_.reset();
     state_.let_go = false;
-    session_->hold(tool, handles_[tool]);
+    if (!carries) {
+      session_->hold(tool, handles_[tool]);
+    }
   }
 }
 
@@ -181,6 +186,12 @@ void Viewer::drag_tool(const WindowInput& input, double seconds) {
   const glm::dvec3 before = handle.position;
   drag(grab_.drag, kind, grab_.mouse, camera(), input.height, grab_.pivot, grab_.axis, handle);
   grab_.pivot += kind == DragKind::kTurn ? glm::dvec3(0.0) : handle.position - before;
+  if (session_->on_device(tool)) {
+    if (session_->carries(tool) && kind != DragKind::kTurn) {
+      session_->carry(tool, handle.position - before);  // it is turned by hand
+    }
+    return;
+  }
   grab_.turn_left += kRadiansANotch * input.wheel;
   const double now_turned = grab_.turn_left * -std::expm1(-seconds / kTurnTime);
   grab_.turn_left -= now_turned;

@@ -41,6 +41,11 @@ std::uint8_t felt_axes(const DeviceSample& sample) {
   return static_cast<std::uint8_t>(axes);
 }
 
+/// Its poses say how far it has been moved, not where it is.
+bool has_no_place(const DeviceSample& sample) {
+  return sample.steers_rate || (sample.sensed & kTranslationAxes) == 0;
+}
+
 void begin_epoch(HandleSide& side, const DeviceSample& sample, const Pose& tool) {
   side.epoch = sample.epoch;
   choose_springs(side, sample.traits);
@@ -74,7 +79,8 @@ void begin_epoch(HandleSide& side, const DeviceSample& sample, const Pose& tool)
   side.limits.largest_force_rate = side.coupling.largest_force / kRiseTime;
   side.limits.largest_torque_rate = side.coupling.largest_torque / kRiseTime;
   side.limits.near = kNearHandle;
-  side.map.origin = sample.steers_rate ? tool.position - sample.pose.position : side.home.position;
+  side.map.origin =
+      has_no_place(sample) ? tool.position - sample.pose.position : side.home.position;
 }
 
 /// How fast the device's handle moves, smoothed over a few samples: one count in one short period
@@ -96,7 +102,7 @@ void wait_for_hold(HandleSide& side, const DeviceSample& sample, const Pose& too
   side.device = sample.pose;
   side.map.turned = sample.pose.rotation;
   side.map.rotation = tool.rotation;
-  if (sample.steers_rate) {
+  if (has_no_place(sample)) {
     side.map.origin = tool.position - sample.pose.position;
   }
   begin_group_anew(side.signs);
@@ -112,7 +118,7 @@ GuardInput guard_input(HandleSide& side, const DeviceSample& sample, double peri
   if (!input.live) {
     return input;
   }
-  if (!sample.steers_rate) {
+  if (!sample.steers_rate || sample.actuated != kNoAxes) {
     measure_speed(side, sample, period);
   }
   input.velocity = side.velocity;

@@ -73,7 +73,7 @@ struct HandleOutcome {
 /// One sample of the device. A new epoch of the device begins without force, with the coupling that
 /// its traits allow, and takes hold of the tool where the handle is near it; its signs are checked,
 /// and then the coupling is chosen anew, as its rate and delay are known by then. A device that
-/// steers a rate is put where the tool is.
+/// steers a rate, or measures no translation, is put where the tool is.
 /// @param now  s, steady clock
 HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
                                  const PhysicsResult& result, double now);

@@ -87,6 +87,17 @@ TEST_F(DeviceProgramTest, SaysWhatIsUsableAndWhichDriverGivesItUpForAWhile) {
   EXPECT_FALSE(has(ran.out, "missing")) << ran.out;
 }
 
+// Its id is nobody's that is known: what the kernel has read of it tells.
+TEST_F(DeviceProgramTest, FindsAWheelByItsReportDescriptor) {
+  test::EmulatedWheel wheel;
+  wheel.is_other = true;
+  usb_.plug(wheel, "usbhid");
+  const Ran ran = test::run_torsion({"devices"});
+  EXPECT_TRUE(has(ran.out, "force-feedback wheel (346e:0004, bus 1 address 2): usable\n"))
+      << ran.out;
+  EXPECT_TRUE(has(ran.out, "--wheel-torque")) << ran.out;
+}
+
 TEST_F(DeviceProgramTest, SaysHowToBeAllowedToOpenADevice) {
   usb_.plug(EmulatedOdrive{}, "").close_node();
   const Ran ran = Process(as_ordinary_user({"devices"})).wait();

@@ -88,6 +88,7 @@ LoopOutcome hold(const HeldScene& scene, const HandTraits& traits, double until,
   DeviceSample sample;
   sample.state = DeviceState::kLive;
   sample.epoch = 1;
+  sample.sensed = kTranslationAxes | kRotationAxes;
   sample.traits = device_of(traits, kPeriod);
   PhysicsResult result;
   LoopOutcome outcome;

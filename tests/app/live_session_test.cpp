@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "app/live/periodic_clock.hpp"
 #include "ecs/hash.hpp"
 #include "tests/app/live_session.hpp"
 #include "tests/app/program.hpp"
@@ -191,6 +192,68 @@ TEST(LiveSessionTest, ADeviceHasTheToolFromTheStartOnAndAfterARestart) {
   ASSERT_TRUE(comes_true(session, [&] { return clock_of(session).step > 400; }));
   EXPECT_EQ(place(), first);
   EXPECT_EQ(session.device()->sample.state, DeviceState::kAbsent);
+}
+
+/// A wheel that nobody turns and that says so a thousand times a second, of its own clock; the
+/// tool is where the handle is.
+struct StillWheel {
+  DeviceLink& link;
+  DeviceSample sample;
+
+  explicit StillWheel(DeviceLink& to) : link(to) {
+    sample.state = DeviceState::kLive;
+    sample.epoch = 1;
+    sample.plugged = 1;
+    sample.sensed = kTurnAxis;
+    sample.actuated = kTurnAxis;
+    sample.traits.largest_torque = 0.2;
+    sample.time = 1.0;
+  }
+  /// @return where the handle is then
+  glm::dvec3 run(double seconds) {
+    for (const double end = sample.time + seconds; sample.time < end; sample.time += 1e-3) {
+      HandleAnswer& answer = link.slot().answer.back();
+      answer.tool.position = link.view().outcome.handle.position;
+      answer.time_ns = monotonic_now();
+      link.slot().answer.publish();
+      DeviceLink::on_sample(&link, sample);
+    }
+    return link.view().outcome.handle.position;
+  }
+};
+
+// A knob or a wheel turns the tool; a mouse carries it, smoothly and no faster than a hand may.
+TEST(DeviceLinkTest, AMouseCarriesWhatADeviceOnlyTurns) {
+  DeviceLink link(Pose{});
+  StillWheel wheel(link);
+  wheel.run(0.1);
+  MouseCarry carry;
+  carry.stiffness = 1234.0;
+  carry.largest_force = 20.0;
+  link.carry(carry);
+  const glm::dvec3 start = wheel.run(0.1);
+  EXPECT_EQ(link.view().coupling.stiffness, 1234.0);
+  EXPECT_EQ(link.view().coupling.largest_force, 20.0);
+  carry.moved = {0.0, -0.1, 0.0};
+  link.carry(carry);
+  glm::dvec3 before = start;
+  for (int i = 0; i < 500; ++i) {
+    const glm::dvec3 now = wheel.run(1e-3);
+    EXPECT_LE(glm::length(now - before), 0.5e-3 + 1e-12);
+    before = now;
+  }
+  EXPECT_NEAR(glm::length(before - start - carry.moved), 0.0, 1e-5);
+}
+
+TEST(DeviceLinkTest, AMouseDoesNotCarryWhatADeviceMoves) {
+  DeviceLink link(Pose{});
+  StillWheel arm(link);
+  arm.sample.sensed = kTranslationAxes | kTurnAxis;
+  MouseCarry carry;
+  carry.stiffness = 1234.0;
+  carry.moved = {0.0, -0.1, 0.0};
+  link.carry(carry);
+  EXPECT_EQ(arm.run(0.5), glm::dvec3(0.0));
 }
 
 TEST(LiveSessionTest, AMouseHoldsNoDeeperThanTheModelsGo) {

@@ -43,6 +43,8 @@ Latencies play_device(DeviceLink& link, const MotionScript& script, double harde
   DeviceSample sample;
   sample.state = DeviceState::kLive;
   sample.epoch = 1;
+  sample.sensed = kTranslationAxes | kRotationAxes;
+  sample.actuated = sample.sensed;
   sample.traits.damping = 1.0;
   sample.traits.turn_damping = 1e-3;
   sample.traits.mass = 0.15;

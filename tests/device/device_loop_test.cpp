@@ -40,6 +40,26 @@ TEST(DeviceLoopTest, AFalconMovesAndAKnobTwists) {
   EXPECT_NEAR(bus.device<EmulatedOdrive>(second).torque, 0.05, 1e-6);
 }
 
+TEST(DeviceLoopTest, ASpaceMouseMovesAndAWheelTurns) {
+  DeviceClient client;
+  FakeBus bus(test::with_wheel_torque(), client.sink());
+  const std::size_t mouse = bus.plug(EmulatedSpaceMouse{});
+  test::EmulatedWheel wheel;
+  wheel.turn = -0.5;
+  const std::size_t second = bus.plug(wheel);
+  bus.run(kStartTime);
+  ASSERT_EQ(client.last.state, DeviceState::kLive);
+  EXPECT_EQ(client.last.sensed, kTranslationAxes | kRotationAxes | kTurnAxis);
+  EXPECT_EQ(client.last.actuated, kTurnAxis);
+  for (int i = 0; i < 10; ++i) {
+    bus.send(mouse, test::space_mouse_report(1, {350, 0, 0}));
+    bus.run(8e-3);
+  }
+  EXPECT_GT(client.last.pose.position.x, 1e-3);
+  EXPECT_NEAR(client.last.pose.rotation.y, std::sin(0.25), 1e-4);
+  EXPECT_NEAR(torque_of(bus.device<test::EmulatedWheel>(second)), 0.05, 1e-4);
+}
+
 TEST(DeviceLoopTest, AFalconMovesAndASpaceMouseTurns) {
   DeviceClient client;
   FakeBus bus({}, client.sink());

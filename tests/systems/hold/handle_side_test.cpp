@@ -98,6 +98,15 @@ TEST(HandleSideTest, ASteeredDeviceIsPutWhereTheToolIs) {
   EXPECT_NEAR(glm::length(outcome.handle.position - rig.result.tool.position), 0.0, 1e-12);
 }
 
+TEST(HandleSideTest, WhatOnlyTurnsIsPutWhereTheToolIs) {
+  Rig rig;
+  rig.sample.sensed = kTurnAxis;
+  rig.result.tool.position = {0.1, 0.2, 0.0};
+  const HandleOutcome outcome = rig.run(0.1);
+  EXPECT_TRUE(outcome.holds);
+  EXPECT_NEAR(glm::length(outcome.handle.position - rig.result.tool.position), 0.0, 1e-12);
+}
+
 TEST(HandleSideTest, TakesHoldOfTheToolHoweverTheHandleIsTurned) {
   Rig rig;
   rig.sample.pose.rotation = glm::angleAxis(1.2, glm::normalize(glm::dvec3(1.0, 2.0, -0.5)));

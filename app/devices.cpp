@@ -7,6 +7,7 @@
 
 #include "app/commands.hpp"
 #include "app/device_options.hpp"
+#include "app/measure_device.hpp"
 #include "device/device_text.hpp"
 #include "device/usb/usb_list.hpp"
 
@@ -16,6 +17,8 @@ namespace {
 struct DevicesOptions {
   DeviceChoice choice;
   bool json = false;
+  bool measures = false;
+  bool agreed = false;
 };
 
 /// What stands between a device and its use, one line each.
@@ -138,20 +141,8 @@ int devices(const DevicesOptions& options) {
   return kDone;
 }
 
-}  // namespace
-
-void add_device_options(CLI::App& subcommand, DeviceChoice& choice) {
-  subcommand
-      .add_option_function<std::string>(
-          "--hold",
-          [&choice](const std::string& name) {
-            const auto* const found = std::ranges::find(kToolHoldNames, name);
-            choice.hold = static_cast<ToolHold>(std::distance(kToolHoldNames.begin(), found));
-          },
-          "How the tool is held: massless (where coupling and contact balance), with its mass, or "
-          "directly (it is where the hand is; the hand feels the contact) [massless]")
-      ->check(
-          CLI::IsMember(std::vector<std::string>(kToolHoldNames.begin(), kToolHoldNames.end())));
+/// What its drivers have to know of a device.
+void add_drive_options(CLI::App& subcommand, DeviceChoice& choice) {
   subcommand.add_option("--falcon-firmware", choice.falcon_firmware,
                         "The maker's file, where the usual place has none");
   subcommand
@@ -171,6 +162,23 @@ void add_device_options(CLI::App& subcommand, DeviceChoice& choice) {
       ->capture_default_str();
   subcommand.add_flag("--wheel-reversed", choice.wheel_reversed,
                       "Its torque goes the other way than those of most wheels");
+}
+
+}  // namespace
+
+void add_device_options(CLI::App& subcommand, DeviceChoice& choice) {
+  subcommand
+      .add_option_function<std::string>(
+          "--hold",
+          [&choice](const std::string& name) {
+            const auto* const found = std::ranges::find(kToolHoldNames, name);
+            choice.hold = static_cast<ToolHold>(std::distance(kToolHoldNames.begin(), found));
+          },
+          "How the tool is held: massless (where coupling and contact balance), with its mass, or "
+          "directly (it is where the hand is; the hand feels the contact) [massless]")
+      ->check(
+          CLI::IsMember(std::vector<std::string>(kToolHoldNames.begin(), kToolHoldNames.end())));
+  add_drive_options(subcommand, choice);
   subcommand
       .add_option_function<std::pair<std::uint32_t, std::uint32_t>>(
           "--turn-buttons",
@@ -203,11 +211,18 @@ void add_devices(CLI::App& app, Command& command) {
       "devices", "List what is plugged in and usable to hold a tool, and what is missing");
   auto options = std::make_shared<DevicesOptions>();
   subcommand->add_flag("--json", options->json, "Print as JSON");
-  subcommand->add_option("--falcon-firmware", options->choice.falcon_firmware,
-                         "The maker's file, where the usual place has none");
+  CLI::Option* measure = subcommand->add_flag("--measure", options->measures,
+                                              "Find mass, damping, friction and delay of one, for "
+                                              "sessions to count on; it moves by itself");
+  subcommand->add_option("--device", options->choice.what, "Which one to measure: usb:falcon")
+      ->needs(measure);
+  measure->needs("--device");
+  subcommand->add_flag("--yes", options->agreed, "Do not ask before it moves")->needs(measure);
+  add_drive_options(*subcommand, options->choice);
   subcommand->callback([options, &command] {
     command = [options] {
-      return devices(*options);
+      return options->measures ? measure_device(options->choice, options->agreed)
+                               : devices(*options);
     };
   });
 }

@@ -119,8 +119,23 @@ void compose_state(const DeviceLoop& loop, DeviceSample& whole) {
   }
 }
 
-void add_traits(DeviceTraits& whole, const DeviceRow& row) {
-  const DeviceTraits& part = row.report.sample.traits;
+/// What its driver says, and in the place of that what was measured.
+DeviceTraits traits_of(const DeviceLoop& loop, const DeviceRow& row) {
+  DeviceTraits traits = row.report.sample.traits;
+  const MeasuredTraits& measured = loop.options.measured[static_cast<std::size_t>(row.kind)];
+  const auto replace = [](double& said, double found) {
+    said = found > 0.0 ? found : said;
+  };
+  replace(traits.mass, measured.mass);
+  replace(traits.damping, measured.damping);
+  replace(traits.inertia, measured.inertia);
+  replace(traits.turn_damping, measured.turn_damping);
+  traits.delay = std::max(traits.delay, measured.delay);
+  return traits;
+}
+
+void add_traits(DeviceTraits& whole, const DeviceLoop& loop, const DeviceRow& row) {
+  const DeviceTraits part = traits_of(loop, row);
   whole.thermal_time = whole.thermal_time > 0.0 ? std::min(whole.thermal_time, part.thermal_time)
                                                 : part.thermal_time;
   if (translates(row.role)) {
@@ -150,7 +165,7 @@ void compose_points(const DeviceLoop& loop, DeviceSample& whole) {
       whole.traits.largest_force += row.report.sample.traits.largest_force;
       whole.traits.continuous_force += row.report.sample.traits.continuous_force;
       whole.traits.encoder_step = row.report.sample.traits.encoder_step;
-      whole.traits.delay = std::max(whole.traits.delay, row.report.sample.traits.delay);
+      whole.traits.delay = std::max(whole.traits.delay, traits_of(loop, row).delay);
     }
   }
   whole.pose = carried_pose(loop.carried, std::span(places).first(loop.carried.count));
@@ -197,7 +212,7 @@ void compose(DeviceLoop& loop) {
       continue;
     }
     whole.buttons |= sample.buttons;
-    add_traits(whole.traits, row);
+    add_traits(whole.traits, loop, row);
     if (translates(row.role)) {
       pose.position = sample.pose.position;
       whole.steers_rate = sample.steers_rate;

@@ -29,12 +29,22 @@ struct TurnButtons {
   double speed = 1.0;             // rad/s
 };
 
+/// What was measured of a kind of device; zero where it was not.
+struct MeasuredTraits {
+  double mass = 0.0;          // kg
+  double damping = 0.0;       // N s/m
+  double inertia = 0.0;       // kg m^2
+  double turn_damping = 0.0;  // N m s/rad
+  double delay = 0.0;         // s: from a force asked for to what it does
+};
+
 struct LoopOptions {
   DriverOptions drivers;
   TurnButtons turn_buttons;
   std::uint32_t kinds = kUsualDevices;  // bits 1 << DeviceKind: which may be used
   glm::dvec3 turn_axis{0.0, 1.0, 0.0};  // world, at rest: what a knob turns about
   double spacing = 0.2;                 // m: between devices that carry a tool together
+  std::array<MeasuredTraits, kDeviceKinds> measured;
 };
 
 struct DeviceRow {

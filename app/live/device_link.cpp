@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "app/live/measured_traits.hpp"
 #include "app/live/periodic_clock.hpp"
 #include "app/live/realtime_mode.hpp"
 
@@ -23,7 +24,8 @@ double seconds(Nanoseconds time) {
   return 1e-9 * static_cast<double>(time);
 }
 
-/// Empty where no option names one and none is at the usual place: it may be loaded already.
+}  // namespace
+
 Result<std::vector<std::uint8_t>> load_firmware(const std::filesystem::path& chosen) {
   const std::filesystem::path path = chosen.empty() ? usual_falcon_firmware() : chosen;
   std::ifstream file(path, std::ios::binary);
@@ -41,6 +43,21 @@ Result<std::vector<std::uint8_t>> load_firmware(const std::filesystem::path& cho
   }
   return bytes;
 }
+
+LoopOptions loop_of(const DeviceChoice& choice, std::uint32_t kinds,
+                    std::span<const std::uint8_t> firmware) {
+  LoopOptions options;
+  options.kinds = kinds;
+  options.drivers.falcon_firmware = firmware;
+  options.drivers.largest_knob_torque = choice.largest_knob_torque;
+  options.drivers.wheel_torque = choice.wheel_torque;
+  options.drivers.wheel_range = choice.wheel_range / 180.0 * std::numbers::pi;
+  options.drivers.wheel_reversed = choice.wheel_reversed;
+  options.turn_buttons = choice.turn_buttons;
+  return options;
+}
+
+namespace {
 
 GatewayState gateway_state(GuardState state) {
   switch (state) {
@@ -88,14 +105,18 @@ Result<std::uint32_t> kinds_of(const std::string& what) {
   return kinds != 0 ? Result<std::uint32_t>(kinds) : wrong;
 }
 
-std::filesystem::path usual_falcon_firmware() {
+std::filesystem::path user_data_folder() {
   const char* const data = std::getenv("XDG_DATA_HOME");  // NOLINT(concurrency-mt-unsafe): at start
   const char* const home = std::getenv("HOME");           // NOLINT(concurrency-mt-unsafe): at start
   const std::filesystem::path folder =
       data != nullptr && *data != 0
           ? std::filesystem::path(data)
           : std::filesystem::path(home != nullptr ? home : "/") / ".local/share";
-  return folder / "torsion" / "falcon_firmware.bin";
+  return folder / "torsion";
+}
+
+std::filesystem::path usual_falcon_firmware() {
+  return user_data_folder() / "falcon_firmware.bin";
 }
 
 DeviceLink::DeviceLink(const Pose& tool) {
@@ -140,17 +161,16 @@ Result<std::unique_ptr<DeviceLink>> DeviceLink::open(const DeviceChoice& choice,
   if (!firmware) {
     return firmware.error();
   }
+  auto measured = load_measured_traits();
+  if (!measured) {
+    return measured.error();
+  }
   std::unique_ptr<DeviceLink> link = held_as(choice, tool);
   link->firmware_ = std::move(firmware).value();
   UsbBusOptions options;
-  options.loop.kinds = kinds.value();
+  options.loop = loop_of(choice, kinds.value(), link->firmware_);
+  options.loop.measured = measured.value();
   options.loop.turn_axis = tool.rotation * glm::dvec3(0.0, 1.0, 0.0);
-  options.loop.drivers.falcon_firmware = link->firmware_;
-  options.loop.drivers.largest_knob_torque = choice.largest_knob_torque;
-  options.loop.drivers.wheel_torque = choice.wheel_torque;
-  options.loop.drivers.wheel_range = choice.wheel_range / 180.0 * std::numbers::pi;
-  options.loop.drivers.wheel_reversed = choice.wheel_reversed;
-  options.loop.turn_buttons = choice.turn_buttons;
   options.on_start = [] {
     become_realtime();
   };

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -105,6 +106,16 @@ class DeviceLink {
 
 /// Bits of DeviceKind that a choice allows, or what is wrong with it.
 Result<std::uint32_t> kinds_of(const std::string& what);
+
+/// How the devices of a choice are driven. @param firmware  of a Falcon, has to outlive them
+LoopOptions loop_of(const DeviceChoice& choice, std::uint32_t kinds,
+                    std::span<const std::uint8_t> firmware);
+
+/// Empty where no option names one and none is at the usual place: it may be loaded already.
+Result<std::vector<std::uint8_t>> load_firmware(const std::filesystem::path& chosen);
+
+/// What the user keeps for Torsion: $XDG_DATA_HOME/torsion, ~/.local/share/torsion.
+std::filesystem::path user_data_folder();
 
 /// Where firmware is looked for that no option names.
 std::filesystem::path usual_falcon_firmware();

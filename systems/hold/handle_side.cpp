@@ -31,16 +31,6 @@ double first_known(double said, double known) {
   return said > 0.0 ? said : known;
 }
 
-/// Of DeviceAxes: what is both measured and displayed.
-std::uint8_t felt_axes(const DeviceSample& sample) {
-  std::uint32_t axes = sample.sensed & sample.actuated & (kTranslationAxes | kRotationAxes);
-  const bool turns = (sample.sensed & (kTurnAxis | kRotationAxes)) != 0;
-  if ((axes & kRotationAxes) == 0 && turns && (sample.actuated & kTurnAxis) != 0) {
-    axes |= kTurnAxis;
-  }
-  return static_cast<std::uint8_t>(axes);
-}
-
 /// Its poses say how far it has been moved, not where it is.
 bool has_no_place(const DeviceSample& sample) {
   return sample.steers_rate || (sample.sensed & kTranslationAxes) == 0;
@@ -71,9 +61,7 @@ void begin_epoch(HandleSide& side, const DeviceSample& sample, const Pose& tool)
   }
   side.plugged = sample.plugged;
   side.guard = guard;
-  side.velocity = glm::dvec3(0.0);
-  side.turn_speed = 0.0;
-  side.measured = sample.pose;
+  side.speed = {sample.pose, glm::dvec3(0.0), 0.0};
   side.limits.largest_force = side.coupling.largest_force;
   side.limits.largest_torque = side.coupling.largest_torque;
   side.limits.largest_force_rate = side.coupling.largest_force / kRiseTime;
@@ -81,20 +69,6 @@ void begin_epoch(HandleSide& side, const DeviceSample& sample, const Pose& tool)
   side.limits.near = kNearHandle;
   side.map.origin =
       has_no_place(sample) ? tool.position - sample.pose.position : side.home.position;
-}
-
-/// How fast the device's handle moves, smoothed over a few samples: one count in one short period
-/// is no speed.
-void measure_speed(HandleSide& side, const DeviceSample& sample, double period) {
-  constexpr double kMemory = 5e-3;  // s
-  if (!finite(sample.pose)) {
-    return;  // no force comes of it either
-  }
-  const double share = 1.0 / (period + kMemory);
-  side.velocity += share * (sample.pose.position - side.measured.position - side.velocity * period);
-  const double turn = glm::length(turn_between(side.measured.rotation, sample.pose.rotation));
-  side.turn_speed += share * (turn - side.turn_speed * period);
-  side.measured = sample.pose;
 }
 
 /// Until it takes hold, the handle has the tool's orientation, however it is held.
@@ -119,10 +93,10 @@ GuardInput guard_input(HandleSide& side, const DeviceSample& sample, double peri
     return input;
   }
   if (!sample.steers_rate || sample.actuated != kNoAxes) {
-    measure_speed(side, sample, period);
+    measure_speed(side.speed, sample.pose, period);
   }
-  input.velocity = side.velocity;
-  input.turn_speed = side.turn_speed;
+  input.velocity = side.speed.velocity;
+  input.turn_speed = side.speed.turn_speed;
   if (side.guard.state == GuardState::kChecking) {
     input.signs = take_sign_sample(side.signs, sample.pose, period);
   }

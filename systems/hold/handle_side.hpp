@@ -4,6 +4,7 @@
 
 #include "ecs/components.hpp"
 #include "ecs/device_sample.hpp"
+#include "systems/hold/hand_speed.hpp"
 #include "systems/hold/output_guard.hpp"
 #include "systems/hold/passivity.hpp"
 #include "systems/hold/sign_check.hpp"
@@ -49,9 +50,7 @@ struct HandleSide {
   double last_time = 0.0;     // s: of that sample
   std::uint32_t epoch = 0;    // of the device
   std::uint32_t plugged = 0;  // likewise: what is known of its signs is of that one
-  Pose measured;              // what the device said in the sample before
-  glm::dvec3 velocity{0.0};   // m/s, of that, over some samples
-  double turn_speed = 0.0;    // rad/s, likewise
+  HandSpeed speed;
 };
 
 /// The newest that the physics said.

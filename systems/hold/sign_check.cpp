@@ -7,7 +7,6 @@
 
 #include <glm/matrix.hpp>
 
-#include "ecs/device_sample.hpp"
 #include "systems/math/frames.hpp"
 
 namespace torsion::engine {
@@ -169,6 +168,15 @@ SignVerdict verdict_at_the_end(const SignCheck& check) {
 }
 
 }  // namespace
+
+std::uint8_t felt_axes(const DeviceSample& sample) {
+  std::uint32_t axes = sample.sensed & sample.actuated & (kTranslationAxes | kRotationAxes);
+  const bool turns = (sample.sensed & (kTurnAxis | kRotationAxes)) != 0;
+  if ((axes & kRotationAxes) == 0 && turns && (sample.actuated & kTurnAxis) != 0) {
+    axes |= kTurnAxis;
+  }
+  return static_cast<std::uint8_t>(axes);
+}
 
 void begin_sign_check(SignCheck& check, std::uint8_t checks, std::array<double, 2> largest,
                       const glm::dquat& axes, double delay) {

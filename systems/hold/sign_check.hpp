@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "ecs/components.hpp"
+#include "ecs/device_sample.hpp"
 
 namespace torsion::engine {
 
@@ -46,7 +47,10 @@ struct SignCheck {
   std::array<std::array<std::complex<double>, 2>, 3> noise{};  // where nothing is driven
 };
 
-/// @param checks   axes that are both measured and displayed
+/// Of DeviceAxes: what a device both measures and displays.
+std::uint8_t felt_axes(const DeviceSample& sample);
+
+/// @param checks   felt_axes() of the device
 /// @param largest  N and N m: that the check may use, a twentieth of the device's
 void begin_sign_check(SignCheck& check, std::uint8_t checks, std::array<double, 2> largest,
                       const glm::dquat& axes, double delay);

@@ -110,6 +110,23 @@ TEST_F(DeviceProgramTest, SaysHowToBeAllowedToOpenADevice) {
       << ran.out;
 }
 
+TEST_F(DeviceProgramTest, MeasuresNothingWithoutConsentOrWhatDoesNotMove) {
+  MockDevice& knob = usb_.plug(EmulatedOdrive{}, "cdc_acm");
+  const std::vector<std::string> measure = {"devices", "--measure", "--device", "usb:odrive"};
+  const Ran asked = test::run_torsion(measure);  // its input has ended
+  EXPECT_EQ(asked.exit_code, 1);
+  EXPECT_TRUE(has(asked.err, "--yes")) << asked.err;
+  EXPECT_TRUE(knob.without_force());
+  std::vector<std::string> agreed = measure;
+  agreed.emplace_back("--yes");
+  const Ran stuck = test::run_torsion(agreed);
+  EXPECT_EQ(stuck.exit_code, 1);
+  EXPECT_TRUE(has(stuck.err, "it did not move when it was pushed")) << stuck.err;
+  EXPECT_TRUE(knob.without_force());
+  EXPECT_EQ(test::run_torsion({"devices", "--measure"}).exit_code, 2);
+  EXPECT_EQ(test::run_torsion({"devices", "--measure", "--device", "usb"}).exit_code, 1);
+}
+
 TEST_F(DeviceProgramTest, NamesTheProgramThatHoldsADevice) {
   usb_.plug(EmulatedOdrive{}, "cdc_acm");
   DeviceState state = DeviceState::kAbsent;

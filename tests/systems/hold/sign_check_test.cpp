@@ -267,7 +267,7 @@ TEST(SignCheckTest, IsDoneOnceForEachDeviceAndAnOffOneStaysOffAfterASilence) {
     sample.sensed = kAll;
     sample.actuated = kAll;
     sample.traits = test::device_of(person.hand, person.period);
-    sample.pose = seen.side.measured;
+    sample.pose = seen.side.speed.measured;
     PhysicsResult physics;
     physics.any = true;
     double now = 20.0;

@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/live/device_link.hpp"
+#include "app/live/device_choice.hpp"
 
 namespace torsion::engine {
 

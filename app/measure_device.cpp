@@ -16,6 +16,8 @@
 #include "app/live/measured_traits.hpp"
 #include "app/live/realtime_mode.hpp"
 #include "device/device_text.hpp"
+#include "device/usb/usb_bus.hpp"
+#include "ecs/triple_buffer.hpp"
 #include "systems/hold/device_measurement.hpp"
 
 namespace torsion::engine {

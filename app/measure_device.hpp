@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/live/device_link.hpp"
+#include "app/live/device_choice.hpp"
 
 namespace torsion::engine {
 

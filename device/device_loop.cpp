@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -11,8 +10,7 @@
 namespace torsion::engine {
 namespace {
 
-constexpr double kOldWrench = 2e-3;     // s: a part does not display a wrench older than this
-constexpr double kLongestStep = 20e-3;  // s: a button counts no longer between two samples
+constexpr double kOldWrench = 2e-3;  // s: a part does not display a wrench older than this
 
 /// What a driver's samples come to: the row they belong to.
 struct RowContext {
@@ -179,23 +177,6 @@ void compose_points(const DeviceLoop& loop, DeviceSample& whole) {
   whole.traits.encoder_turn_step = whole.traits.encoder_step / loop.options.spacing;
 }
 
-/// Where nothing senses a turn, two buttons of a device make one, at a constant speed.
-void turn_by_buttons(DeviceLoop& loop, double now) {
-  const TurnButtons& by = loop.options.turn_buttons;
-  DeviceSample& whole = loop.whole;
-  const double elapsed = std::clamp(now - loop.button_time, 0.0, kLongestStep);
-  loop.button_time = now;
-  whole.buttons_turn = whole.sensed == kTranslationAxes;
-  if (!whole.buttons_turn) {
-    return;
-  }
-  const double left = (whole.buttons & by.left) != 0 ? 1.0 : 0.0;
-  const double right = (whole.buttons & by.right) != 0 ? 1.0 : 0.0;
-  loop.button_turn = std::remainder(loop.button_turn + (left - right) * by.speed * elapsed,
-                                    2.0 * std::numbers::pi);
-  whole.pose.rotation = glm::angleAxis(loop.button_turn, loop.options.turn_axis);
-}
-
 /// All devices as one.
 void compose(DeviceLoop& loop) {
   DeviceSample& whole = loop.whole;
@@ -204,6 +185,7 @@ void compose(DeviceLoop& loop) {
   whole.actuated = kNoAxes;
   whole.steers_rate = false;
   whole.buttons = 0;
+  whole.garbage = 0;
   Pose pose;
   glm::dquat knob_turn(1.0, 0.0, 0.0, 0.0);
   for (const DeviceRow& row : loop.rows) {
@@ -211,6 +193,7 @@ void compose(DeviceLoop& loop) {
     if (!row.used || row.role == DeviceRole::kNone) {
       continue;
     }
+    whole.garbage += row.report.counts.garbage;
     whole.buttons |= sample.buttons;
     add_traits(whole.traits, loop, row);
     if (translates(row.role)) {
@@ -301,7 +284,8 @@ Wrench on_sample(void* context, const DeviceSample& sample) {
     loop.whole.rate = sample.rate;
   }
   loop.whole.traits.period = period_of(loop.whole.traits.period, loop.whole.rate);
-  turn_by_buttons(loop, sample.time);
+  turn_by_buttons(loop.button_turn, loop.options.turn_buttons, loop.options.turn_axis, loop.whole,
+                  sample.time);
   const bool live = loop.whole.state == DeviceState::kLive;
   if (live != was_live) {
     loop.whole.epoch = kept + (live ? 1U : 0U);
@@ -402,7 +386,8 @@ void detach(DeviceLoop& loop, std::size_t row, double now) {
   device = {};
   give_roles(loop);
   compose(loop);
-  turn_by_buttons(loop, now);
+  turn_by_buttons(loop.button_turn, loop.options.turn_buttons, loop.options.turn_axis, loop.whole,
+                  now);
   loop.wrench = {};
   loop.whole.time = now;
   loop.whole.number += 1;

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "device/button_turn.hpp"
 #include "device/composite.hpp"
 #include "device/drivers/drivers.hpp"
 
@@ -20,13 +21,6 @@ enum class DeviceRole : std::uint8_t {
   kTranslationAndRotation,
   kKnob,   // on top of the rotation, if there is another
   kPoint,  // one of two or three that carry the tool
-};
-
-/// Buttons that turn the tool about its turn axis, for a device that senses no turn.
-struct TurnButtons {
-  std::uint32_t left = 1U << 0;   // bits of DeviceSample::buttons: counter-clockwise while held
-  std::uint32_t right = 1U << 3;  // clockwise
-  double speed = 1.0;             // rad/s
 };
 
 /// What was measured of a kind of device; zero where it was not.
@@ -63,10 +57,9 @@ struct DeviceLoop {
   std::array<DeviceRow, kMostDevices> rows;
   CarriedTool carried;
   DeviceSample whole;
-  double button_turn = 0.0;  // rad: that buttons have made so far
-  double button_time = 0.0;  // s: until when
-  Wrench wrench;             // that the sink asked for last
-  double asked = 0.0;        // s: when
+  ButtonTurn button_turn;
+  Wrench wrench;       // that the sink asked for last
+  double asked = 0.0;  // s: when
 };
 
 /// A free row, or kMostDevices.

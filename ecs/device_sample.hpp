@@ -77,6 +77,7 @@ struct DeviceSample {
                               // have other signs
   std::uint64_t number = 0;   // of the samples so far
   double time = 0.0;          // s, steady clock, when it arrived
+  std::uint64_t garbage = 0;  // packets so far that were none
   DeviceTraits traits;
   double rate = 0.0;  // Hz, of the last samples
 };

@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <iterator>
-#include <numbers>
+#include <string_view>
 
-#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "app/live/measured_traits.hpp"
@@ -17,47 +13,11 @@
 namespace torsion::engine {
 namespace {
 
-constexpr std::string_view kUsb = "usb";
 constexpr std::string_view kGateway = "gateway";
 
 double seconds(Nanoseconds time) {
   return 1e-9 * static_cast<double>(time);
 }
-
-}  // namespace
-
-Result<std::vector<std::uint8_t>> load_firmware(const std::filesystem::path& chosen) {
-  const std::filesystem::path path = chosen.empty() ? usual_falcon_firmware() : chosen;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    if (chosen.empty()) {
-      return std::vector<std::uint8_t>{};
-    }
-    return Error{path.string() + ": cannot be read; --falcon-firmware wants the maker's file"};
-  }
-  std::vector<std::uint8_t> bytes((std::istreambuf_iterator<char>(file)),
-                                  std::istreambuf_iterator<char>());
-  if (bytes.size() < kSmallestFirmware || bytes.size() > kLargestFirmware) {
-    return Error{fmt::format("{}: {} bytes are no Falcon firmware, which has {} to {}",
-                             path.string(), bytes.size(), kSmallestFirmware, kLargestFirmware)};
-  }
-  return bytes;
-}
-
-LoopOptions loop_of(const DeviceChoice& choice, std::uint32_t kinds,
-                    std::span<const std::uint8_t> firmware) {
-  LoopOptions options;
-  options.kinds = kinds;
-  options.drivers.falcon_firmware = firmware;
-  options.drivers.largest_knob_torque = choice.largest_knob_torque;
-  options.drivers.wheel_torque = choice.wheel_torque;
-  options.drivers.wheel_range = choice.wheel_range / 180.0 * std::numbers::pi;
-  options.drivers.wheel_reversed = choice.wheel_reversed;
-  options.turn_buttons = choice.turn_buttons;
-  return options;
-}
-
-namespace {
 
 GatewayState gateway_state(GuardState state) {
   switch (state) {
@@ -78,47 +38,6 @@ GatewayState gateway_state(GuardState state) {
 
 }  // namespace
 
-Result<std::uint32_t> kinds_of(const std::string& what) {
-  if (what == kUsb) {
-    return kUsualDevices;
-  }
-  const Error wrong{
-      fmt::format("--device {}: expected usb, or usb: and some of spacemouse, falcon, "
-                  "woodenhaptics, odrive, moteus, wheel with + between, or gateway",
-                  what)};
-  if (what.rfind("usb:", 0) != 0) {
-    return wrong;
-  }
-  std::uint32_t kinds = 0;
-  std::string_view rest = std::string_view(what).substr(4);
-  while (!rest.empty()) {
-    const std::string_view word = rest.substr(0, rest.find('+'));
-    rest.remove_prefix(std::min(word.size() + 1, rest.size()));
-    const std::uint32_t before = kinds;
-    for (std::uint32_t kind = 0; kind < kDeviceKinds; ++kind) {
-      kinds |= word == word_of(static_cast<DeviceKind>(kind)) ? 1U << kind : 0U;
-    }
-    if (kinds == before) {
-      return wrong;
-    }
-  }
-  return kinds != 0 ? Result<std::uint32_t>(kinds) : wrong;
-}
-
-std::filesystem::path user_data_folder() {
-  const char* const data = std::getenv("XDG_DATA_HOME");  // NOLINT(concurrency-mt-unsafe): at start
-  const char* const home = std::getenv("HOME");           // NOLINT(concurrency-mt-unsafe): at start
-  const std::filesystem::path folder =
-      data != nullptr && *data != 0
-          ? std::filesystem::path(data)
-          : std::filesystem::path(home != nullptr ? home : "/") / ".local/share";
-  return folder / "torsion";
-}
-
-std::filesystem::path usual_falcon_firmware() {
-  return user_data_folder() / "falcon_firmware.bin";
-}
-
 DeviceLink::DeviceLink(const Pose& tool) {
   side_.home = tool;
 }
@@ -136,27 +55,8 @@ std::unique_ptr<DeviceLink> DeviceLink::held_as(const DeviceChoice& choice, cons
   return link;
 }
 
-Result<std::unique_ptr<DeviceLink>> DeviceLink::open(const DeviceChoice& choice, const Pose& tool) {
-  if (choice.what.starts_with(kGateway)) {
-    Result<GatewayOptions> options = gateway_of(choice.what);
-    if (!options) {
-      return options.error();
-    }
-    std::unique_ptr<DeviceLink> link = held_as(choice, tool);
-    options.value().on_start = [] {
-      become_realtime();
-    };
-    auto gateway = Gateway::start(std::move(options).value(), {{link.get(), on_sample}, describe});
-    if (!gateway) {
-      return gateway.error();
-    }
-    link->gateway_ = std::move(gateway).value();
-    return link;
-  }
-  const Result<std::uint32_t> kinds = kinds_of(choice.what);
-  if (!kinds) {
-    return kinds.error();
-  }
+Result<Done> DeviceLink::start_usb(const DeviceChoice& choice, std::uint32_t kinds,
+                                   SampleSink sink) {
   Result<std::vector<std::uint8_t>> firmware = load_firmware(choice.falcon_firmware);
   if (!firmware) {
     return firmware.error();
@@ -165,21 +65,89 @@ Result<std::unique_ptr<DeviceLink>> DeviceLink::open(const DeviceChoice& choice,
   if (!measured) {
     return measured.error();
   }
-  std::unique_ptr<DeviceLink> link = held_as(choice, tool);
-  link->firmware_ = std::move(firmware).value();
+  firmware_ = std::move(firmware).value();
   UsbBusOptions options;
-  options.loop = loop_of(choice, kinds.value(), link->firmware_);
+  options.loop = loop_of(choice, kinds, firmware_);
   options.loop.measured = measured.value();
-  options.loop.turn_axis = tool.rotation * glm::dvec3(0.0, 1.0, 0.0);
+  options.loop.turn_axis = turn_axis();
   options.on_start = [] {
     become_realtime();
   };
-  auto bus = UsbBus::start(options, {link.get(), on_sample});
+  auto bus = UsbBus::start(options, sink);
   if (!bus) {
     return bus.error();
   }
-  link->bus_ = std::move(bus).value();
+  bus_ = std::move(bus).value();
+  return Done{};
+}
+
+Result<std::unique_ptr<DeviceLink>> DeviceLink::open_gateway(const DeviceChoice& choice,
+                                                             const Pose& tool) {
+  const Result<GatewayChoice> what = gateway_choice(choice.what);
+  if (!what) {
+    return what.error();
+  }
+  Result<GatewayOptions> options = gateway_of(what.value().gateway);
+  if (!options) {
+    return options.error();
+  }
+  std::unique_ptr<DeviceLink> link = held_as(choice, tool);
+  link->turn_buttons_ = choice.turn_buttons;
+  if (what.value().knobs != 0) {
+    link->knob_ = std::make_unique<JoinedKnob>();
+    link->knob_->axis = link->turn_axis();
+    const Result<Done> started =
+        link->start_usb(choice, what.value().knobs,
+                        {link->knob_.get(), [](void* knob, const DeviceSample& sample) {
+                           return take_knob_sample(*static_cast<JoinedKnob*>(knob), sample);
+                         }});
+    if (!started) {
+      return started.error();
+    }
+  }
+  options.value().on_start = [] {
+    become_realtime();
+  };
+  auto gateway = Gateway::start(std::move(options).value(), {{link.get(), on_client}, describe});
+  if (!gateway) {
+    return gateway.error();
+  }
+  link->gateway_ = std::move(gateway).value();
   return link;
+}
+
+Result<std::unique_ptr<DeviceLink>> DeviceLink::open(const DeviceChoice& choice, const Pose& tool) {
+  if (choice.what.starts_with(kGateway)) {
+    return open_gateway(choice, tool);
+  }
+  const Result<std::uint32_t> kinds = kinds_of(choice.what);
+  if (!kinds) {
+    return kinds.error();
+  }
+  std::unique_ptr<DeviceLink> link = held_as(choice, tool);
+  const Result<Done> started = link->start_usb(choice, kinds.value(), {link.get(), on_sample});
+  if (!started) {
+    return started.error();
+  }
+  return link;
+}
+
+glm::dvec3 DeviceLink::turn_axis() const {
+  return side_.home.rotation * glm::dvec3(0.0, 1.0, 0.0);
+}
+
+Wrench DeviceLink::on_client(void* context, const DeviceSample& said) {
+  auto& link = *static_cast<DeviceLink*>(context);
+  DeviceSample sample = said;
+  if (link.knob_) {
+    join_knob(*link.knob_, sample);
+  }
+  turn_by_buttons(link.button_turn_, link.turn_buttons_, link.turn_axis(), sample, sample.time);
+  const Wrench wrench = link.take(sample);
+  if (link.knob_) {
+    ask_knob(*link.knob_, sample, wrench);
+  }
+  return wrench;
 }
 
 Wrench DeviceLink::on_sample(void* link, const DeviceSample& sample) {

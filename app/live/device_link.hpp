@@ -1,35 +1,19 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
-#include <span>
-#include <string>
 #include <vector>
 
+#include "app/live/device_choice.hpp"
 #include "app/run_statistics.hpp"
 #include "device/gateway/gateway.hpp"
 #include "device/handle_slot.hpp"
+#include "device/joined_knob.hpp"
 #include "device/usb/usb_bus.hpp"
 #include "ecs/result.hpp"
 #include "ecs/triple_buffer.hpp"
 #include "systems/hold/handle_side.hpp"
 
 namespace torsion::engine {
-
-/// Which devices are to hold a tool, as the command line says it.
-struct DeviceChoice {
-  std::string what;                       // "usb", "usb:falcon+odrive", "gateway:7747"; empty: none
-  std::filesystem::path falcon_firmware;  // empty: in the user's data folder, if there
-  double largest_knob_torque = 0.2;       // N m
-  double wheel_torque = 0.0;              // N m, of a wheel's full scale; 0: not known
-  double wheel_range = 900.0;             // degrees, of a wheel from lock to lock
-  bool wheel_reversed = false;
-  TurnButtons turn_buttons;             // of a device that senses no turn
-  ToolHold hold = ToolHold::kMassless;  // a mouse's too
-  HandleSafety safety;
-  // s: without a result of the physics, then the force falls
-  double longest_silence = GuardLimits{}.longest_silence;
-};
 
 /// A mouse that carries the tool of a device that only turns it.
 struct MouseCarry {
@@ -87,6 +71,11 @@ class DeviceLink {
 
  private:
   static std::unique_ptr<DeviceLink> held_as(const DeviceChoice& choice, const Pose& tool);
+  static Result<std::unique_ptr<DeviceLink>> open_gateway(const DeviceChoice& choice,
+                                                          const Pose& tool);
+  static Wrench on_client(void* link, const DeviceSample& said);
+  Result<Done> start_usb(const DeviceChoice& choice, std::uint32_t kinds, SampleSink sink);
+  [[nodiscard]] glm::dvec3 turn_axis() const;
   Wrench take(const DeviceSample& sample);
   void add_carried(DeviceSample& sample);
   void show_guard();
@@ -99,25 +88,12 @@ class DeviceLink {
   DeviceView now_;           // the device thread's
   TripleBuffer<DeviceView> views_;
   std::uint64_t number_ = 0;
+  TurnButtons turn_buttons_;  // of a gateway's client
+  ButtonTurn button_turn_;
   std::vector<std::uint8_t> firmware_;
+  std::unique_ptr<JoinedKnob> knob_;
   std::unique_ptr<UsbBus> bus_;  // last: they end before what their threads use
   std::unique_ptr<Gateway> gateway_;
 };
-
-/// Bits of DeviceKind that a choice allows, or what is wrong with it.
-Result<std::uint32_t> kinds_of(const std::string& what);
-
-/// How the devices of a choice are driven. @param firmware  of a Falcon, has to outlive them
-LoopOptions loop_of(const DeviceChoice& choice, std::uint32_t kinds,
-                    std::span<const std::uint8_t> firmware);
-
-/// Empty where no option names one and none is at the usual place: it may be loaded already.
-Result<std::vector<std::uint8_t>> load_firmware(const std::filesystem::path& chosen);
-
-/// What the user keeps for Torsion: $XDG_DATA_HOME/torsion, ~/.local/share/torsion.
-std::filesystem::path user_data_folder();
-
-/// Where firmware is looked for that no option names.
-std::filesystem::path usual_falcon_firmware();
 
 }  // namespace torsion::engine

@@ -144,6 +144,9 @@ std::vector<std::string> device_lines(const DeviceView& view) {
   for (std::string& line : hold_lines(view)) {
     lines.push_back(std::move(line));
   }
+  if (sample.garbage > 0) {
+    lines.push_back(fmt::format("{} packets that were none", sample.garbage));
+  }
   return lines;
 }
 
@@ -201,9 +204,10 @@ std::string device_summary(const DeviceView& view) {
   std::string text = fmt::format("device   {}\n", describe(view));
   if (view.answer_us.count() > 0) {
     text += fmt::format(
-        "         {} samples; lost {} times; from a sample to the force that is sent median "
+        "         {} samples; lost {} times; {} packets that were none; from a sample to the force "
+        "that is sent median "
         "{:.0f} us, 99 % {:.0f} us; the physics' result in it {:.0f} us, {:.0f} us old\n",
-        view.sample.number, view.losses, view.answer_us.quantile(0.5),
+        view.sample.number, view.losses, view.sample.garbage, view.answer_us.quantile(0.5),
         view.answer_us.quantile(0.99), view.result_us.quantile(0.5), view.result_us.quantile(0.99));
   }
   return text;
@@ -215,6 +219,7 @@ nlohmann::ordered_json device_json(const DeviceView& view) {
           {"rate_Hz", view.sample.rate},
           {"samples", view.sample.number},
           {"losses", view.losses},
+          {"garbage", view.sample.garbage},
           {"sample_to_force_us",
            {{"median", view.answer_us.quantile(0.5)}, {"p99", view.answer_us.quantile(0.99)}}},
           {"result_age_us",

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "app/live/device_link.hpp"
+#include "app/live/device_choice.hpp"
 #include "app/output_file.hpp"
 
 namespace torsion::engine {

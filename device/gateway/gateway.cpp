@@ -173,6 +173,7 @@ void Gateway::State::take(const GatewaySample& came) {
   sample.sensed = came.sensed;
   sample.actuated = came.actuated;
   sample.traits = came.traits;
+  sample.garbage = garbage.load(std::memory_order_relaxed);
   sample.traits.period = period_of(came.traits.period, sample.rate);
   deadline = now.now + std::clamp(kPatience * came.traits.period, kGatewaySilence, kLongest);
   GatewayAnswer answer;

@@ -1,10 +1,15 @@
 // A scene held by an emulated Falcon, all the way: libusb, driver, coupling, physics thread, and
 // the force back at the motors.
 
+#include <cstdio>
 #include <cstdlib>
+#include <string>
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
 
 #include "app/live/device_link.hpp"
 #include "app/live/live_loop.hpp"
@@ -102,6 +107,59 @@ TEST(DeviceSessionTest, TheMotorsFeelTheBodyAndNothingOnceItIsPulledOut) {
   // Plugged in again it takes hold of the tool again.
   falcon.plug();
   EXPECT_TRUE(in_hand([&] { return held.link->view().outcome.holds; }));
+}
+
+/// A client of the gateway that says it is where it was, from a socket that nobody answers.
+class SilentClient {
+ public:
+  explicit SilentClient(const std::string& path) : socket_(::socket(AF_UNIX, SOCK_DGRAM, 0)) {
+    address_.sun_family = AF_UNIX;
+    std::snprintf(address_.sun_path, sizeof address_.sun_path, "%s", path.c_str());
+  }
+  ~SilentClient() { ::close(socket_); }
+  SilentClient(const SilentClient&) = delete;
+  SilentClient& operator=(const SilentClient&) = delete;
+  SilentClient(SilentClient&&) = delete;
+  SilentClient& operator=(SilentClient&&) = delete;
+
+  void say() {
+    sample_.session = 1;
+    sample_.sequence += 1;
+    sample_.sensed = kTranslationAxes | kRotationAxes;
+    sample_.actuated = kTranslationAxes;
+    sample_.traits.period = 10e-3;
+    const GatewaySampleBytes bytes = encode_gateway_sample(sample_);
+    (void)::sendto(socket_, bytes.data(), bytes.size(), 0,
+                   reinterpret_cast<const sockaddr*>(&address_), sizeof address_);  // NOLINT
+  }
+
+ private:
+  int socket_;
+  sockaddr_un address_{};
+  GatewaySample sample_;
+};
+
+TEST(DeviceSessionTest, AKnobOnTheUsbTurnsWhatAGatewaysClientMoves) {
+  test::MockUsb usb;
+  MockDevice& knob = usb.plug(test::EmulatedOdrive{}, "cdc_acm");
+  const std::string path = "/tmp/torsion_joined_" + std::to_string(::getpid()) + ".sock";
+  DeviceChoice choice;
+  choice.what = "gateway:" + path + "+odrive";
+  choice.safety.checks_signs = false;
+  auto link = DeviceLink::open(choice, Pose{});
+  ASSERT_TRUE(link) << link.error().text;
+  SilentClient client(path);
+  const auto& sample = [&]() -> const DeviceSample& {
+    client.say();
+    return link.value()->view().sample;
+  };
+  ASSERT_TRUE(test::comes_true([&] { return sample().state == DeviceState::kLive; }));
+  EXPECT_EQ(sample().sensed, kTranslationAxes | kRotationAxes | kTurnAxis);
+  EXPECT_EQ(sample().actuated, kTranslationAxes | kTurnAxis);
+  knob.with<test::EmulatedOdrive>([](test::EmulatedOdrive& one) { one.turns = 0.25; });
+  EXPECT_TRUE(test::comes_true([&] { return sample().pose.rotation.y > 0.7; }));
+  knob.unplug();
+  EXPECT_TRUE(test::comes_true([&] { return sample().state != DeviceState::kLive; }));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/* Torsion's gateway in C: docs/gateway.md. One header, no library; POSIX sockets.
+/* Torsion's gateway in C and C++: docs/gateway.md. One header, no library; POSIX sockets.
  *
  *   struct torsion_gateway gateway;
  *   if (torsion_gateway_open(&gateway, 7747) != 0) { perror("gateway"); }
@@ -55,7 +55,12 @@ struct torsion_gateway {
   uint32_t session, sequence;
 };
 
-_Static_assert(sizeof(struct torsion_sample) == 240 && sizeof(struct torsion_answer) == 136, "packets have no padding");
+#ifdef __cplusplus
+static_assert(
+#else
+_Static_assert(
+#endif
+    sizeof(struct torsion_sample) == 240 && sizeof(struct torsion_answer) == 136, "packets have no padding");
 
 /* -1 and errno where it cannot be. */
 static inline int torsion_gateway_open(struct torsion_gateway *gateway, uint16_t port) {

@@ -44,6 +44,12 @@ read -r _ _ _ force _ _ _ _ torque _ < "$folder/python.txt"
 is_between 0.02 "$force" 0.5 || fail "force $force"
 is_between 1e-5 "$torque" 0.1 || fail "torque $torque"
 
+cxx=(c++ -std=c++17 -O1 -Wall -Wextra -Werror -I"$source/examples/gateway" -I"$source/tests/gateway_stubs")
+"${cxx[@]}" -o "$folder/chai3d" "$source/examples/gateway/chai3d.cpp"
+"${cxx[@]}" -o "$folder/rotations" "$source/tests/gateway_stubs/chai3d_rotations_test.cpp"
+"$folder/rotations" || fail "chai3d: turns are wrong"
+session chai3d 7747 "$folder/chai3d"
+
 # Up is y for HDAPI and z for DHD: a wrong axis or sign is seen here.
 for client in touch:hd:2 force_dimension:dhd:3; do
   IFS=: read -r name maker axis <<< "$client"
@@ -72,7 +78,7 @@ session haply 7747 /usr/bin/python3 "$source/examples/gateway/haply.py" --servic
 wait "$service" || fail "haply: $(cat "$folder/service.txt")"
 grep -q sideways "$folder/service.txt" && fail "haply: $(cat "$folder/service.txt")"
 cp "$folder/service.txt" "$folder/haply.txt"
-for check in c_sharp:2 ros:3 haply:3; do
+for check in c_sharp:2 ros:3 haply:3 chai3d:3; do
   IFS=: read -r name axis <<< "$check"
   line=$(grep '^force' "$folder/$name.txt")
   read -ra words <<< "${line//,/}"

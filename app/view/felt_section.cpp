@@ -170,9 +170,34 @@ void turn_plot(const ViewState& state, const LiveSession& session) {
   draw_plot({"Couple (N m) by turn", "deg", 0.0, 0.0, least}, curves, kTurnPlot);
 }
 
+/// How fast the tool slides, on a way round, and spins: each by itself, so that force and couple go
+/// along their limit.
+void speed_knobs(ViewState& state, const LiveSession& session) {
+  constexpr double kMillimeter = 1e-3;
+  constexpr double kFastest = 20.0;       // mm/s
+  constexpr double kFastestSpin = 720.0;  // degrees a second
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  constexpr float kKnobWidth = 142.0F;  // pixels: two beside each other
+  if (session.on_device(state.tool)) {
+    return;
+  }
+  const auto knob = [](const char* name, double& value, double unit, double low, double high,
+                       const char* format) {
+    double shown = value / unit;
+    ImGui::PushItemWidth(kKnobWidth);
+    if (ImGui::SliderScalar(name, ImGuiDataType_Double, &shown, &low, &high, format)) {
+      value = unit * std::clamp(shown, low, high);  // more can be typed
+    }
+    ImGui::PopItemWidth();
+  };
+  knob("##slide", state.speeds.slide, kMillimeter, 0.0, kFastest, "slide %.1f mm/s");
+  ImGui::SameLine();
+  knob("##spin", state.speeds.spin, kDegree, -kFastestSpin, kFastestSpin, "spin %.0f deg/s");
+}
+
 /// Couple against friction force, where both are there, with the limit of a contact that slips as a
 /// whole.
-void limit_plot(const ViewState& state, const LiveSession& session) {
+void limit_plot(ViewState& state, const LiveSession& session) {
   constexpr double kSlides = 0.05;  // of mu F
   const History& history = state.histories[state.tool];
   const auto exact =
@@ -198,6 +223,9 @@ void limit_plot(const ViewState& state, const LiveSession& session) {
     const std::array<Curve, 2> curves = {exact_limit(now.normal_force, *exact), std::move(path)};
     draw_plot({"Couple (N m) by friction", "N", 0.0, 0.0, least_torque(history), true}, curves,
               kTurnPlot);
+  }
+  if ((slides && spins) || state.speeds.any()) {
+    speed_knobs(state, session);
   }
 }
 

@@ -2,6 +2,7 @@
 
 // What the files that build panels share.
 
+#include <algorithm>
 #include <string>
 
 #include <imgui.h>
@@ -36,6 +37,26 @@ inline void dim(const std::string& line) {
 
 inline void text_in(ImU32 color, const std::string& line) {
   ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(color), "%s", line.c_str());
+}
+
+/// A slider and a field for its value.
+inline bool slider(const char* label, double& value, double low, double high, const char* format,
+                   bool logarithmic = false) {
+  ImGui::PushID(label);
+  ImGui::PushItemWidth(110.0F);
+  bool changed = ImGui::SliderScalar("##slider", ImGuiDataType_Double, &value, &low, &high, "",
+                                     logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+  ImGui::PopItemWidth();
+  ImGui::SameLine();
+  ImGui::PushItemWidth(76.0F);
+  double typed = value;
+  if (ImGui::InputDouble(label, &typed, 0.0, 0.0, format)) {
+    value = std::clamp(typed, low, high);
+    changed = true;
+  }
+  ImGui::PopItemWidth();
+  ImGui::PopID();
+  return changed;
 }
 
 }  // namespace torsion::engine

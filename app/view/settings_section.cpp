@@ -27,26 +27,6 @@ void model_combo(const char* label, const std::array<std::string_view, N>& names
   }
 }
 
-/// A slider and a field for its value.
-bool slider(const char* label, double& value, double low, double high, const char* format,
-            bool logarithmic = false) {
-  ImGui::PushID(label);
-  ImGui::PushItemWidth(110.0F);
-  bool changed = ImGui::SliderScalar("##slider", ImGuiDataType_Double, &value, &low, &high, "",
-                                     logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
-  ImGui::PopItemWidth();
-  ImGui::SameLine();
-  ImGui::PushItemWidth(76.0F);
-  double typed = value;
-  if (ImGui::InputDouble(label, &typed, 0.0, 0.0, format)) {
-    value = std::clamp(typed, low, high);
-    changed = true;
-  }
-  ImGui::PopItemWidth();
-  ImGui::PopID();
-  return changed;
-}
-
 /// Tools as glass, as opaque, or as the scene has them.
 void tool_look_box(ToolLook& look) {
   constexpr std::array<const char*, 3> kLooks = {"as authored", "glass", "opaque"};

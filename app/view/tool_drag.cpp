@@ -28,6 +28,19 @@ void turn(Pose& handle, const glm::dvec3& pivot, const glm::dvec3& axis, double 
   handle.rotation = glm::normalize(rotation * handle.rotation);
 }
 
+Pose drive_on(ToolDrive& drive, double slide, double spin, double time) {
+  const double elapsed = std::fmax(time - drive.time, 0.0);  // a restart sets the time back
+  drive.time = time;
+  drive.way += slide * elapsed;
+  drive.turned += spin * elapsed;
+  Pose handle = drive.start;
+  turn(handle, drive.pivot, drive.axis, drive.turned);
+  const double angle = drive.way / drive.radius;
+  handle.position += drive.radius * ((1.0 - std::cos(angle)) * drive.tangent +
+                                     std::sin(angle) * glm::cross(drive.axis, drive.tangent));
+  return handle;
+}
+
 namespace {
 
 /// How far along `axis` the mouse went, m.

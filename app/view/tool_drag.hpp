@@ -40,6 +40,23 @@ void drag(ToolDrag& taken, DragKind kind, const glm::dvec2& mouse, const Camera&
 /// Turns the handle about an axis through `pivot`.
 void turn(Pose& handle, const glm::dvec3& pivot, const glm::dvec3& axis, double angle);
 
+/// A handle that slides round on the spot and spins, as long as it is told to.
+struct ToolDrive {
+  std::uint32_t tool = 0;
+  Pose start;
+  glm::dvec3 pivot{0.0};    // m, world: of the contact
+  glm::dvec3 axis{0.0};     // world, unit: its normal
+  glm::dvec3 tangent{0.0};  // world, unit
+  double radius = 0.0;      // m: of the way round
+  double way = 0.0;         // m: so far
+  double turned = 0.0;      // rad: so far
+  double time = 0.0;        // s, of the scene: until when
+};
+
+/// Goes on until `time`, sliding at `slide` [m/s] and spinning at `spin` [rad/s].
+/// @return where the handle is then
+Pose drive_on(ToolDrive& drive, double slide, double spin, double time);
+
 inline constexpr double kRadiansAPixel = 0.005;
 inline constexpr double kRadiansANotch = 0.05;
 

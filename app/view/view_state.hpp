@@ -24,6 +24,14 @@ struct ToolMove {
   double seconds = 2.0;  // s
 };
 
+/// A motion that goes on: knobs beside the limit of friction.
+struct ToolSpeeds {
+  double slide = 0.0;  // m/s
+  double spin = 0.0;   // rad/s
+
+  [[nodiscard]] bool any() const { return slide != 0.0 || spin != 0.0; }
+};
+
 /// What a person has set in the window, and what the window shows of the session. The panels read
 /// and write it; the viewer acts on the `wants_`.
 struct ViewState {
@@ -60,8 +68,9 @@ struct ViewState {
   double strength = kGentleForce;  // N: the largest force of the mouse
   ToolMove move;                   // as typed
   bool moving = false;             // one is under way
-  bool let_go = false;             // of the tool of the plots, which stays where it is
-  std::optional<Pose> handle;      // where the tool of the plots is held; none: nobody holds it
+  ToolSpeeds speeds;
+  bool let_go = false;         // of the tool of the plots, which stays where it is
+  std::optional<Pose> handle;  // where the tool of the plots is held; none: nobody holds it
 
   bool loop = true;                   // the scene begins again after its animation
   std::vector<GalleryEntry> gallery;  // scenes to choose from

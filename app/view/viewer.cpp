@@ -133,6 +133,7 @@ void Viewer::take_wishes() {
   if (state_.wants_restart && session_->choose(state_.picks, true)) {
     grab_ = Grab{};
     move_.reset();
+    stop_driving();
     state_.let_go = false;
     say("from the start");
   }
@@ -285,6 +286,7 @@ Result<Done> Viewer::frame() {
   take_keys(input);
   take_mouse(input, seconds);
   go_on_moving();
+  go_on_driving();
   state_.handle = session_->held(state_.tool) ? std::optional(handles_[state_.tool]) : std::nullopt;
   draw_marks(state_, *session_, camera(), {input.width, input.height});
   draw_panels(state_, *session_, started);

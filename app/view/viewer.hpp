@@ -134,6 +134,9 @@ class Viewer {
   void begin_move();
   void let_go();
   void go_on_moving();
+  void begin_drive();
+  void stop_driving();
+  void go_on_driving();
   void take_wishes();
   void take_history();
   void loop_scene();
@@ -167,6 +170,7 @@ class Viewer {
   ViewerOutcome outcome_;
   Grab grab_;
   std::optional<Move> move_;
+  std::optional<ToolDrive> drive_;
   std::vector<Pose> handles_;  // (tools) where they are held
   std::optional<SceneWatch> watch_;
   Film film_;

@@ -144,6 +144,7 @@ void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
     grab_.axis = axes.normal;
     grab_.turn_left = 0.0;
     move_.reset();
+    stop_driving();
     state_.let_go = false;
     if (!carries) {
       session_->hold(tool, handles_[tool]);
@@ -156,6 +157,7 @@ void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
 void Viewer::let_go() {
   const Snapshot& snapshot = session_->frame().snapshot;
   move_.reset();
+  stop_driving();
   grab_ = Grab{};
   grab_.spent = true;
   for (std::uint32_t tool = 0; tool < handles_.size(); ++tool) {
@@ -212,6 +214,7 @@ void Viewer::begin_move() {
     handles_[tool] = session_->taking_handle(tool);
   }
   state_.let_go = false;
+  stop_driving();
   const ContactAxes axes = axes_under(tool);
   move_ = Move{state_.move, tool,         handles_[tool],     axes.pivot,
                axes.normal, axes.tangent, snapshot.clock.time};
@@ -232,6 +235,52 @@ void Viewer::go_on_moving() {
   session_->hold(move.tool, handle);
   if (share >= 1.0) {
     move_.reset();
+  }
+}
+
+/// Takes the tool of the plots where it is, to slide and to spin it.
+void Viewer::begin_drive() {
+  constexpr double kShare = 0.25;  // of the tool's size: so wide is its way round
+  const std::uint32_t tool = state_.tool;
+  const Snapshot& snapshot = session_->frame().snapshot;
+  if (!session_->held(tool)) {
+    handles_[tool] = session_->taking_handle(tool);
+  }
+  state_.let_go = false;
+  const ContactAxes axes = axes_under(tool);
+  const Bounds& bounds = session_->shown().simulation.world.model.tools.at<Bounds>(tool);
+  const glm::dvec3 size = bounds.highest - bounds.lowest;
+  drive_ = ToolDrive{tool,
+                     handles_[tool],
+                     axes.pivot,
+                     axes.normal,
+                     axes.tangent,
+                     0.5 * kShare * std::fmin(size.x, std::fmin(size.y, size.z)),
+                     0.0,
+                     0.0,
+                     snapshot.clock.time};
+}
+
+void Viewer::stop_driving() {
+  drive_.reset();
+  state_.speeds = {};
+}
+
+void Viewer::go_on_driving() {
+  if (grab_.on_tool || move_ || session_->on_device(state_.tool) ||
+      (drive_ && drive_->tool != state_.tool)) {
+    stop_driving();
+  }
+  if (state_.speeds.any() && !drive_) {
+    begin_drive();
+  }
+  if (drive_) {
+    handles_[drive_->tool] = drive_on(*drive_, state_.speeds.slide, state_.speeds.spin,
+                                      session_->frame().snapshot.clock.time);
+    session_->hold(drive_->tool, handles_[drive_->tool]);
+    if (!state_.speeds.any()) {
+      drive_.reset();  // it stays where it is
+    }
   }
 }
 

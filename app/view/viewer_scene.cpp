@@ -94,6 +94,7 @@ Result<Done> Viewer::begin(Session session, Keep keep) {
   handles_.assign(tools, Pose{});
   grab_ = Grab{};
   move_.reset();
+  stop_driving();
   state_.let_go = false;
   state_.strength = kGentleForce;
   let_go_until_ = 0.0;

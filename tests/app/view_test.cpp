@@ -158,6 +158,48 @@ TEST(ToolDragTest, PressingFollowsTheAxisOnTheScreenAndNothingElse) {
   EXPECT_NEAR(seen_at(camera, handle.position, kPicture).y, before.y + 20.0, 1.5 * 20.0 * nearer);
 }
 
+// It goes round at the speed asked for, spins about its own contact, and is back after one way
+// round.
+TEST(ToolDragTest, ADriveSlidesRoundAndSpins) {
+  const glm::dvec3 axis = glm::normalize(glm::dvec3(0.2, 1.0, -0.1));
+  const glm::dvec3 tangent = glm::normalize(glm::cross(axis, glm::dvec3(0.0, 0.0, 1.0)));
+  ToolDrive drive{0,
+                  {{0.1, 0.2, 0.3}, glm::dquat(1.0, 0.0, 0.0, 0.0)},
+                  {0.1, 0.17, 0.3},
+                  axis,
+                  tangent,
+                  5e-3,
+                  0.0,
+                  0.0,
+                  2.0};
+  const double around = 2.0 * std::numbers::pi * 5e-3;  // m
+  constexpr double kSlide = 0.01;                       // m/s
+  constexpr double kStep = 1e-3;                        // s
+  Pose before = drive_on(drive, 0.0, 0.0, 2.0);
+  EXPECT_EQ(before.position, drive.start.position);
+  double time = 2.0;
+  double way = 0.0;
+  for (; time < 2.0 + around / kSlide; time += kStep) {
+    const Pose now = drive_on(drive, kSlide, 0.0, time + kStep);
+    const glm::dvec3 step = now.position - before.position;
+    EXPECT_NEAR(glm::length(step), kSlide * kStep, 1e-7 * kSlide);
+    EXPECT_NEAR(glm::dot(step, axis), 0.0, 1e-15);
+    way += glm::length(step);
+    before = now;
+  }
+  EXPECT_NEAR(glm::length(before.position - drive.start.position), 0.0, 2.0 * kSlide * kStep);
+  EXPECT_EQ(before.rotation, drive.start.rotation);
+  // Spinning only: about the contact's axis.
+  ToolDrive spin = drive;
+  spin.way = 0.0;
+  const Pose turned = drive_on(spin, 0.0, 0.5, spin.time + 1.0);
+  EXPECT_NEAR(glm::angle(turned.rotation), 0.5, 1e-12);
+  EXPECT_NEAR(glm::length(turned.position - spin.pivot),
+              glm::length(spin.start.position - spin.pivot), 1e-15);
+  // A restart sets the time back: it stays where it is.
+  EXPECT_EQ(drive_on(spin, 1.0, 1.0, 0.0).position, turned.position);
+}
+
 TEST(ToolDragTest, PressingFromStraightAboveTakesTheMousesWayDown) {
   const Camera camera = camera_from_above(1.55);
   const glm::dvec3 axis(0.0, 1.0, 0.0);

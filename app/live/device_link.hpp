@@ -73,10 +73,10 @@ class DeviceLink {
   static std::unique_ptr<DeviceLink> held_as(const DeviceChoice& choice, const Pose& tool);
   static Result<std::unique_ptr<DeviceLink>> open_gateway(const DeviceChoice& choice,
                                                           const Pose& tool);
-  static Wrench on_client(void* link, const DeviceSample& said);
+  static Wrench on_client(void* context, const DeviceSample& said);
   Result<Done> start_usb(const DeviceChoice& choice, std::uint32_t kinds, SampleSink sink);
   [[nodiscard]] glm::dvec3 turn_axis() const;
-  Wrench take(const DeviceSample& sample);
+  Wrench take(const DeviceSample& said);
   void add_carried(DeviceSample& sample);
   void show_guard();
 

@@ -1,16 +1,17 @@
 /* Whatever CHAI3D drives (its custom devices, too), for Torsion:
  *
- *   c++ -O2 chai3d.cpp -o chai3d_client $(pkg-config --cflags --libs chai3d)   (or the include path and library of your build)
- *   torsion view scenes/ball_on_cube_soft.gltf --device gateway &
+ *   c++ -O2 chai3d.cpp -o chai3d_client $(pkg-config --cflags --libs chai3d)   (or the include path
+ * and library of your build) torsion view scenes/ball_on_cube_soft.gltf --device gateway &
  *   ./chai3d_client
  *
- * Its axes: x towards the user, y to the right, z up. Compiled here against a stub only: it was not tried on a device. */
-#include <chai3d.h>
-
+ * Its axes: x towards the user, y to the right, z up. Compiled here against a stub only: it was not
+ * tried on a device. */
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <thread>
+
+#include <chai3d.h>
 
 #include "torsion_gateway.h"
 
@@ -25,7 +26,9 @@ void to_torsion(const chai3d::cVector3d& v, double* out) {
   out[2] = v.x();
 }
 
-chai3d::cVector3d to_chai(const double* v) { return chai3d::cVector3d(v[2], v[0], v[1]); }
+chai3d::cVector3d to_chai(const double* v) {
+  return chai3d::cVector3d(v[2], v[0], v[1]);
+}
 
 /* Unit quaternion x, y, z, w, about axes of Torsion's. */
 void to_quaternion(const chai3d::cMatrix3d& matrix, double* q) {
@@ -75,8 +78,9 @@ int main() {
     sample.buttons = buttons;
     sample.sensed = static_cast<unsigned char>((info.m_sensedPosition ? TORSION_TRANSLATION : 0) |
                                                (info.m_sensedRotation ? TORSION_ROTATION : 0));
-    sample.actuated = static_cast<unsigned char>((info.m_actuatedPosition ? TORSION_TRANSLATION : 0) |
-                                                 (info.m_actuatedRotation ? TORSION_ROTATION : 0));
+    sample.actuated =
+        static_cast<unsigned char>((info.m_actuatedPosition ? TORSION_TRANSLATION : 0) |
+                                   (info.m_actuatedRotation ? TORSION_ROTATION : 0));
     sample.period = 1e-3;
     sample.largest_force = info.m_maxLinearForce;
     sample.largest_torque = info.m_actuatedRotation ? info.m_maxAngularTorque : 0.0;

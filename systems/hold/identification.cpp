@@ -15,8 +15,8 @@ constexpr std::array<double, 5> kFrequencies = {4.0, 8.0, 12.0, 18.0, 26.0};  //
 constexpr double kSettle = 2.0;        // s: the spring learns what it has to bear
 constexpr double kRunUp = 0.3;         // s: of each run
 constexpr double kSwings = 1.0;        // s
-constexpr double kReach = 0.05;        // m: at which the spring has the swinging force
-constexpr double kTurnReach = 0.5;     // rad
+constexpr double kSpringReach = 0.05;  // m: at which the spring has the swinging force
+constexpr double kSpringTurn = 0.5;    // rad
 constexpr double kDamperTime = 0.05;   // s: damping over stiffness of what holds it
 constexpr double kLearnTime = 2.0;     // s
 constexpr double kMostWeight = 3.0;    // of the swinging force
@@ -108,7 +108,7 @@ void end_run(Identification& identification) {
 /// What holds it in place along an axis: a soft spring and damper, and its weight.
 double holding_force(Identification& identification, std::size_t axis, double period) {
   const double largest = identification.largest[group_of(axis)];
-  const double stiffness = largest / (group_of(axis) == 0 ? kReach : kTurnReach);
+  const double stiffness = largest / (group_of(axis) == 0 ? kSpringReach : kSpringTurn);
   const double pull = -stiffness * identification.way[axis];
   identification.weight[axis] = std::clamp(identification.weight[axis] + pull * period / kLearnTime,
                                            -kMostWeight * largest, kMostWeight * largest);

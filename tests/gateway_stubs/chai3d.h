@@ -1,5 +1,5 @@
-/* What examples/gateway/chai3d.cpp calls of CHAI3D 3.x, as its documentation declares it: a device that goes down (-z) by 4 mm
- * within a second. x towards the user, y to the right, z up. */
+/* What examples/gateway/chai3d.cpp calls of CHAI3D 3.x, as its documentation declares it: a device
+ * that goes down (-z) by 4 mm within a second. x towards the user, y to the right, z up. */
 #ifndef TORSION_STUB_CHAI3D_H_
 #define TORSION_STUB_CHAI3D_H_
 
@@ -35,7 +35,8 @@ class cQuaternion {
   void fromRotMat(const cMatrix3d& matrix) {
     const auto& m = matrix.m;
     const double squares[4] = {1.0 + m[0][0] + m[1][1] + m[2][2], 1.0 + m[0][0] - m[1][1] - m[2][2],
-                               1.0 - m[0][0] + m[1][1] - m[2][2], 1.0 - m[0][0] - m[1][1] + m[2][2]};
+                               1.0 - m[0][0] + m[1][1] - m[2][2],
+                               1.0 - m[0][0] - m[1][1] + m[2][2]};
     const auto largest = std::max_element(squares, squares + 4) - squares;
     const double twice = std::sqrt(squares[largest]), part = 0.5 / twice;
     const double a = m[2][1] - m[1][2], b = m[0][2] - m[2][0], c = m[1][0] - m[0][1];
@@ -69,7 +70,8 @@ class cGenericHapticDevice {
   }
   cHapticDeviceInfo getSpecifications() { return {}; }
   bool getPosition(cVector3d& at) {
-    if (++frames_ == 3000) std::raise(SIGINT);
+    if (++frames_ == 3000)
+      std::raise(SIGINT);
     at = cVector3d(0.0, 0.0, -0.004 * share());
     return true;
   }

@@ -50,6 +50,8 @@ std::string trouble_text(const DeviceSample& sample) {
       return "it does not know its zero yet; move it through its whole range (a WoodenHaptics: "
              "hold its first two bodies upright and forward, the third level, and press and let go "
              "of its calibration button)";
+    case DeviceTrouble::kNotMoved:
+      return "it has not said yet where it is; turn it a little";
     case DeviceTrouble::kSilent:
       return "it does not answer; is its power on?";
     case DeviceTrouble::kNotUnderstood:

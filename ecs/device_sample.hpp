@@ -31,6 +31,7 @@ enum class DeviceTrouble : std::uint8_t {
   kBadFirmware,    // it did not take that file
   kWrongFirmware,  // it has another version than those that are understood
   kNotHomed,       // the user must move it through its range
+  kNotMoved,       // it says where it is when it moves, and has not moved yet
   kSilent,         // it does not answer
   kNotUnderstood,  // it answers something else
   kNoClient,       // of the gateway: nobody is there, or who was fell silent

@@ -72,6 +72,16 @@ void go_live(WheelDriver& driver, DriverCall& call) {
   call.report.wake_at = call.now;
 }
 
+/// Some say where they are when they are asked, some ten times a second, some when they turn.
+void ask_place(WheelDriver& driver, DriverCall& call) {
+  driver.phase = WheelPhase::kPlacing;
+  driver.heard_at = call.now;
+  call.report.wake_at = kNever;
+  set_state(call, DeviceState::kStarting, DeviceTrouble::kNotMoved);
+  get_hid_report(call.requests, interface_of(driver, call).number, HidReportKind::kInput,
+                 driver.layout.place.id, driver.layout.place.size);
+}
+
 /// Writes a packet of the set-up. @return false where the wheel has no such report
 bool write_set_up(WheelDriver& driver, DriverCall& call, const WheelPacket& packet) {
   if (packet.size > 0) {
@@ -123,7 +133,7 @@ void set_up(WheelDriver& driver, DriverCall& call, WheelPhase phase) {
       write_set_up(driver, call, encode_wheel_torque(driver.layout, driver.block, 0.0));
       break;
     default:
-      go_live(driver, call);
+      driver.has_place ? go_live(driver, call) : ask_place(driver, call);
       break;
   }
 }
@@ -134,7 +144,7 @@ void set_up_further(WheelDriver& driver, DriverCall& call) {
 }
 
 bool sets_up(const WheelDriver& driver) {
-  return driver.phase > WheelPhase::kAsking && driver.phase < WheelPhase::kLive;
+  return driver.phase > WheelPhase::kAsking && driver.phase < WheelPhase::kPlacing;
 }
 
 void take_descriptor(WheelDriver& driver, DriverCall& call, const UsbEvent& event) {
@@ -158,7 +168,7 @@ void take_descriptor(WheelDriver& driver, DriverCall& call, const UsbEvent& even
   if (largest_torque(call) > 0.0) {
     set_up(driver, call, WheelPhase::kResetting);
   } else {
-    go_live(driver, call);
+    ask_place(driver, call);
   }
 }
 
@@ -190,29 +200,6 @@ void take_answer(WheelDriver& driver, DriverCall& call, const UsbEvent& event) {
   }
   if (driver.phase == WheelPhase::kLive) {
     plan_check(driver, call);
-  }
-}
-
-void take_control(WheelDriver& driver, DriverCall& call, const UsbEvent& event) {
-  const bool done = event.status == UsbStatus::kCompleted;
-  if (driver.phase == WheelPhase::kAsking && event.setup.request == kGetHidDescriptor) {
-    take_descriptor(driver, call, event);
-  } else if (driver.phase == WheelPhase::kCreating && event.setup.request == kSetHidReport) {
-    done ? set_up_further(driver, call) : again_later(driver, call, DeviceTrouble::kSilent);
-  } else if (driver.phase == WheelPhase::kLoading && event.setup.request == kGetHidReport) {
-    const auto block = done ? decode_wheel_load(driver.layout, event.bytes) : std::nullopt;
-    if (block) {
-      driver.block = *block;
-      set_up_further(driver, call);
-    } else {
-      again_later(driver, call, DeviceTrouble::kNotUnderstood);
-    }
-  } else if (driver.phase == WheelPhase::kConfirming && event.setup.request == kGetHidReport) {
-    driver.knows_block = done && decode_wheel_load(driver.layout, event.bytes) == driver.block;
-    set_up_further(driver, call);
-  } else if (event.setup.request == kGetHidReport && driver.pinging) {
-    driver.pinging = false;
-    take_answer(driver, call, event);
   }
 }
 
@@ -290,6 +277,10 @@ void take_report(WheelDriver& driver, DriverCall& call, Bytes bytes) {
     call.report.counts.garbage += is_of_place(driver.layout, bytes) ? 1U : 0U;
     return;
   }
+  driver.has_place = driver.has_place || is_of_place(driver.layout, bytes);
+  if (driver.phase == WheelPhase::kPlacing && driver.has_place) {
+    go_live(driver, call);
+  }
   if (driver.phase != WheelPhase::kLive) {
     return;
   }
@@ -301,6 +292,33 @@ void take_report(WheelDriver& driver, DriverCall& call, Bytes bytes) {
   driver.reported_at = call.now;
   if (!is_stuck(driver, call)) {
     publish(driver, call);
+  }
+}
+
+void take_control(WheelDriver& driver, DriverCall& call, const UsbEvent& event) {
+  const bool done = event.status == UsbStatus::kCompleted;
+  if (driver.phase == WheelPhase::kAsking && event.setup.request == kGetHidDescriptor) {
+    take_descriptor(driver, call, event);
+  } else if (driver.phase == WheelPhase::kCreating && event.setup.request == kSetHidReport) {
+    done ? set_up_further(driver, call) : again_later(driver, call, DeviceTrouble::kSilent);
+  } else if (driver.phase == WheelPhase::kLoading && event.setup.request == kGetHidReport) {
+    const auto block = done ? decode_wheel_load(driver.layout, event.bytes) : std::nullopt;
+    if (block) {
+      driver.block = *block;
+      set_up_further(driver, call);
+    } else {
+      again_later(driver, call, DeviceTrouble::kNotUnderstood);
+    }
+  } else if (driver.phase == WheelPhase::kConfirming && event.setup.request == kGetHidReport) {
+    driver.knows_block = done && decode_wheel_load(driver.layout, event.bytes) == driver.block;
+    set_up_further(driver, call);
+  } else if (driver.phase == WheelPhase::kPlacing && event.setup.request == kGetHidReport) {
+    if (done) {
+      take_report(driver, call, event.bytes);
+    }
+  } else if (event.setup.request == kGetHidReport && driver.pinging) {
+    driver.pinging = false;
+    take_answer(driver, call, event);
   }
 }
 

@@ -25,6 +25,7 @@ enum class WheelPhase : std::uint8_t {
   kConfirming,  // whether it says that again
   kDescribing,  // the effect
   kZeroing,
+  kPlacing,  // it says where it is when it turns: that has to be known first
   kLive,
   kNone
 };
@@ -38,6 +39,7 @@ struct WheelDriver {
   WheelState state;
   std::int32_t block = 0;        // of the effect; 0: there is none
   bool repeated = false;         // the packet of the set-up that is on its way
+  bool has_place = false;        // it has said where it is
   bool refused = false;          // it did not take the last packet
   bool knows_block = false;      // it says of its last effect that it has it, whenever it is asked
   bool pinging = false;          // it was asked whether it is there

@@ -16,8 +16,10 @@
 namespace torsion::engine {
 namespace {
 
-constexpr double kLongestWait = 0.1;   // s: nothing of ours is missed, this is for what is not ours
-constexpr double kReopen = 1.0;        // s: after an open that was not allowed
+constexpr double kLongestWait = 0.1;  // s: nothing of ours is missed, this is for what is not ours
+constexpr double kReopen = 1.0;       // s: after an open that was not allowed
+constexpr double kLookAgain = 0.1;    // s
+constexpr std::uint32_t kMostLooks = 50;
 constexpr double kLetGoTime = 0.1;     // s: for the last packets when the bus is stopped
 constexpr double kLongestClose = 3.0;  // s: a transfer that never comes back is left to the system
 
@@ -158,7 +160,17 @@ struct UsbBus::State {
   }
 
   void opened(UsbPort& port, UsbStatus status) {
-    const bool useless = status == UsbStatus::kCancelled || status == UsbStatus::kGone;
+    constexpr std::uint32_t kWheels = 1U << static_cast<std::uint32_t>(DeviceKind::kWheel);
+    const bool may_be_wheel = status == UsbStatus::kTimedOut && (loop.options.kinds & kWheels) != 0;
+    if (may_be_wheel && !port.left && !stop && port.looks < kMostLooks) {
+      // Just plugged in: what it is will be known once the kernel has read its descriptors.
+      port.looks += 1;
+      port.state = UsbPortState::kRefused;
+      port.retry_at = steady_now() + kLookAgain;
+      return;
+    }
+    const bool useless = status == UsbStatus::kTimedOut || status == UsbStatus::kCancelled ||
+                         status == UsbStatus::kGone;
     if (useless || port.left || stop) {
       port.state = UsbPortState::kClosing;
       return;
@@ -189,6 +201,7 @@ struct UsbBus::State {
 
   static void closed(UsbPort& port) {
     free_transfers(port);
+    port.looks = 0;
     libusb_unref_device(port.device);
     port.device = nullptr;
     port.state = UsbPortState::kFree;

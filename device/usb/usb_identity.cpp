@@ -87,17 +87,18 @@ std::optional<UsbIdentity> read_identity(libusb_device* device) {
   libusb_free_config_descriptor(config);
   const fs::path folder = sysfs_folder(identity);
   for (UsbInterface& interface : identity.interfaces) {
-    interface.plays_effects = interface.device_class == kHidClass &&
-                              plays_effects(report_descriptor(folder, interface.number));
+    if (interface.device_class == kHidClass) {
+      const std::vector<std::uint8_t> said = report_descriptor(folder, interface.number);
+      interface.is_described = !said.empty();
+      interface.plays_effects = plays_effects(said);
+    }
   }
   return identity;
 }
 
 bool may_say_more(const UsbIdentity& identity) {
-  const fs::path folder = sysfs_folder(identity);
-  return std::ranges::any_of(identity.interfaces, [&](const UsbInterface& interface) {
-    return interface.device_class == kHidClass &&
-           report_descriptor(folder, interface.number).empty();
+  return std::ranges::any_of(identity.interfaces, [](const UsbInterface& interface) {
+    return interface.device_class == kHidClass && !interface.is_described;
   });
 }
 

@@ -13,8 +13,8 @@ namespace torsion::engine {
 /// @return nothing where it has gone
 std::optional<UsbIdentity> read_identity(libusb_device* device);
 
-/// True where a HID interface of it has no kernel driver yet, which reads its report descriptor:
-/// what read_identity says may change.
+/// True where a HID interface of it had no kernel driver yet, which reads its report descriptor:
+/// read_identity may say more another time.
 bool may_say_more(const UsbIdentity& identity);
 
 /// The device's folder in sysfs; empty where there is none.

@@ -31,7 +31,9 @@ struct UsbInterface {
   std::uint8_t subclass = 0;
   std::uint8_t protocol = 0;  // of HID: 1 a keyboard, 2 a mouse
   std::vector<UsbEndpoint> endpoints;
-  // Of HID: its report descriptor has effects of the PID class, as far as the system has read it.
+  // Of HID: whether the system has read its report descriptor by now, and whether that has effects
+  // of the PID class.
+  bool is_described = false;
   bool plays_effects = false;
 };
 

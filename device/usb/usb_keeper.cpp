@@ -12,23 +12,11 @@ namespace {
 constexpr int kOpenTries = 20;
 constexpr auto kOpenPause = std::chrono::milliseconds(5);
 
-/// Which it is, once the kernel has looked at it; it may be plugged in this moment.
-std::optional<UsbIdentity> identity_of(const UsbPort& port,
-                                       const std::function<bool(const UsbIdentity&)>& wanted) {
-  auto identity = read_identity(port.device);
-  for (int i = 0; i < kOpenTries && identity && !wanted(*identity) && may_say_more(*identity);
-       ++i) {
-    std::this_thread::sleep_for(kOpenPause);
-    identity = read_identity(port.device);
-  }
-  return identity;
-}
-
 /// Udev sets the node's rights some time after the device has come.
 UsbStatus open(UsbPort& port, const std::function<bool(const UsbIdentity&)>& wanted) {
-  const auto identity = identity_of(port, wanted);
+  const auto identity = read_identity(port.device);
   if (!identity || !wanted(*identity)) {
-    return UsbStatus::kCancelled;
+    return identity && may_say_more(*identity) ? UsbStatus::kTimedOut : UsbStatus::kCancelled;
   }
   port.identity = *identity;
   int error = 0;

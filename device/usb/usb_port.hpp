@@ -55,6 +55,7 @@ struct UsbPort {
   std::uint32_t to_device = 0;             // of them those that go out
   std::uint32_t jobs = 0;                  // that may block, asked for and not yet done
   double retry_at = 0.0;                   // s: of kRefused
+  std::uint32_t looks = 0;                 // at what the kernel may still find out about it
   std::vector<UsbEvent> refused;           // requests that the bus did not take
   std::array<UsbTransfer, 8> pool;
 };

@@ -251,6 +251,9 @@ UsbInterface interface(std::uint8_t number, std::uint8_t device_class,
 void switch_on(EmulatedDevice& device) {
   if (auto* const wooden = std::get_if<EmulatedWooden>(&device)) {
     wooden->says_pressed = EmulatedWooden{}.says_pressed;
+  } else if (auto* const wheel = std::get_if<EmulatedWheel>(&device)) {
+    forget_effects(*wheel);
+    wheel->said_at = EmulatedWheel{}.said_at;  // it says where it is before anything else
   }
 }
 
@@ -304,8 +307,6 @@ void brown_out(EmulatedDevice& device) {
     odrive->version = version;
   } else if (std::holds_alternative<EmulatedMoteus>(device)) {
     device = EmulatedMoteus{};
-  } else if (auto* const wheel = std::get_if<EmulatedWheel>(&device)) {
-    forget_effects(*wheel);
   }
   switch_on(device);
 }

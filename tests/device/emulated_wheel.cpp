@@ -228,7 +228,11 @@ std::optional<Buffer> controlled(EmulatedWheel& device, const UsbSetup& setup, B
     return device.is_other ? Buffer{load, status, kBlock}
                            : Buffer{load, kBlock, status, 0xFF, 0xFF};
   }
-  return std::nullopt;  // a report of its place: such wheels stall
+  constexpr std::uint16_t kInput = 0x0100;
+  if (device.is_other && setup.request == 1 && setup.value == (kInput | 0x31)) {
+    return place_of(device);
+  }
+  return std::nullopt;  // a report of its place: an OpenFFBoard stalls
 }
 
 }  // namespace torsion::engine::test

@@ -138,9 +138,10 @@ void MockDevice::show_report_descriptor(std::uint8_t interface) {
   const fs::path folder = fmt::format("{}{}/1-{}:1.{}/0003:{:04X}:{:04X}.0001", root_, sysfs_,
                                       number_, interface, identity.vendor, identity.product);
   fs::create_directories(folder);
-  std::ofstream(folder / "report_descriptor", std::ios::binary)
+  std::ofstream(folder / "new", std::ios::binary)
       .write(reinterpret_cast<const char*>(descriptor->data()),
              static_cast<std::streamsize>(descriptor->size()));
+  fs::rename(folder / "new", folder / "report_descriptor");  // nobody reads a half of it
 }
 
 void MockDevice::unplug() {

@@ -59,7 +59,14 @@ TEST(WheelDriverTest, DisplaysNothingWhereItsFullScaleIsNotKnown) {
   FakeBus bus({}, client.sink());
   const std::size_t row = bus.plug(EmulatedWheel{});
   bus.run(kStartTime);
+  // Nothing is said of where it is before it has said so.
+  EXPECT_EQ(client.last.trouble, DeviceTrouble::kNotMoved);
+  EXPECT_EQ(client.last.state, DeviceState::kStarting);
+  bus.device<EmulatedWheel>(row).turn = 0.3;
+  bus.send(row, place_of(bus.device<EmulatedWheel>(row)));
+  bus.run(0.01);
   EXPECT_EQ(client.last.state, DeviceState::kLive);
+  EXPECT_NEAR(angle_of(client.last), -0.3, 1e-3);
   EXPECT_EQ(client.last.actuated, kNoAxes);
   EXPECT_EQ(bus.writes(row), 0U);
 }

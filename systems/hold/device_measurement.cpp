@@ -92,6 +92,11 @@ Wrench take_measurement_sample(DeviceMeasurement& measurement, const DeviceSampl
   const bool live = sample.state == DeviceState::kLive;
   const double since = sample.time - measurement.last_time;
   measurement.last_time = sample.time;
+  const bool went =
+      measurement.stage == MeasurementStage::kHold && (!live || sample.epoch != measurement.epoch);
+  if (went) {
+    measurement.stage = MeasurementStage::kDevice;  // nothing was done with it yet
+  }
   if (live && measurement.stage == MeasurementStage::kDevice) {
     begin(measurement, sample);
   }

@@ -101,6 +101,19 @@ TEST(DeviceMeasurementTest, ARunAwayOrAStrangeHandEndsIt) {
   EXPECT_GT(pulled.bus.without_force_for(pulled.row), 0.05);
 }
 
+TEST(DeviceMeasurementTest, ADeviceThatIsPluggedInAgainBeforeItBeginsBeginsAnew) {
+  Bench bench;
+  bench.run(1.0);
+  ASSERT_EQ(bench.measurement.stage, MeasurementStage::kHold);
+  bench.bus.unplug(bench.row);
+  bench.bus.run(0.5);
+  EXPECT_EQ(bench.measurement.stage, MeasurementStage::kDevice);
+  bench.row = bench.bus.plug(EmulatedOdrive{});
+  bench.measurement.is_held = true;
+  bench.run(6.0);
+  EXPECT_EQ(bench.measurement.stage, MeasurementStage::kLetGo);
+}
+
 TEST(DeviceMeasurementTest, WhatWasMeasuredSetsTheCoupling) {
   LoopOptions options;
   MeasuredTraits& knob = options.measured[static_cast<std::size_t>(DeviceKind::kOdrive)];

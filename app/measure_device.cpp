@@ -121,9 +121,7 @@ void print_axes(const DeviceMeasurement& measurement) {
       continue;
     }
     const bool turns = axis >= 3;
-    const AxisDynamics found =
-        dynamics_of(measurement.identification, axis,
-                    turns ? measurement.traits.encoder_turn_step : measurement.traits.encoder_step);
+    const AxisDynamics found = measured_axis(measurement, axis);
     if (!found.found) {
       say(fmt::format("{}: it hardly moved; nothing was found", kNames[axis]));
       continue;
@@ -134,9 +132,9 @@ void print_axes(const DeviceMeasurement& measurement) {
                     kNames[axis], turns ? "inertia" : "mass", found.mass, turns ? "kg m^2" : "kg",
                     found.damping, turns ? "N m s/rad" : "N s/m", found.friction,
                     turns ? "N m" : "N", 1e3 * found.delay, 100.0 * found.misfit));
-    constexpr double kTooFarOff = 0.2;
-    if (found.misfit > kTooFarOff) {
-      say("  That is too far off to count on: was it touched meanwhile, or does it rub?");
+    if (!is_reliable(found)) {
+      say("  That is too far off, and is not counted on: was it touched meanwhile, or does it "
+          "rub?");
     }
   }
 }
@@ -223,7 +221,7 @@ int measure_device(const DeviceChoice& choice, bool agreed) {
   print_axes(meter.measurement);
   const DeviceTraits found = measured_traits(meter.measurement);
   if (found.mass == 0.0 && found.inertia == 0.0) {
-    return fail("not measured: it hardly moved");
+    return fail("not measured: it hardly moved, or not as a mass with damping and friction does");
   }
   const Result<Done> saved = save_measured_traits(
       kind, {found.mass, found.damping, found.inertia, found.turn_damping, found.delay});

@@ -312,9 +312,17 @@ std::optional<std::int32_t> hid_value(const HidField& field, bool numbered, Byte
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(bits));
 }
 
-void put_hid_value(const HidField& field, bool numbered, std::int32_t value,
+bool put_hid_value(const HidField& field, bool numbered, std::int32_t value,
                    std::span<std::uint8_t> report) {
-  report = report.subspan(numbered ? 1 : 0);
+  if (numbered) {
+    if (report.empty() || report[0] != field.report_id) {
+      return false;
+    }
+    report = report.subspan(1);
+  }
+  if (std::uint64_t{field.bit_offset} + field.bit_size > 8 * std::uint64_t{report.size()}) {
+    return false;
+  }
   const auto bits = static_cast<std::uint32_t>(value);
   for (std::uint32_t i = 0; i < field.bit_size; ++i) {
     const std::uint32_t at = field.bit_offset + i;
@@ -322,6 +330,7 @@ void put_hid_value(const HidField& field, bool numbered, std::int32_t value,
     std::uint8_t& byte = report[at / 8];
     byte = static_cast<std::uint8_t>((bits >> i & 1U) != 0 ? byte | mask : byte & ~mask);
   }
+  return true;
 }
 
 }  // namespace torsion::engine

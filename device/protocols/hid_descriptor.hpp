@@ -61,8 +61,10 @@ bool is_within(const HidReports& reports, const HidField& field, HidUsage collec
 /// @return nothing where the report is another or too short
 std::optional<std::int32_t> hid_value(const HidField& field, bool numbered, Bytes report);
 
-/// Writes the lowest bits of `value` into the field. @pre the report is the field's and long enough
-void put_hid_value(const HidField& field, bool numbered, std::int32_t value,
+/// Writes the lowest bits of `value` into the field.
+/// @param report  with its id when `numbered`
+/// @return false, and the report as it was, where it is another or too short
+bool put_hid_value(const HidField& field, bool numbered, std::int32_t value,
                    std::span<std::uint8_t> report);
 
 }  // namespace torsion::engine

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 namespace torsion::engine {
 namespace {
@@ -69,6 +70,15 @@ struct Finder {
   }
 };
 
+/// Leaves out what lies in another report: it cannot be said in the same packet.
+void keep_within(const WheelReport& report, std::initializer_list<HidField*> fields) {
+  for (HidField* const field : fields) {
+    if (field->report_id != report.id) {
+      *field = {};
+    }
+  }
+}
+
 void find_inputs(const HidReports& reports, WheelLayout& layout) {
   for (const HidField& field : reports.fields) {
     if (field.kind != HidReportKind::kInput) {
@@ -110,6 +120,11 @@ void find_outputs(const HidReports& reports, WheelLayout& layout) {
   layout.control = out.report(layout.enable);
   layout.device_gain = out.field(kDeviceGain, kDeviceGainReport);
   layout.gain = out.report(layout.device_gain);
+  keep_within(layout.effect, {&layout.effect_constant, &layout.duration, &layout.effect_gain,
+                              &layout.axis, &layout.has_direction, &layout.direction});
+  keep_within(layout.constant, {&layout.constant_block});
+  keep_within(layout.operation, {&layout.operation_block, &layout.stop, &layout.loops});
+  keep_within(layout.control, {&layout.reset});
 }
 
 void find_features(const HidReports& reports, WheelLayout& layout) {
@@ -119,6 +134,7 @@ void find_features(const HidReports& reports, WheelLayout& layout) {
   layout.load_block = feature.field(kEffectBlockIndex, kBlockLoadReport);
   layout.load_success = feature.field(kBlockLoadSuccess, kBlockLoadReport);
   layout.load = feature.report(layout.load_block);
+  keep_within(layout.load, {&layout.load_success});
 }
 
 bool is_complete(const WheelLayout& layout) {
@@ -152,13 +168,13 @@ void put(const WheelLayout& layout, WheelPacket& packet, const HidField& field, 
     const double within = std::clamp(value, static_cast<double>(field.logical_min),
                                      static_cast<double>(field.logical_max));
     put_hid_value(field, layout.numbered, static_cast<std::int32_t>(std::lround(within)),
-                  packet.bytes);
+                  std::span(packet.bytes).first(packet.size));
   }
 }
 
 void choose(const WheelLayout& layout, WheelPacket& packet, const HidField& field) {
   if (is_there(field)) {
-    put_hid_value(field, layout.numbered, field.chosen, packet.bytes);
+    put_hid_value(field, layout.numbered, field.chosen, std::span(packet.bytes).first(packet.size));
   }
 }
 

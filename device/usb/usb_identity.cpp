@@ -85,9 +85,10 @@ std::optional<UsbIdentity> read_identity(libusb_device* device) {
     }
   }
   libusb_free_config_descriptor(config);
-  const fs::path folder = sysfs_folder(identity);
+  fs::path folder;
   for (UsbInterface& interface : identity.interfaces) {
     if (interface.device_class == kHidClass) {
+      folder = folder.empty() ? sysfs_folder(identity) : folder;
       const std::vector<std::uint8_t> said = report_descriptor(folder, interface.number);
       interface.is_described = !said.empty();
       interface.plays_effects = plays_effects(said);

@@ -1,6 +1,7 @@
 #include "systems/hold/device_measurement.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "systems/hold/virtual_coupling.hpp"
 
@@ -82,9 +83,18 @@ void go_on(DeviceMeasurement& measurement) {
   }
 }
 
-double least(double so_far, double value) {
-  return so_far > 0.0 ? std::min(so_far, value) : value;
-}
+/// Of the axes so far.
+struct Least {
+  double mass = std::numeric_limits<double>::infinity();
+  double damping = std::numeric_limits<double>::infinity();
+  bool any = false;
+
+  void take(const AxisDynamics& found) {
+    mass = std::min(mass, found.mass);
+    damping = std::min(damping, found.damping);
+    any = true;
+  }
+};
 
 }  // namespace
 
@@ -128,21 +138,35 @@ double swinging_time(const DeviceMeasurement& measurement) {
   return identification_time(measurement.axes);
 }
 
+AxisDynamics measured_axis(const DeviceMeasurement& measurement, std::size_t axis) {
+  const DeviceTraits& said = measurement.traits;
+  return dynamics_of(measurement.identification, axis,
+                     axis >= 3 ? said.encoder_turn_step : said.encoder_step);
+}
+
+bool is_reliable(const AxisDynamics& found) {
+  constexpr double kFarthest = 0.2;  // friction of half the swinging force is off by half of it
+  return found.found && found.misfit < kFarthest;
+}
+
 DeviceTraits measured_traits(const DeviceMeasurement& measurement) {
+  Least translation;
+  Least turning;
   DeviceTraits traits;
   for (std::size_t axis = 0; axis < kIdentifiedAxes; ++axis) {
-    const bool turns = axis >= 3;
-    const AxisDynamics found =
-        dynamics_of(measurement.identification, axis,
-                    turns ? measurement.traits.encoder_turn_step : measurement.traits.encoder_step);
-    if (!found.found) {
-      continue;
+    const AxisDynamics found = measured_axis(measurement, axis);
+    if (is_reliable(found)) {
+      (axis >= 3 ? turning : translation).take(found);
+      traits.delay = std::max(traits.delay, found.delay);
     }
-    double& mass = turns ? traits.inertia : traits.mass;
-    double& damping = turns ? traits.turn_damping : traits.damping;
-    mass = least(mass, found.mass);
-    damping = least(damping, found.damping);
-    traits.delay = std::max(traits.delay, found.delay);
+  }
+  if (translation.any) {
+    traits.mass = translation.mass;
+    traits.damping = translation.damping;
+  }
+  if (turning.any) {
+    traits.inertia = turning.mass;
+    traits.turn_damping = turning.damping;
   }
   return traits;
 }

@@ -44,8 +44,15 @@ Wrench take_measurement_sample(DeviceMeasurement& measurement, const DeviceSampl
 /// s: from the start of the swinging to its end.
 double swinging_time(const DeviceMeasurement& measurement);
 
-/// Of its axes, the smallest mass and damping and the longest delay: what a coupling that is stable
-/// along all of them may count on. In turning likewise. Zero where it was not found.
+/// What was found along one axis. @param axis  of kIdentifiedAxes
+AxisDynamics measured_axis(const DeviceMeasurement& measurement, std::size_t axis);
+
+/// Whether an axis was found, and the fit is near enough to what was measured to count on it.
+bool is_reliable(const AxisDynamics& found);
+
+/// Of its axes that are reliable, the smallest mass and damping and the longest delay: what a
+/// coupling that is stable along all of them may count on. In turning likewise. Zero where none is,
+/// and a damping of zero where one axis has none.
 DeviceTraits measured_traits(const DeviceMeasurement& measurement);
 
 }  // namespace torsion::engine

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/math/frames.hpp"
+#include "systems/math/hann_window.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -82,8 +83,7 @@ void take_swing(Identification& identification, const Wrench& sent, double perio
   }
   const std::size_t axis = identification.axis;
   const double rate = rate_of(identification.run);
-  // Hann's window, as a mean: its own is a half, and a cosine's amplitude twice its part.
-  const double weight = 2.0 * (1.0 - std::cos(2.0 * std::numbers::pi * at)) * period / kSwings;
+  const double weight = hann_weight(at, period, kSwings);
   const double force = along_axes(identification, sent.force, sent.torque)[axis];
   identification.now.rate = rate;
   identification.now.way +=

@@ -8,6 +8,7 @@
 #include <glm/matrix.hpp>
 
 #include "systems/math/frames.hpp"
+#include "systems/math/hann_window.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -219,8 +220,7 @@ SignVerdict take_sign_sample(SignCheck& check, const Pose& measured, double peri
       check.group == 0
           ? measured.position - check.start.position
           : glm::conjugate(check.axes) * turn_between(check.start.rotation, measured.rotation);
-  // Hann's window, as a mean: its own is a half, and a cosine's amplitude twice its part.
-  const double weight = 2.0 * (1.0 - std::cos(2.0 * std::numbers::pi * at)) * period / kWindow;
+  const double weight = hann_weight(at, period, kWindow);
   const double then = check.time - 0.5 * period - check.delay;  // s: of the force that counts
   const auto wave = [&](double frequency) {
     return weight * std::polar(1.0, -turn_rate(frequency) * then);

@@ -3,7 +3,9 @@
 
 #include "systems/hold/device_measurement.hpp"
 
+#include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -112,6 +114,39 @@ TEST(DeviceMeasurementTest, ADeviceThatIsPluggedInAgainBeforeItBeginsBeginsAnew)
   bench.measurement.is_held = true;
   bench.run(6.0);
   EXPECT_EQ(bench.measurement.stage, MeasurementStage::kLetGo);
+}
+
+/// Answers of an axis as its dynamics say; `off` [share] turns every other one round.
+void answer(Identification& identification, std::size_t axis, double mass, double damping,
+            double off) {
+  for (std::size_t run = 0; run < kIdentificationRuns; ++run) {
+    AxisResponse& response = identification.responses[axis][run];
+    const std::array<double, 5> frequencies = {4.0, 8.0, 12.0, 18.0, 26.0};  // Hz
+    response.rate = 2.0 * std::numbers::pi * frequencies[run % frequencies.size()];
+    const std::complex<double> stiffness(-mass * response.rate * response.rate,
+                                         damping * response.rate);
+    const double wrong = run % 2 == 0 ? 1.0 + off : 1.0 - off;
+    response.force = run < frequencies.size() ? 0.5 : 1.0;
+    response.way = response.force / (wrong * stiffness);
+  }
+}
+
+// One axis without damping is what a coupling has to bear, whichever comes first; one whose answers
+// are no mass' is left out.
+TEST(DeviceMeasurementTest, CountsOnTheLeastOfWhatIsReliable) {
+  for (const bool first : {true, false}) {
+    DeviceMeasurement measurement;
+    measurement.axes = 7;
+    answer(measurement.identification, 0, 0.2, first ? 0.0 : 1.0, 0.0);
+    answer(measurement.identification, 1, 0.15, first ? 1.0 : 0.0, 0.0);
+    answer(measurement.identification, 2, 0.05, 2.0, 0.6);
+    EXPECT_TRUE(is_reliable(measured_axis(measurement, 0)));
+    EXPECT_FALSE(is_reliable(measured_axis(measurement, 2)));
+    const DeviceTraits traits = measured_traits(measurement);
+    EXPECT_NEAR(traits.mass, 0.15, 1e-6);
+    EXPECT_NEAR(traits.damping, 0.0, 1e-6);
+    EXPECT_EQ(traits.inertia, 0.0);
+  }
 }
 
 TEST(DeviceMeasurementTest, WhatWasMeasuredSetsTheCoupling) {

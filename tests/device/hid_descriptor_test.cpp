@@ -40,6 +40,21 @@ TEST(HidDescriptorTest, ReadsValuesAcrossBytesWithTheirSign) {
   EXPECT_EQ(hid_value(positive, true, report), 0x80F);
 }
 
+TEST(HidDescriptorTest, WritesWhatItReadsAndNothingBeside) {
+  const HidField field{kHidX, 0, 7, 4, 12, -2048, 2047};
+  std::array<std::uint8_t, 4> report = {7, 0x05, 0x00, 0xA5};
+  ASSERT_TRUE(put_hid_value(field, true, -1000, report));
+  EXPECT_EQ(hid_value(field, true, report), -1000);
+  EXPECT_EQ(report[1] & 0x0FU, 0x05U);
+  EXPECT_EQ(report[3], 0xA5);
+  const auto before = report;
+  EXPECT_FALSE(put_hid_value(field, true, 1, std::span(report).first(2)));  // too short
+  report[0] = 6;
+  EXPECT_FALSE(put_hid_value(field, true, 1, report));  // another
+  report[0] = 7;
+  EXPECT_EQ(report, before);
+}
+
 TEST(HidDescriptorTest, HasNoValueInAnotherOrAShortReport) {
   const HidField field{kHidX, 0, 7, 4, 12, -2048, 2047};
   EXPECT_FALSE(hid_value(field, true, std::array<std::uint8_t, 3>{6, 0, 0}));

@@ -2,6 +2,8 @@
 
 #include "device/protocols/wheel.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -84,6 +86,18 @@ TEST(WheelTest, KnowsWhatPlaysNoEffects) {
   EXPECT_FALSE(has_effects(*mouse));
   EXPECT_FALSE(wheel_layout(*mouse));
   EXPECT_TRUE(has_effects(*parse_hid_descriptor(kOpenFfbDescriptor)));
+}
+
+// Its duration is in another report than the effect that it is of: no packet can say both.
+TEST(WheelTest, DoesNotUnderstandAnEffectInTwoReports) {
+  Packet descriptor(kOpenFfbDescriptor.begin(), kOpenFfbDescriptor.end());
+  const std::array<std::uint8_t, 4> duration = {0x09, 0x50, 0x09, 0x54};
+  const auto at = std::ranges::search(descriptor, duration).begin();
+  ASSERT_NE(at, descriptor.end());
+  descriptor.insert(at, {0x85, 0x2A});  // report id 42 from here on
+  const auto reports = parse_hid_descriptor(descriptor);
+  ASSERT_TRUE(reports);
+  EXPECT_FALSE(wheel_layout(*reports));
 }
 
 /// Whatever a descriptor says, nothing is written beyond a packet and nothing is read beyond a

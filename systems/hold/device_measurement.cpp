@@ -145,8 +145,8 @@ AxisDynamics measured_axis(const DeviceMeasurement& measurement, std::size_t axi
 }
 
 bool is_reliable(const AxisDynamics& found) {
-  constexpr double kFarthest = 0.2;  // friction of half the swinging force is off by half of it
-  return found.found && found.misfit < kFarthest;
+  constexpr double kFarthestOff = 0.2;  // friction of half the swinging force is off by half of it
+  return found.found && found.misfit < kFarthestOff;
 }
 
 DeviceTraits measured_traits(const DeviceMeasurement& measurement) {

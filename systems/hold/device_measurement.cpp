@@ -145,7 +145,7 @@ AxisDynamics measured_axis(const DeviceMeasurement& measurement, std::size_t axi
 }
 
 bool is_reliable(const AxisDynamics& found) {
-  constexpr double kFarthestOff = 0.2;  // friction of half the swinging force is off by half of it
+  constexpr double kFarthestOff = 0.2;  // with friction of half the force it is 0.1
   return found.found && found.misfit < kFarthestOff;
 }
 

@@ -92,7 +92,8 @@ TEST(WheelTest, KnowsWhatPlaysNoEffects) {
 TEST(WheelTest, DoesNotUnderstandAnEffectInTwoReports) {
   Packet descriptor(kOpenFfbDescriptor.begin(), kOpenFfbDescriptor.end());
   const std::array<std::uint8_t, 4> duration = {0x09, 0x50, 0x09, 0x54};
-  const auto at = std::ranges::search(descriptor, duration).begin();
+  const auto at =
+      std::search(descriptor.begin(), descriptor.end(), duration.begin(), duration.end());
   ASSERT_NE(at, descriptor.end());
   descriptor.insert(at, {0x85, 0x2A});  // report id 42 from here on
   const auto reports = parse_hid_descriptor(descriptor);

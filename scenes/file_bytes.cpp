@@ -55,7 +55,8 @@ std::string decoded(const std::string& uri) {
 
 }  // namespace
 
-Result<std::vector<unsigned char>> read_file_bytes(const std::filesystem::path& path) {
+Result<std::vector<unsigned char>> read_file_bytes(const std::filesystem::path& path,
+                                                   std::uint64_t largest) {
   const OpenFile file(path);
   if (file.descriptor < 0) {
     return cannot_read(path, last_error());
@@ -68,9 +69,9 @@ Result<std::vector<unsigned char>> read_file_bytes(const std::filesystem::path& 
     return cannot_read(path, "it is not a regular file");
   }
   const auto size = static_cast<std::uint64_t>(status.st_size);
-  if (size > kLargestFile) {
+  if (size > largest) {
     return cannot_read(path, "it has " + std::to_string(size) + " bytes, at most " +
-                                 std::to_string(kLargestFile) + " are allowed");
+                                 std::to_string(largest) + " are allowed");
   }
   std::vector<unsigned char> bytes(size);
   std::size_t done = 0;

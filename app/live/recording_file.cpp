@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 
 #include "app/output_file.hpp"
 #include "ecs/model_names.hpp"
+#include "scenes/file_bytes.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -227,11 +227,12 @@ Result<Done> save_recording(const Recording& recording, const std::filesystem::p
 }
 
 Result<Recording> load_recording(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    return bad(path, "cannot be read");
+  const Result<std::vector<unsigned char>> read =
+      read_file_bytes(path, std::numeric_limits<std::uint64_t>::max());
+  if (!read) {
+    return read.error();
   }
-  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::string bytes(read.value().begin(), read.value().end());
   const Result<FileHeader> header = read_header(bytes, path);
   if (!header) {
     return header.error();

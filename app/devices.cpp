@@ -179,6 +179,16 @@ void add_device_options(CLI::App& subcommand, DeviceChoice& choice) {
       ->check(
           CLI::IsMember(std::vector<std::string>(kToolHoldNames.begin(), kToolHoldNames.end())));
   add_drive_options(subcommand, choice);
+  CLI::Option* const device = subcommand.get_option("--device");
+  subcommand
+      .add_option("--gateway-address", choice.gateway_address,
+                  "An address of this machine where clients on other machines reach the gateway "
+                  "(0.0.0.0: all it has); wants --gateway-secret")
+      ->needs(device);
+  subcommand
+      .add_option("--gateway-secret", choice.gateway_secret,
+                  "A file whose text the gateway's clients must have, too")
+      ->needs(device);
   subcommand
       .add_option_function<std::pair<std::uint32_t, std::uint32_t>>(
           "--turn-buttons",

@@ -58,6 +58,10 @@ std::string trouble_text(const DeviceSample& sample) {
       return "it does not speak as such a device should";
     case DeviceTrouble::kNoClient:
       return "no client speaks to the gateway; start one (docs/gateway.md)";
+    case DeviceTrouble::kWrongSecret:
+      return "a client speaks that has another secret than the gateway, or one of the two has "
+             "none; "
+             "give both the same file (--gateway-secret FILE)";
     case DeviceTrouble::kMotorError:
       return fmt::format(
           "its motor has no force ({}). {}", motor_text(sample),

@@ -35,6 +35,7 @@ enum class DeviceTrouble : std::uint8_t {
   kSilent,         // it does not answer
   kNotUnderstood,  // it answers something else
   kNoClient,       // of the gateway: nobody is there, or who was fell silent
+  kWrongSecret,    // of the gateway: who is there does not have its secret
   kMotorError,     // its motor's controller has let go: DeviceSample::motor_errors
 };
 

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <numbers>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "scenes/file_bytes.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -32,15 +33,14 @@ bool is_knob(DeviceKind kind) {
 
 Result<std::vector<std::uint8_t>> load_firmware(const std::filesystem::path& chosen) {
   const std::filesystem::path path = chosen.empty() ? usual_falcon_firmware() : chosen;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
+  Result<std::vector<unsigned char>> read = read_file_bytes(path);
+  if (!read) {
     if (chosen.empty()) {
       return std::vector<std::uint8_t>{};
     }
-    return Error{path.string() + ": cannot be read; --falcon-firmware wants the maker's file"};
+    return Error{read.error().text + "; --falcon-firmware wants the maker's file"};
   }
-  std::vector<std::uint8_t> bytes((std::istreambuf_iterator<char>(file)),
-                                  std::istreambuf_iterator<char>());
+  std::vector<std::uint8_t> bytes = std::move(read).value();
   if (bytes.size() < kSmallestFirmware || bytes.size() > kLargestFirmware) {
     return Error{fmt::format("{}: {} bytes are no Falcon firmware, which has {} to {}",
                              path.string(), bytes.size(), kSmallestFirmware, kLargestFirmware)};
@@ -78,6 +78,58 @@ Result<GatewayChoice> gateway_choice(const std::string& what) {
   }
   choice.gateway = rest;
   return choice;
+}
+
+Result<std::vector<std::uint8_t>> load_secret(const std::filesystem::path& path) {
+  const std::string make =
+      fmt::format("make one by: (umask 077; head -c 32 /dev/urandom | base64 > {})", path.string());
+  const Result<std::vector<unsigned char>> read = read_file_bytes(path);
+  if (!read) {
+    return Error{fmt::format("--gateway-secret {}; {}", read.error().text, make)};
+  }
+  const std::string text(read.value().begin(), read.value().end());
+  std::error_code none;
+  const auto others = std::filesystem::perms::group_all | std::filesystem::perms::others_all;
+  if ((std::filesystem::status(path, none).permissions() & others) !=
+      std::filesystem::perms::none) {
+    return Error{fmt::format(
+        "--gateway-secret {}: others than its owner can read or write it; mend it by: chmod 600 {}",
+        path.string(), path.string())};
+  }
+  constexpr std::string_view kWhite = " \t\r\n";
+  const std::size_t first = std::min(text.find_first_not_of(kWhite), text.size());
+  const std::size_t last = text.find_last_not_of(kWhite) + 1;  // 0 of nothing
+  const std::string_view secret =
+      std::string_view(text).substr(first, last - std::min(first, last));
+  if (secret.size() < kShortestSecret) {
+    return Error{fmt::format("--gateway-secret {}: {} bytes, expected {} or more; {}",
+                             path.string(), secret.size(), kShortestSecret, make)};
+  }
+  return std::vector<std::uint8_t>(secret.begin(), secret.end());
+}
+
+Result<GatewayOptions> gateway_options(const DeviceChoice& choice, const std::string& gateway) {
+  Result<GatewayOptions> options = gateway_of(gateway);
+  if (!options) {
+    return options;
+  }
+  if (!choice.gateway_address.empty()) {
+    if (!options.value().socket.empty()) {
+      return Error{
+          fmt::format("--gateway-address {}: a Unix socket has no address; give "
+                      "--device gateway:PORT",
+                      choice.gateway_address)};
+    }
+    options.value().address = choice.gateway_address;
+  }
+  if (!choice.gateway_secret.empty()) {
+    Result<std::vector<std::uint8_t>> secret = load_secret(choice.gateway_secret);
+    if (!secret) {
+      return secret.error();
+    }
+    options.value().secret = std::move(secret).value();
+  }
+  return options;
 }
 
 Result<std::uint32_t> kinds_of(const std::string& what) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "device/device_loop.hpp"
+#include "device/gateway/gateway.hpp"
 #include "ecs/result.hpp"
 #include "systems/hold/handle_side.hpp"
 
@@ -22,8 +23,10 @@ struct DeviceChoice {
   double wheel_torque = 0.0;              // N m, of a wheel's full scale; 0: not known
   double wheel_range = 900.0;             // degrees, of a wheel from lock to lock
   bool wheel_reversed = false;
-  TurnButtons turn_buttons;             // of a device that senses no turn
-  ToolHold hold = ToolHold::kMassless;  // a mouse's too
+  std::string gateway_address;           // where other machines reach it; empty: they do not
+  std::filesystem::path gateway_secret;  // the file; empty: none
+  TurnButtons turn_buttons;              // of a device that senses no turn
+  ToolHold hold = ToolHold::kMassless;   // a mouse's too
   HandleSafety safety;
   // s: without a result of the physics, then the force falls
   double longest_silence = GuardLimits{}.longest_silence;
@@ -38,6 +41,13 @@ struct GatewayChoice {
   std::uint32_t knobs = 0;  // bits of DeviceKind; 0: none
 };
 Result<GatewayChoice> gateway_choice(const std::string& what);
+
+/// The gateway of a choice, with its address and its secret. Error: what is wrong with any of them.
+Result<GatewayOptions> gateway_options(const DeviceChoice& choice, const std::string& gateway);
+
+/// What a file that only its owner can read has, without the white space around it.
+/// Error: it cannot be read, others can read it, or it is shorter than a secret.
+Result<std::vector<std::uint8_t>> load_secret(const std::filesystem::path& path);
 
 /// How the devices of a choice are driven. @param firmware  of a Falcon, has to outlive them
 LoopOptions loop_of(const DeviceChoice& choice, std::uint32_t kinds,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string_view>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "app/live/measured_traits.hpp"
@@ -87,7 +88,7 @@ Result<std::unique_ptr<DeviceLink>> DeviceLink::open_gateway(const DeviceChoice&
   if (!what) {
     return what.error();
   }
-  Result<GatewayOptions> options = gateway_of(what.value().gateway);
+  Result<GatewayOptions> options = gateway_options(choice, what.value().gateway);
   if (!options) {
     return options.error();
   }
@@ -119,6 +120,12 @@ Result<std::unique_ptr<DeviceLink>> DeviceLink::open_gateway(const DeviceChoice&
 Result<std::unique_ptr<DeviceLink>> DeviceLink::open(const DeviceChoice& choice, const Pose& tool) {
   if (choice.what.starts_with(kGateway)) {
     return open_gateway(choice, tool);
+  }
+  if (!choice.gateway_address.empty() || !choice.gateway_secret.empty()) {
+    return Error{
+        fmt::format("--device {}: --gateway-address and --gateway-secret are for "
+                    "--device gateway",
+                    choice.what)};
   }
   const Result<std::uint32_t> kinds = kinds_of(choice.what);
   if (!kinds) {

@@ -1,11 +1,13 @@
 #include "device/gateway/datagram_socket.hpp"
 
+#include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
+#include <memory>
 
-#include <arpa/inet.h>
 #include <fmt/format.h>
-#include <netinet/in.h>
+#include <netdb.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 
@@ -16,16 +18,22 @@ Error unusable_socket(const std::string& where) {
                            std::strerror(errno))};  // NOLINT(concurrency-mt-unsafe): at start
 }
 
-Result<Descriptor> open_udp(std::uint16_t port) {
-  Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);  // nobody else can reach it
-  if (socket.number() < 0 ||
-      ::bind(socket.number(), reinterpret_cast<const sockaddr*>(&address),  // NOLINT
-             sizeof address) != 0) {
-    return unusable_socket(fmt::format("gateway:{}", port));
+Result<Descriptor> open_udp(const std::string& address, std::uint16_t port) {
+  addrinfo wanted{};
+  wanted.ai_family = AF_UNSPEC;
+  wanted.ai_socktype = SOCK_DGRAM;
+  wanted.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV | AI_PASSIVE;
+  addrinfo* found = nullptr;
+  if (::getaddrinfo(address.c_str(), std::to_string(port).c_str(), &wanted, &found) != 0) {
+    return Error{
+        fmt::format("--gateway-address {}: expected an address of this machine in numbers, "
+                    "as ip addr lists them, or 0.0.0.0 for all of them",
+                    address)};
+  }
+  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, ::freeaddrinfo);
+  Descriptor socket(::socket(found->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (socket.number() < 0 || ::bind(socket.number(), found->ai_addr, found->ai_addrlen) != 0) {
+    return unusable_socket(fmt::format("gateway:{}, {}", port, address));
   }
   return socket;
 }
@@ -54,11 +62,18 @@ Result<Descriptor> open_unix(const std::filesystem::path& path) {
 }
 
 std::uint16_t port_of(const Descriptor& socket) {
-  sockaddr_in bound{};
-  socklen_t length = sizeof bound;
-  const int failed = ::getsockname(socket.number(), reinterpret_cast<sockaddr*>(&bound),  // NOLINT
-                                   &length);
-  return failed == 0 && bound.sin_family == AF_INET ? ntohs(bound.sin_port) : std::uint16_t{0};
+  Address bound;
+  bound.length = sizeof bound.storage;
+  if (::getsockname(socket.number(), reinterpret_cast<sockaddr*>(&bound.storage),  // NOLINT
+                    &bound.length) != 0) {
+    return 0;
+  }
+  std::array<char, NI_MAXSERV> port{};
+  if (::getnameinfo(bound.get(), bound.length, nullptr, 0, port.data(), port.size(),
+                    NI_NUMERICSERV | NI_DGRAM) != 0) {
+    return 0;
+  }
+  return static_cast<std::uint16_t>(std::strtoul(port.data(), nullptr, 10));
 }
 
 }  // namespace torsion::engine

@@ -50,8 +50,10 @@ struct Address {
 /// @param where  as the command line says it
 Error unusable_socket(const std::string& where);
 
-/// Takes packets to this port of 127.0.0.1, which no other machine reaches. 0: any free one.
-Result<Descriptor> open_udp(std::uint16_t port);
+/// Takes packets to this port. 0: any free one.
+/// @param address  of this machine, as numbers: "127.0.0.1" or "::1", which no other one reaches;
+///                 "0.0.0.0" or "::" is every one that it has
+Result<Descriptor> open_udp(const std::string& address, std::uint16_t port);
 
 /// Takes packets to this path, only the user's. What a run that was killed left there goes.
 Result<Descriptor> open_unix(const std::filesystem::path& path);

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "device/device_loop.hpp"
+#include "device/gateway/authentication.hpp"
 #include "device/gateway/datagram_socket.hpp"
 #include "device/steady_clock.hpp"
 
@@ -24,6 +25,12 @@ namespace {
 
 constexpr std::string_view kWord = "gateway";
 constexpr int kMostAtOnce = 64;  // packets that are read before one is answered
+
+using Datagram = std::array<std::uint8_t, kGatewaySampleSize + kGatewayTagSize + 1>;
+
+bool is_loopback(const std::string& address) {
+  return address == kLoopback || address == "::1";
+}
 
 }  // namespace
 
@@ -62,6 +69,8 @@ struct Gateway::State {
   std::uint16_t port = 0;
   std::thread thread;
 
+  GatewayNonce nonce = draw_nonce();  // another one for each client, and after each silence
+
   Address client;  // who has the tool
   std::uint32_t session = 0;
   std::uint32_t sequence = 0;
@@ -84,19 +93,68 @@ struct Gateway::State {
   }
   void run();
   void take_packets();
+  std::optional<GatewaySample> read(Bytes came, const Address& from);
+  void challenge(const GatewaySample& who, const Address& from) const;
+  void wrong_secret();
   void begin(const GatewaySample& came);
   bool belongs(const GatewaySample& came, const Address& from);
   void take(const GatewaySample& came);
   void fall_silent();
   void send(const Address& to, const GatewayAnswer& answer) const;
+  void send_bytes(const Address& to, Bytes packet, const GatewayNonce& over) const;
   [[nodiscard]] bool wait() const;
 };
 
-void Gateway::State::send(const Address& to, const GatewayAnswer& answer) const {
-  const GatewayAnswerBytes bytes = encode_gateway_answer(answer);
+/// @param over  the nonce of its tag, where there is a secret
+void Gateway::State::send_bytes(const Address& to, Bytes packet, const GatewayNonce& over) const {
+  std::array<std::uint8_t, kGatewayAnswerSize + kGatewayTagSize> bytes{};
+  auto* end = std::ranges::copy(packet, bytes.begin()).out;
+  if (!options.secret.empty()) {
+    end = std::ranges::copy(authentication_tag(options.secret, over, packet), end).out;
+  }
   // A client that is gone, or whose queue is full, hears nothing, and lets go by itself.
-  (void)::sendto(socket.number(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL, to.get(),
-                 to.length);
+  (void)::sendto(socket.number(), bytes.data(), static_cast<std::size_t>(end - bytes.begin()),
+                 MSG_DONTWAIT | MSG_NOSIGNAL, to.get(), to.length);
+}
+
+void Gateway::State::send(const Address& to, const GatewayAnswer& answer) const {
+  send_bytes(to, encode_gateway_answer(answer), nonce);
+}
+
+/// Tells a client that has the secret what number it shall make its tags over. It is shorter than
+/// what was sent: nobody is flooded by it whose address a stranger gave as his own.
+void Gateway::State::challenge(const GatewaySample& who, const Address& from) const {
+  send_bytes(from, encode_gateway_challenge({who.session, who.sequence, nonce}), nonce);
+}
+
+/// Who has the tool has the secret: a stranger does not disturb it.
+void Gateway::State::wrong_secret() {
+  if (!live()) {
+    DriverCall now = call(steady_now());
+    set_state(now, DeviceState::kStarting, DeviceTrouble::kWrongSecret);
+  }
+}
+
+/// The sample in a packet that may hold the tool; nothing, and it is counted or answered, of
+/// another.
+std::optional<GatewaySample> Gateway::State::read(Bytes came, const Address& from) {
+  const bool has_tag = came.size() == kGatewaySampleSize + kGatewayTagSize;
+  const bool wants_tag = !options.secret.empty();
+  const auto sample = decode_gateway_sample(came.first(std::min(came.size(), kGatewaySampleSize)));
+  if (!sample || (!has_tag && came.size() != kGatewaySampleSize)) {
+    garbage.fetch_add(1, std::memory_order_relaxed);
+    return std::nullopt;
+  }
+  if (has_tag == wants_tag && (!wants_tag || is_authentic(options.secret, nonce, came))) {
+    return sample;
+  }
+  if (has_tag && wants_tag && is_authentic(options.secret, kNoNonce, came)) {
+    challenge(*sample, from);
+    return std::nullopt;
+  }
+  wrong_secret();
+  garbage.fetch_add(1, std::memory_order_relaxed);
+  return std::nullopt;
 }
 
 /// A client has the tool from here on.
@@ -141,7 +199,7 @@ bool Gateway::State::belongs(const GatewaySample& came, const Address& from) {
 void Gateway::State::take_packets() {
   std::optional<GatewaySample> newest;
   for (int i = 0; i < kMostAtOnce; ++i) {
-    std::array<std::uint8_t, kGatewaySampleSize + 1> bytes{};
+    Datagram bytes{};
     Address from;
     from.length = sizeof from.storage;
     const ssize_t size =
@@ -150,18 +208,17 @@ void Gateway::State::take_packets() {
     if (size < 0) {
       break;
     }
-    const auto came = decode_gateway_sample(Bytes(bytes).first(static_cast<std::size_t>(size)));
-    if (!came) {
-      garbage.fetch_add(1, std::memory_order_relaxed);
-      continue;
-    }
-    if (belongs(*came, from)) {
+    const auto came = read(Bytes(bytes).first(static_cast<std::size_t>(size)), from);
+    if (came && belongs(*came, from)) {
       stale.fetch_add(newest ? 1U : 0U, std::memory_order_relaxed);
       newest = came;
     }
   }
   if (newest) {
     take(*newest);
+  } else if (!live() && report.sample.garbage != garbage.load(std::memory_order_relaxed)) {
+    report.sample.garbage = garbage.load(std::memory_order_relaxed);
+    (void)sink.samples.on_sample(sink.samples.context, report.sample);
   }
 }
 
@@ -196,6 +253,7 @@ void Gateway::State::fall_silent() {
   answer.time = now.now;
   answer.state = GatewayState::kSilent;
   send(client, answer);
+  nonce = draw_nonce();  // after a silence any number is new: not so of what was recorded before
   silences.fetch_add(1, std::memory_order_relaxed);
 }
 
@@ -231,8 +289,15 @@ void Gateway::State::run() {
 Gateway::Gateway(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 Result<std::unique_ptr<Gateway>> Gateway::start(GatewayOptions options, GatewaySink sink) {
+  if (options.socket.empty() && !is_loopback(options.address) &&
+      options.secret.size() < kShortestSecret) {
+    return Error{
+        fmt::format("--gateway-address {}: other machines may hold the tool only with a "
+                    "secret; give --gateway-secret FILE, too",
+                    options.address)};
+  }
   Result<Descriptor> socket =
-      options.socket.empty() ? open_udp(options.port) : open_unix(options.socket);
+      options.socket.empty() ? open_udp(options.address, options.port) : open_unix(options.socket);
   if (!socket) {
     return socket.error();
   }

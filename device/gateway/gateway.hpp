@@ -1,12 +1,15 @@
 #pragma once
 
-// A socket on this machine through which another program holds the tool with a device of its own.
+// A socket through which another program, of this machine or of one that has the gateway's secret,
+// holds the tool with a device of its own.
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "device/drivers/driver.hpp"
 #include "device/protocols/gateway.hpp"
@@ -15,14 +18,21 @@
 namespace torsion::engine {
 
 inline constexpr std::uint16_t kGatewayPort = 7747;
+inline constexpr std::string_view kLoopback = "127.0.0.1";  // no other machine reaches it
+
+/// A secret is not shorter: 128 bits are not guessed.
+inline constexpr std::size_t kShortestSecret = 16;
 
 /// s: a client that says nothing for as long is gone, and its force with it. One that says it sends
 /// less often than that is waited for two and a half of its periods.
 inline constexpr double kGatewaySilence = 5e-3;
 
 struct GatewayOptions {
-  std::uint16_t port = kGatewayPort;  // UDP on 127.0.0.1; 0: any free one
-  std::filesystem::path socket;       // not empty: a Unix datagram socket in place of UDP
+  std::string address = std::string(kLoopback);  // of this machine, where UDP is taken
+  std::uint16_t port = kGatewayPort;             // 0: any free one
+  std::filesystem::path socket;  // not empty: a Unix datagram socket in place of UDP
+  /// Not empty: packets are followed by a tag that only who has this can make.
+  std::vector<std::uint8_t> secret;
   std::function<void()> on_start;  // in the gateway's thread, before it does anything; may be empty
 };
 
@@ -38,7 +48,7 @@ struct GatewaySink {
 
 struct GatewayCounts {
   std::uint64_t samples = 0;
-  std::uint64_t garbage = 0;   // packets that were none
+  std::uint64_t garbage = 0;   // packets that were none, or of who has not the secret
   std::uint64_t stale = 0;     // older than one before, doubled, or overtaken before it was read
   std::uint64_t refused = 0;   // of another client while one has the tool
   std::uint64_t silences = 0;  // times that a client fell silent
@@ -46,7 +56,8 @@ struct GatewayCounts {
 
 class Gateway {
  public:
-  /// Starts the thread. Error: the address is in use, or the socket cannot be made there.
+  /// Starts the thread. Error: the address is in use, or the socket cannot be made there; other
+  /// machines reach it and there is no secret.
   static Result<std::unique_ptr<Gateway>> start(GatewayOptions options, GatewaySink sink);
 
   /// Tells the client that there is no force any more, and ends the thread.

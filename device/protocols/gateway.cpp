@@ -14,6 +14,7 @@ static_assert(std::endian::native == std::endian::little, "packets are copied as
 
 constexpr std::uint16_t kSampleKind = 1;
 constexpr std::uint16_t kAnswerKind = 2;
+constexpr std::uint16_t kChallengeKind = 3;
 
 /// Puts values one after another.
 class Writer {
@@ -204,6 +205,29 @@ std::optional<GatewayAnswer> decode_gateway_answer(Bytes bytes) {
   answer.wrench.torque = reader.take_vector();
   answer.tool = reader.take_pose();
   return answer;
+}
+
+GatewayChallengeBytes encode_gateway_challenge(const GatewayChallenge& challenge) {
+  GatewayChallengeBytes bytes{};
+  Writer writer(bytes);
+  put_head(writer, kChallengeKind, challenge.session, challenge.sequence);
+  writer.put(challenge.nonce);
+  return bytes;
+}
+
+std::optional<GatewayChallenge> decode_gateway_challenge(Bytes bytes) {
+  if (bytes.size() != kGatewayChallengeSize) {
+    return std::nullopt;
+  }
+  Reader reader(bytes);
+  if (!has_head(reader, kChallengeKind)) {
+    return std::nullopt;
+  }
+  GatewayChallenge challenge;
+  challenge.session = reader.take<std::uint32_t>();
+  challenge.sequence = reader.take<std::uint32_t>();
+  challenge.nonce = reader.take<GatewayNonce>();
+  return challenge;
 }
 
 }  // namespace torsion::engine

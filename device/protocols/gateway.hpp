@@ -16,6 +16,7 @@ inline constexpr std::uint32_t kGatewayMagic = 0x47524F54;  // "TORG"
 inline constexpr std::uint16_t kGatewayVersion = 1;
 inline constexpr std::size_t kGatewaySampleSize = 240;
 inline constexpr std::size_t kGatewayAnswerSize = 136;
+inline constexpr std::size_t kGatewayChallengeSize = 32;
 
 /// What the client says of its device at one moment.
 struct GatewaySample {
@@ -53,8 +54,19 @@ struct GatewayAnswer {
   std::uint32_t faults = 0;  // of the physics, bits
 };
 
+/// A number that is used once.
+using GatewayNonce = std::array<std::uint8_t, 16>;
+
+/// What a client is told that does not know the nonce yet. It sends its sample again, with that.
+struct GatewayChallenge {
+  std::uint32_t session = 0;
+  std::uint32_t sequence = 0;  // of the sample that it answers
+  GatewayNonce nonce{};
+};
+
 using GatewaySampleBytes = std::array<std::uint8_t, kGatewaySampleSize>;
 using GatewayAnswerBytes = std::array<std::uint8_t, kGatewayAnswerSize>;
+using GatewayChallengeBytes = std::array<std::uint8_t, kGatewayChallengeSize>;
 
 GatewaySampleBytes encode_gateway_sample(const GatewaySample& sample);
 
@@ -67,5 +79,10 @@ GatewayAnswerBytes encode_gateway_answer(const GatewayAnswer& answer);
 
 /// @return nothing for what is no answer of this version
 std::optional<GatewayAnswer> decode_gateway_answer(Bytes bytes);
+
+GatewayChallengeBytes encode_gateway_challenge(const GatewayChallenge& challenge);
+
+/// @return nothing for what is no challenge of this version
+std::optional<GatewayChallenge> decode_gateway_challenge(Bytes bytes);
 
 }  // namespace torsion::engine

@@ -1,13 +1,16 @@
 // Torsion's gateway in C#, for Unity and others: docs/gateway.md. One file, no library. In Unity add it to the project, make
 // a Gateway once, and call Exchange from a thread of your own at the device's rate, not from Update().
 //
-//   mcs TorsionGateway.cs && mono TorsionGateway.exe 7747       plays a hand of numbers, as torsion_gateway.py does
+//   mcs TorsionGateway.cs && mono TorsionGateway.exe [PORT [HOST SECRET_FILE]]   plays a hand of numbers, as torsion_gateway.py does
 //
 // Torsion's axes are right-handed, +y up, +z towards the user; Unity's are left-handed, +z away: FromUnity and ToUnity.
 using System;
 using System.Diagnostics;
 using System.IO;
+using System.Net;
 using System.Net.Sockets;
+using System.Security.Cryptography;
+using System.Text;
 using System.Threading;
 
 namespace Torsion {
@@ -34,24 +37,32 @@ public struct Answer {
 
 public sealed class Gateway : IDisposable {
   const uint Magic = 0x47524F54;
-  const int AnswerSize = 136;
-  readonly Socket socket = new Socket(AddressFamily.InterNetwork, SocketType.Dgram, ProtocolType.Udp);
+  const int SampleSize = 240, AnswerSize = 136, ChallengeSize = 32, HeadSize = 16, NonceSize = 16, TagSize = 16;
+  const double Patience = 5e-3;  // s: then there is no force any more
+  readonly Socket socket;
   readonly uint session = (uint)Guid.NewGuid().GetHashCode();
-  readonly byte[] sample = new byte[240];
+  readonly byte[] sample = new byte[NonceSize + SampleSize + TagSize];  // a packet stands behind the nonce of its tag
   readonly byte[] came = new byte[512];
   readonly Stopwatch clock = Stopwatch.StartNew();
+  readonly HMACSHA256 keyed;  // null: Torsion is on this machine and has no secret
   uint sequence;
 
   public Axes Sensed = Axes.Translation | Axes.Rotation;
   public Axes Actuated = Axes.Translation | Axes.Rotation;
   public Traits Traits = new Traits { Period = 1e-3 };
+  public double RoundTrip { get; private set; }  // s: from a sample to its answer, in the mean
 
-  public Gateway(int port = 7747) {
+  /// host: in numbers, of another machine only with a secret. secretFile: a copy of what Torsion was given as
+  /// --gateway-secret.
+  public Gateway(int port = 7747, string host = "127.0.0.1", string secretFile = null) {
     if (!BitConverter.IsLittleEndian) {
       throw new PlatformNotSupportedException("packets have the least significant byte first");
     }
-    socket.Connect("127.0.0.1", port);
-    socket.ReceiveTimeout = 5;  // ms: then there is no force any more
+    if (secretFile != null) { keyed = new HMACSHA256(Encoding.UTF8.GetBytes(File.ReadAllText(secretFile).Trim())); }
+    var address = IPAddress.Parse(host);
+    socket = new Socket(address.AddressFamily, SocketType.Dgram, ProtocolType.Udp);
+    socket.Connect(new IPEndPoint(address, port));
+    socket.ReceiveTimeout = (int)(1e3 * Patience);
   }
 
   public void Dispose() { socket.Close(); }
@@ -60,13 +71,44 @@ public sealed class Gateway : IDisposable {
   /// Silent, where none came within 5 ms.
   public Answer Exchange(double[] position, double[] rotation, uint buttons = 0) {
     ++sequence;
-    var writer = new BinaryWriter(new MemoryStream(sample));
+    var asked = clock.Elapsed.TotalSeconds;
+    Write(asked, position, rotation, buttons);
+    try {
+      Send();
+      while (clock.Elapsed.TotalSeconds < asked + Patience) {
+        var size = Receive();
+        var reader = new BinaryReader(new MemoryStream(came, 0, Math.Max(size, 0)));
+        if (size < HeadSize || reader.ReadUInt32() != Magic || reader.ReadUInt16() != 1) { continue; }
+        var kind = reader.ReadUInt16();
+        if (reader.ReadUInt32() != session || reader.ReadUInt32() != sequence) { continue; }  // of an older sample
+        var trip = clock.Elapsed.TotalSeconds - asked;
+        RoundTrip += (RoundTrip > 0 ? 0.01 : 1.0) * (trip - RoundTrip);
+        if (kind == 2 && size == AnswerSize) {
+          return new Answer { State = (State)reader.ReadUInt32(), Faults = reader.ReadUInt32(), Time = reader.ReadDouble(),
+                              Force = Numbers(reader, 3), Torque = Numbers(reader, 3), ToolPosition = Numbers(reader, 3),
+                              ToolRotation = Numbers(reader, 4) };
+        }
+        if (kind == 3 && keyed != null) {  // a challenge: once more, over its number
+          Array.Copy(came, HeadSize, sample, 0, NonceSize);
+          Write(asked, position, rotation, buttons);
+          Send();
+        }
+      }
+    } catch (SocketException) {  // nobody is there, or nothing came in time
+    }
+    Array.Clear(sample, 0, NonceSize);  // Torsion may have drawn another: it says so again
+    return new Answer { State = State.Silent, Force = new double[3], Torque = new double[3], ToolPosition = new double[3],
+                        ToolRotation = new double[] { 0, 0, 0, 1 } };
+  }
+
+  void Write(double asked, double[] position, double[] rotation, uint buttons) {
+    var writer = new BinaryWriter(new MemoryStream(sample, NonceSize, SampleSize));
     writer.Write(Magic);
     writer.Write((ushort)1);
     writer.Write((ushort)1);
     writer.Write(session);
     writer.Write(sequence);
-    writer.Write(clock.Elapsed.TotalSeconds);
+    writer.Write(asked);
     foreach (var number in position) { writer.Write(number); }
     foreach (var number in rotation) { writer.Write(number); }
     for (int i = 0; i < 6; ++i) { writer.Write(0.0); }  // speeds: not known
@@ -75,25 +117,33 @@ public sealed class Gateway : IDisposable {
     writer.Write((uint)Actuated);
     writer.Write(0u);
     foreach (var trait in new[] { Traits.Damping, Traits.TurnDamping, Traits.Mass, Traits.Inertia, Traits.EncoderStep,
-                                  Traits.EncoderTurnStep, Traits.Period, Traits.Delay, Traits.LargestForce,
+                                  Traits.EncoderTurnStep, Traits.Period, Traits.Delay + RoundTrip, Traits.LargestForce,
                                   Traits.LargestTorque, Traits.LargestStiffness, Traits.LargestTurnStiffness }) {
       writer.Write(trait);
     }
-    try {
-      socket.Send(sample);
-      while (socket.Receive(came) == AnswerSize) {
-        var reader = new BinaryReader(new MemoryStream(came));
-        var head = reader.ReadUInt32() == Magic && reader.ReadUInt16() == 1 && reader.ReadUInt16() == 2;
-        if (head && reader.ReadUInt32() == session && reader.ReadUInt32() == sequence) {
-          return new Answer { State = (State)reader.ReadUInt32(), Faults = reader.ReadUInt32(), Time = reader.ReadDouble(),
-                              Force = Numbers(reader, 3), Torque = Numbers(reader, 3), ToolPosition = Numbers(reader, 3),
-                              ToolRotation = Numbers(reader, 4) };
-        }
-      }
-    } catch (SocketException) {  // nobody is there, or nothing came in time
+  }
+
+  void Send() {
+    if (keyed != null) {
+      Array.Copy(keyed.ComputeHash(sample, 0, NonceSize + SampleSize), 0, sample, NonceSize + SampleSize, TagSize);
     }
-    return new Answer { State = State.Silent, Force = new double[3], Torque = new double[3], ToolPosition = new double[3],
-                        ToolRotation = new double[] { 0, 0, 0, 1 } };
+    socket.Send(sample, NonceSize, SampleSize + (keyed != null ? TagSize : 0), SocketFlags.None);
+  }
+
+  /// The size of the next packet without its tag; -1 of one that is not Torsion's.
+  int Receive() {
+    var size = socket.Receive(came);
+    if (keyed == null) { return size; }
+    size -= TagSize;
+    if (size != AnswerSize && size != ChallengeSize) { return -1; }
+    var tagged = new byte[NonceSize + size];
+    var ofChallenge = size == ChallengeSize;
+    Array.Copy(ofChallenge ? came : sample, ofChallenge ? HeadSize : 0, tagged, 0, NonceSize);
+    Array.Copy(came, 0, tagged, NonceSize, size);
+    var tag = keyed.ComputeHash(tagged);
+    int wrong = 0;
+    for (int i = 0; i < TagSize; ++i) { wrong |= tag[i] ^ came[size + i]; }
+    return wrong == 0 ? size : -1;
   }
 
   static double[] Numbers(BinaryReader reader, int count) {
@@ -115,7 +165,7 @@ static class Program {
 
   static void Main(string[] words) {
     var port = words.Length > 0 ? int.Parse(words[0]) : 7747;
-    using (var gateway = new Gateway(port)) {
+    using (var gateway = words.Length == 3 ? new Gateway(port, words[1], words[2]) : new Gateway(port)) {
       gateway.Traits = new Traits { Damping = 1.0, TurnDamping = 1e-3, Mass = 0.1, Period = 1e-3, LargestForce = 8.0,
                                     LargestTorque = 0.3 };
       var begun = Stopwatch.StartNew();

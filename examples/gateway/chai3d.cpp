@@ -1,7 +1,7 @@
 /* Whatever CHAI3D drives (its custom devices, too), for Torsion:
  *
- *   c++ -O2 chai3d.cpp -o chai3d_client $(pkg-config --cflags --libs chai3d)   (or the include path
- * and library of your build) torsion view scenes/ball_on_cube_soft.gltf --device gateway &
+ *   c++ -O2 chai3d.cpp -o chai3d_client $(pkg-config --cflags --libs chai3d)
+ *   torsion view scenes/ball_on_cube_soft.gltf --device gateway &
  *   ./chai3d_client
  *
  * Its axes: x towards the user, y to the right, z up. Compiled here against a stub only: it was not
@@ -43,7 +43,7 @@ void to_quaternion(const chai3d::cMatrix3d& matrix, double* q) {
 
 }  // namespace
 
-int main() {
+int main(int count, char** words) {
   chai3d::cHapticDeviceHandler handler;
   chai3d::cGenericHapticDevicePtr device;
   if (!handler.getDevice(device, 0) || !device->open()) {
@@ -52,8 +52,7 @@ int main() {
   }
   device->calibrate();
   torsion_gateway gateway;
-  if (torsion_gateway_open(&gateway, 7747) != 0) {
-    std::perror("gateway");
+  if (torsion_gateway_open(&gateway, count, words) != 0) {
     device->close();
     return 1;
   }

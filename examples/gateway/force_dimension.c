@@ -39,7 +39,7 @@ static void to_quaternion(const double m[3][3], double *q) {
   q[3] = cos(0.5 * angle);
 }
 
-int main(void) {
+int main(int count, char **words) {
   struct torsion_gateway gateway;
   struct torsion_sample sample;
   struct torsion_answer answer;
@@ -48,8 +48,7 @@ int main(void) {
     fprintf(stderr, "No device: %s\n", dhdErrorGetLastStr());
     return 1;
   }
-  if (torsion_gateway_open(&gateway, 7747) != 0) {
-    perror("gateway");
+  if (torsion_gateway_open(&gateway, count, words) != 0) {
     dhdClose(-1);
     return 1;
   }

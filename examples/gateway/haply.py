@@ -41,7 +41,8 @@ def grip_turn(state):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
-    parser.add_argument("--gateway", default="7747", help="port, or path of a Unix socket")
+    parser.add_argument("--gateway", default="7747", help="port, path of a Unix socket, or HOST:PORT")
+    parser.add_argument("--secret", help="a copy of what torsion was given as --gateway-secret")
     parser.add_argument("--service", default="ws://localhost:10001")
     parser.add_argument("--seconds", type=float, default=float("inf"))
     words = parser.parse_args()
@@ -50,7 +51,7 @@ def main():
     device = state["inverse3"][0]["device_id"]
     home = to_torsion(state["inverse3"][0]["state"]["cursor_position"])  # where it is now is the middle
     turns = grip_turn(state) is not None
-    gateway = Gateway(int(words.gateway) if words.gateway.isdigit() else words.gateway,
+    gateway = Gateway(words.gateway, secret=words.secret,
                       sensed=TRANSLATION | (ROTATION if turns else 0), actuated=TRANSLATION, traits=TRAITS)
     end = time.monotonic() + words.seconds
     most, late = 0.0, 0

@@ -29,9 +29,10 @@ def to_ros(v):
 class Torsion(Node):
     def __init__(self):
         super().__init__("torsion_gateway")
-        self.declare_parameter("port", 7747)
+        self.declare_parameter("address", "7747")  # or HOST:PORT, with a secret
+        self.declare_parameter("secret", "")
         self.declare_parameter("frame", "torsion")
-        self.gateway = Gateway(self.get_parameter("port").value)
+        self.gateway = Gateway(self.get_parameter("address").value, secret=self.get_parameter("secret").value or None)
         self.frame = self.get_parameter("frame").value
         self.wrench = self.create_publisher(WrenchStamped, "wrench", qos_profile_sensor_data)
         self.tool = self.create_publisher(PoseStamped, "tool", qos_profile_sensor_data)

@@ -10,9 +10,10 @@ torque that come back; none where `answer.force` is zero, and none where nothing
 
 import argparse
 import collections
+import hmac
 import math
 import os
-import random
+import secrets
 import socket
 import struct
 import tempfile
@@ -20,48 +21,90 @@ import time
 
 SAMPLE = struct.Struct("<IHHIId 3d4d 3d 3d IIII 12d")  # docs/gateway.md
 ANSWER = struct.Struct("<IHHIIII d 3d 3d 3d4d")
-MAGIC, VERSION = 0x47524F54, 1
+HEAD = struct.Struct("<IHHII")
+MAGIC, VERSION, SAMPLE_KIND, ANSWER_KIND = 0x47524F54, 1, 1, 2
+CHALLENGE_SIZE, TAG, NO_NONCE = 32, 16, bytes(16)
+PATIENCE = 0.005  # s: then there is no force any more
 TRANSLATION, ROTATION, TURN = 1, 2, 4  # axes that a device senses or pushes on: sums of these
 STATES = ("waiting", "rising", "live", "falling", "silent", "refused", "checking", "off")
 Answer = collections.namedtuple("Answer", "sequence state faults time force torque tool_position tool_rotation")
 # damping, turn damping, mass, inertia, encoder step, encoder turn step, period, delay, largest force, largest torque,
 # largest stiffness, largest turn stiffness: N, m, kg, s, rad. 0: not known, and Torsion is cautious.
+DELAY = 7
 TRAITS = (1.0, 1e-3, 0.1, 1e-5, 5e-5, 1e-3, 1e-3, 0.0, 8.0, 0.3, 2000.0, 2.0)
 
 
 class Gateway:
-    """address: a port of this machine, or the path of a Unix socket."""
+    """address: a port of this machine, the path of a Unix socket, or "HOST:PORT" of another machine. secret: a copy of the
+    file that Torsion was given as --gateway-secret; without one Torsion is on this machine and has none."""
 
-    def __init__(self, address=7747, sensed=TRANSLATION | ROTATION, actuated=TRANSLATION | ROTATION, traits=TRAITS):
+    def __init__(self, address=7747, sensed=TRANSLATION | ROTATION, actuated=TRANSLATION | ROTATION, traits=TRAITS,
+                 secret=None):
         self.own = None
-        if isinstance(address, int):
-            self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-            self.socket.connect(("127.0.0.1", address))
+        if isinstance(address, int) or "/" not in address:
+            host, _, port = str(address).rpartition(":")
+            family, _, _, _, to = socket.getaddrinfo(host.strip("[]") or "127.0.0.1", port, type=socket.SOCK_DGRAM)[0]
+            self.socket = socket.socket(family, socket.SOCK_DGRAM)
+            self.socket.connect(to)
         else:
             self.own = os.path.join(tempfile.mkdtemp(), "client")
             self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
             self.socket.bind(self.own)
             self.socket.connect(address)
-        self.socket.settimeout(0.005)  # s: then there is no force any more
-        self.session, self.sequence = random.getrandbits(32), 0
-        self.sensed, self.actuated, self.traits = sensed, actuated, traits
+        self.socket.settimeout(PATIENCE)
+        self.session, self.sequence = secrets.randbits(32), 0
+        self.sensed, self.actuated, self.traits = sensed, actuated, list(traits)
+        self.secret, self.nonce = None, NO_NONCE
+        if secret is not None:
+            with open(secret, "rb") as file:
+                self.secret = file.read().strip()
+        self.round_trip = 0.0  # s: from a sample to its answer, in the mean
+
+    def tag(self, packet, nonce):
+        """What only who has the secret can make."""
+        return hmac.digest(self.secret, nonce + packet, "sha256")[:TAG] if self.secret else b""
+
+    def receive(self):
+        """The next packet that is Torsion's, without its tag."""
+        while True:
+            came = self.socket.recv(512)
+            packet = came[:-TAG] if self.secret else came
+            nonce = packet[HEAD.size:] if len(packet) == CHALLENGE_SIZE else self.nonce
+            if hmac.compare_digest(self.tag(packet, nonce), came[len(packet):]):
+                return packet
 
     def exchange(self, position, rotation=(0.0, 0.0, 0.0, 1.0), velocity=(0.0,) * 3, turn_rate=(0.0,) * 3, buttons=0):
         """Tells where the handle is: m, from the middle of its workspace, +y up, +z towards the user; rotation x, y, z, w.
         Returns the answer, or None where none came in time: then display no force."""
         self.sequence = (self.sequence + 1) & 0xFFFFFFFF
-        packet = SAMPLE.pack(MAGIC, VERSION, 1, self.session, self.sequence, time.monotonic(), *position, *rotation,
-                             *velocity, *turn_rate, buttons, self.sensed, self.actuated, 0, *self.traits)
+        asked = time.monotonic()
+        head = (MAGIC, VERSION, self.session, self.sequence)
         try:
-            self.socket.send(packet)
-            while True:
-                answer = ANSWER.unpack(self.socket.recv(ANSWER.size))
-                head, (state, faults, at), numbers = answer[:5], answer[5:8], answer[8:]
-                if head[:4] == (MAGIC, VERSION, 2, self.session) and head[4] == self.sequence:
-                    return Answer(head[4], STATES[state], faults, at, numbers[0:3], numbers[3:6], numbers[6:9],
-                                  numbers[9:13])
+            self.send(asked, position, rotation, velocity, turn_rate, buttons)
+            while time.monotonic() < asked + PATIENCE:
+                packet = self.receive()
+                magic, version, kind, *whose = HEAD.unpack_from(packet)
+                if (magic, version, *whose) != head:
+                    continue  # of an older sample
+                trip = time.monotonic() - asked
+                self.round_trip += (0.01 if self.round_trip else 1.0) * (trip - self.round_trip)
+                if kind == ANSWER_KIND:
+                    state, faults, at, *numbers = ANSWER.unpack(packet)[5:]
+                    return Answer(self.sequence, STATES[state], faults, at, tuple(numbers[0:3]), tuple(numbers[3:6]),
+                                  tuple(numbers[6:9]), tuple(numbers[9:13]))
+                self.nonce = packet[HEAD.size:]  # a challenge: once more, over its number
+                self.send(asked, position, rotation, velocity, turn_rate, buttons)
         except (socket.timeout, ConnectionRefusedError, struct.error):
-            return None
+            pass
+        self.nonce = NO_NONCE  # Torsion may have drawn another: it says so again
+        return None
+
+    def send(self, asked, position, rotation, velocity, turn_rate, buttons):
+        traits = [*self.traits]
+        traits[DELAY] += self.round_trip
+        packet = SAMPLE.pack(MAGIC, VERSION, SAMPLE_KIND, self.session, self.sequence, asked, *position, *rotation,
+                             *velocity, *turn_rate, buttons, self.sensed, self.actuated, 0, *traits)
+        self.socket.send(packet + self.tag(packet, self.nonce))
 
     def close(self):
         self.socket.close()
@@ -72,12 +115,13 @@ class Gateway:
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
-    parser.add_argument("address", nargs="?", default="7747", help="port, or path of a Unix socket")
+    parser.add_argument("address", nargs="?", default="7747", help="port, path of a Unix socket, or HOST:PORT")
+    parser.add_argument("--secret", help="a copy of what torsion was given as --gateway-secret")
     parser.add_argument("--seconds", type=float, default=4.0, help="after the tool is held")
     parser.add_argument("--press", type=float, default=0.004, help="m below where the tool is at first")
     parser.add_argument("--turn", type=float, default=40.0, help="degrees")
     words = parser.parse_args()
-    gateway = Gateway(int(words.address) if words.address.isdigit() else words.address)
+    gateway = Gateway(words.address, secret=words.secret)
     begun = due = time.monotonic()
     held_at, most, most_torque, lost, answer = None, 0.0, 0.0, 0, None
     while (now := time.monotonic()) - begun < 60.0 and (held_at is None or now - held_at < words.seconds):

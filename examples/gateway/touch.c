@@ -71,17 +71,14 @@ static HDCallbackCode HDCALLBACK servo(void *unused) {
   return HD_CALLBACK_CONTINUE;
 }
 
-int main(void) {
+int main(int count, char **words) {
   const HHD device = hdInitDevice(HD_DEFAULT_DEVICE);
   HDErrorInfo error = hdGetError();
   if (HD_DEVICE_ERROR(error)) {
     fprintf(stderr, "No device: is it plugged in, and set up by Touch Setup?\n");
     return 1;
   }
-  if (torsion_gateway_open(&gateway, 7747) != 0) {
-    perror("gateway");
-    return 1;
-  }
+  if (torsion_gateway_open(&gateway, count, words) != 0) return 1;
   hdEnable(HD_FORCE_OUTPUT);
   hdScheduleAsynchronous(servo, NULL, HD_MAX_SCHEDULER_PRIORITY);
   hdStartScheduler();

@@ -21,8 +21,8 @@ checks=(--no-sign-check)
 # session NAME ADDRESS COMMAND...: runs the program with a client, which says what it felt to NAME.txt
 session() {
   local name=$1 address=$2
-  "$torsion" simulate "$scene" --realtime --seconds 1000 --device "gateway:$address" "${checks[@]}" --record "$folder/$name.rec" --json \
-    > "$folder/$name.json" 2> "$folder/$name.err" &
+  "$torsion" simulate "$scene" --realtime --seconds 1000 --device "gateway:$address" "${checks[@]}" "${network[@]}" \
+    --record "$folder/$name.rec" --json > "$folder/$name.json" 2> "$folder/$name.err" &
   local program=$!
   sleep 1
   "${@:3}" < /dev/null > "$folder/$name.txt" || fail "$name: $(cat "$folder/$name.txt" "$folder/$name.err")"
@@ -35,6 +35,14 @@ session() {
     fail "$name: the replay is another run"
 }
 
+# As another machine does it: through an address that others reach, with a secret.
+(umask 077; head -c 32 /dev/urandom | base64 > "$folder/secret")
+printf 'other secrets are of no use here\n' > "$folder/wrong"
+own=$(hostname -I | cut -d ' ' -f 1)
+own=${own:-127.0.0.1}
+over_network() { local network=(--gateway-address 0.0.0.0 --gateway-secret "$folder/secret"); session "$@"; }
+network=()
+
 checks=()  # but it comes to an end there, too
 session python "$folder/socket" python3 "$source/examples/gateway/torsion_gateway.py" "$folder/socket" --seconds 3.5
 [[ $(json "$folder/python.json" '["device"]["signs"]') == "not seen" ]] || fail "python: what was seen of its signs"
@@ -44,11 +52,28 @@ read -r _ _ _ force _ _ _ _ torque _ < "$folder/python.txt"
 is_between 0.02 "$force" 0.5 || fail "force $force"
 is_between 1e-5 "$torque" 0.1 || fail "torque $torque"
 
+# Who has another secret, or none, is told nothing, and the user is told of him.
+strangers() {
+  local words
+  sleep 1
+  for words in "--secret $folder/wrong" ""; do
+    # shellcheck disable=SC2086  # two words, or none
+    timeout 1 python3 "$source/examples/gateway/torsion_gateway.py" "$own:7747" $words && return 1
+  done
+  true
+}
+"$torsion" simulate "$scene" --realtime --seconds 4 --device gateway --gateway-address 0.0.0.0 --gateway-secret "$folder/secret" --json \
+  > "$folder/strangers.json" 2> "$folder/strangers.err" &
+strangers || fail "a stranger's session came to an end"
+wait %% || fail "strangers: $(cat "$folder/strangers.err")"
+[[ $(json "$folder/strangers.json" '["device"]["state"]') == *"another secret"* ]] || fail "strangers: not said"
+[[ $(json "$folder/strangers.json" '["device"]["garbage"]') -gt 10 ]] || fail "strangers: not counted"
+
 cxx=(c++ -std=c++17 -O1 -Wall -Wextra -Werror -I"$source/examples/gateway" -I"$source/tests/gateway_stubs")
-"${cxx[@]}" -o "$folder/chai3d" "$source/examples/gateway/chai3d.cpp"
+"${cxx[@]}" -DTORSION_GATEWAY_NETWORK -o "$folder/chai3d" "$source/examples/gateway/chai3d.cpp" -lsodium
 "${cxx[@]}" -o "$folder/rotations" "$source/tests/gateway_stubs/chai3d_rotations_test.cpp"
 "$folder/rotations" || fail "chai3d: turns are wrong"
-session chai3d 7747 "$folder/chai3d"
+over_network chai3d 7747 "$folder/chai3d" "$own" 7747 "$folder/secret"
 
 # Up is y for HDAPI and z for DHD: a wrong axis or sign is seen here.
 for client in touch:hd:2 force_dimension:dhd:3; do
@@ -68,13 +93,13 @@ for client in touch:hd:2 force_dimension:dhd:3; do
   done
 done
 mcs -warnaserror -out:"$folder/client.exe" "$source/examples/gateway/TorsionGateway.cs"
-session c_sharp 7747 mono "$folder/client.exe" 7747
+over_network c_sharp 7747 mono "$folder/client.exe" 7747 "$own" "$folder/secret"
 # Up is z for ROS and for Haply.
 PYTHONPATH=$source/tests/gateway_stubs/ros session ros 7747 /usr/bin/python3 "$source/examples/gateway/ros2_node.py"
 /usr/bin/python3 "$source/tests/gateway_stubs/haply_service.py" 10011 > "$folder/service.txt" 2>&1 &
 service=$!
 until grep -q ready "$folder/service.txt"; do sleep 0.1; done
-session haply 7747 /usr/bin/python3 "$source/examples/gateway/haply.py" --service ws://127.0.0.1:10011 --seconds 3.5
+over_network haply 7747 /usr/bin/python3 "$source/examples/gateway/haply.py" --gateway "$own:7747" --secret "$folder/secret" --service ws://127.0.0.1:10011 --seconds 3.5
 wait "$service" || fail "haply: $(cat "$folder/service.txt")"
 grep -q sideways "$folder/service.txt" && fail "haply: $(cat "$folder/service.txt")"
 cp "$folder/service.txt" "$folder/haply.txt"

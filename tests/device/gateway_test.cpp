@@ -4,43 +4,25 @@
 #include "device/gateway/gateway.hpp"
 
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <limits>
-#include <optional>
 #include <random>
 #include <thread>
 
-#include <arpa/inet.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
+
+#include "tests/device/gateway_client.hpp"
 
 namespace torsion::engine {
 namespace {
 
-GatewaySample good_sample() {
-  GatewaySample sample;
-  sample.session = 7;
-  sample.sequence = 1;
-  sample.time = 1.5;
-  sample.pose = {{0.01, 0.02, -0.03}, glm::normalize(glm::dquat(0.9, 0.1, 0.2, -0.3))};
-  sample.velocity = {0.1, 0.0, -0.2};
-  sample.turn_rate = {0.0, 1.0, 0.0};
-  sample.buttons = 5;
-  sample.sensed = kTranslationAxes | kRotationAxes;
-  sample.actuated = kTranslationAxes;
-  sample.traits.damping = 2.0;
-  sample.traits.mass = 0.1;
-  sample.traits.period = 1e-3;
-  sample.traits.largest_force = 3.3;
-  sample.traits.largest_turn_stiffness = 12.0;
-  return sample;
-}
+using test::any_port;
+using test::GatewayClient;
+using test::GatewayListener;
+using test::good_sample;
+using test::start;
 
 TEST(GatewayPacketTest, WhatIsEncodedIsDecoded) {
   const GatewaySample sent = good_sample();
@@ -134,112 +116,11 @@ TEST(GatewayPacketTest, NothingElseIsTakenForASample) {
   }
 }
 
-/// What the gateway's thread tells, for the test's.
-struct Listener {
-  std::atomic<std::uint64_t> calls{0};
-  std::atomic<std::uint32_t> epoch{0};
-  std::atomic<int> state{0};
-  std::atomic<double> x{0.0};
-  std::atomic<double> period{0.0};
-
-  static Wrench on_sample(void* context, const DeviceSample& sample) {
-    auto& self = *static_cast<Listener*>(context);
-    self.epoch = sample.epoch;
-    self.state = static_cast<int>(sample.state);
-    self.x = sample.pose.position.x;
-    self.period = sample.traits.period;
-    ++self.calls;
-    return {{0.0, -2.0, 0.0}, glm::dvec3(0.0)};  // also where nobody should get it
-  }
-  static void describe(void* /*context*/, GatewayAnswer& answer) {
-    answer.state = GatewayState::kLive;
-  }
-  GatewaySink sink() { return {{this, on_sample}, describe}; }
-};
-
-/// A client on its own socket.
-class Client {
- public:
-  explicit Client(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_port = htons(port);
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    EXPECT_EQ(::connect(socket_, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
-    wait_no_longer_than_a_minute();
-  }
-  Client(const std::string& server, const std::string& own)
-      : socket_(::socket(AF_UNIX, SOCK_DGRAM, 0)) {
-    const auto address = [](const std::string& path) {
-      sockaddr_un made{};
-      made.sun_family = AF_UNIX;
-      std::strcpy(made.sun_path, path.c_str());
-      return made;
-    };
-    const sockaddr_un mine = address(own);
-    const sockaddr_un to = address(server);
-    EXPECT_EQ(::bind(socket_, reinterpret_cast<const sockaddr*>(&mine), sizeof mine), 0);
-    EXPECT_EQ(::connect(socket_, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
-    wait_no_longer_than_a_minute();
-  }
-  ~Client() { ::close(socket_); }
-  Client(const Client&) = delete;
-  Client& operator=(const Client&) = delete;
-  Client(Client&&) = delete;
-  Client& operator=(Client&&) = delete;
-
-  void send_bytes(Bytes bytes) const {
-    EXPECT_EQ(::send(socket_, bytes.data(), bytes.size(), 0), static_cast<ssize_t>(bytes.size()));
-  }
-  void send(std::uint32_t session, std::uint32_t sequence, double x = 0.0) const {
-    GatewaySample sample = good_sample();
-    sample.session = session;
-    sample.sequence = sequence;
-    sample.pose.position.x = x;
-    send_bytes(encode_gateway_sample(sample));
-  }
-  [[nodiscard]] std::optional<GatewayAnswer> receive() const {
-    std::array<std::uint8_t, 512> bytes{};
-    const ssize_t size = ::recv(socket_, bytes.data(), bytes.size(), 0);
-    return size < 0 ? std::nullopt
-                    : decode_gateway_answer(Bytes(bytes).first(static_cast<std::size_t>(size)));
-  }
-  /// The next answer in this state, past others.
-  [[nodiscard]] std::optional<GatewayAnswer> receive(GatewayState state) const {
-    for (int i = 0; i < 1000; ++i) {
-      const auto answer = receive();
-      if (!answer || answer->state == state) {
-        return answer;
-      }
-    }
-    return std::nullopt;
-  }
-
- private:
-  void wait_no_longer_than_a_minute() const {
-    const timeval minute{60, 0};
-    ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &minute, sizeof minute);
-  }
-  int socket_;
-};
-
-std::unique_ptr<Gateway> start(Listener& listener, GatewayOptions options) {
-  auto gateway = Gateway::start(std::move(options), listener.sink());
-  EXPECT_TRUE(gateway.ok()) << gateway.error().text;
-  return gateway.ok() ? std::move(gateway).value() : nullptr;
-}
-
-GatewayOptions any_port() {
-  GatewayOptions options;
-  options.port = 0;
-  return options;
-}
-
 TEST(GatewayTest, ASampleIsAnsweredAndSilenceEndsTheForce) {
-  Listener listener;
+  GatewayListener listener;
   const auto gateway = start(listener, any_port());
   ASSERT_TRUE(gateway);
-  const Client client(gateway->port());
+  const GatewayClient client(gateway->port());
   client.send(7, 1, 0.25);
   const auto answer = client.receive();
   ASSERT_TRUE(answer);
@@ -265,10 +146,10 @@ TEST(GatewayTest, ASampleIsAnsweredAndSilenceEndsTheForce) {
 }
 
 TEST(GatewayTest, OldAndDoubledSamplesAndNoiseAreLeftOut) {
-  Listener listener;
+  GatewayListener listener;
   const auto gateway = start(listener, any_port());
   ASSERT_TRUE(gateway);
-  const Client client(gateway->port());
+  const GatewayClient client(gateway->port());
   client.send_bytes(std::array<std::uint8_t, 3>{1, 2, 3});
   client.send_bytes(std::array<std::uint8_t, 400>{});
   // Past the largest number and round; each is sent until it is the one that was answered.
@@ -295,11 +176,11 @@ TEST(GatewayTest, OldAndDoubledSamplesAndNoiseAreLeftOut) {
 }
 
 TEST(GatewayTest, OneClientHasTheToolUntilItIsSilent) {
-  Listener listener;
+  GatewayListener listener;
   const auto gateway = start(listener, any_port());
   ASSERT_TRUE(gateway);
-  const Client first(gateway->port());
-  const Client second(gateway->port());
+  const GatewayClient first(gateway->port());
+  const GatewayClient second(gateway->port());
   // While the first talks, the second is refused; on a busy machine the first may fall silent
   // between, and then the second gets the tool: so often that it is seen.
   bool refused = false;
@@ -330,7 +211,7 @@ TEST(GatewayTest, AUnixSocketDoesTheSameAndIsOnlyTheUsers) {
   char folder[] = "/tmp/torsion_gateway_XXXXXX";
   ASSERT_NE(::mkdtemp(folder), nullptr);
   const std::string path = std::string(folder) + "/server";
-  Listener listener;
+  GatewayListener listener;
   {
     GatewayOptions options;
     options.socket = path;
@@ -338,7 +219,7 @@ TEST(GatewayTest, AUnixSocketDoesTheSameAndIsOnlyTheUsers) {
     ASSERT_TRUE(gateway);
     EXPECT_EQ(std::filesystem::status(path).permissions() & std::filesystem::perms::mask,
               std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
-    const Client client(path, std::string(folder) + "/client");
+    const GatewayClient client(path, std::string(folder) + "/client");
     client.send(7, 1);
     const auto answer = client.receive();
     ASSERT_TRUE(answer);
@@ -349,10 +230,10 @@ TEST(GatewayTest, AUnixSocketDoesTheSameAndIsOnlyTheUsers) {
 }
 
 TEST(GatewayTest, AnEndTellsTheClientThatThereIsNoForce) {
-  Listener listener;
+  GatewayListener listener;
   auto gateway = start(listener, any_port());
   ASSERT_TRUE(gateway);
-  const Client client(gateway->port());
+  const GatewayClient client(gateway->port());
   client.send(7, 1);
   ASSERT_TRUE(client.receive(GatewayState::kLive));
   gateway.reset();
@@ -371,7 +252,7 @@ TEST(GatewayTest, AddressesThatAreNoneAreSaid) {
     ASSERT_FALSE(options.ok()) << wrong;
     EXPECT_NE(options.error().text.find("expected gateway"), std::string::npos);
   }
-  Listener listener;
+  GatewayListener listener;
   const auto gateway = start(listener, any_port());
   ASSERT_TRUE(gateway);
   GatewayOptions same;

@@ -9,6 +9,9 @@
 #include "app/simulate_loop.hpp"
 #include "app/summary.hpp"
 #include "app/trace_columns.hpp"
+#ifdef TORSION_WITH_RENDER
+#include "app/run_page/page_file.hpp"
+#endif
 
 namespace torsion::engine {
 namespace {
@@ -18,6 +21,7 @@ struct SimulateOptions {
   std::string trace;
   std::string columns = "usual";  // of the trace
   std::string regions;
+  std::string html;
   std::string record;
   std::string replay;
   double seconds = -1.0;  // s; negative: to the end of the longest animation
@@ -52,7 +56,93 @@ std::uint64_t steps_of_run(const SimulateOptions& options, const Session& sessio
   return options.seconds < 0.0 ? recorded : std::min(recorded, steps_in(session, seconds));
 }
 
-/// Runs, and finishes what is written.
+/// What a run writes; each is there where the command line asks for it.
+struct Outputs {
+  std::optional<TraceWriter> trace;
+  std::optional<RegionTrace> regions;
+  std::optional<RecordingWriter> record;
+#ifdef TORSION_WITH_RENDER
+  std::optional<PageFile> page;
+#endif
+};
+
+template <class T>
+Result<Done> keep(Result<T> created, std::optional<T>& kept) {
+  if (!created) {
+    return created.error();
+  }
+  kept = std::move(created).value();
+  return Done{};
+}
+
+/// Opened before the run, so that a place that cannot be written is known at once.
+Result<Done> open_outputs(const SimulateOptions& options, const Session& session,
+                          [[maybe_unused]] std::uint64_t steps, Outputs& outputs) {
+  Result<Done> done = Done{};
+  if (!options.trace.empty()) {
+    Result<std::vector<TraceColumn>> columns = read_trace_columns(options.columns);
+    done = columns ? keep(TraceWriter::create(options.trace, tool_names(session.scene),
+                                              std::move(columns).value()),
+                          outputs.trace)
+                   : Error{"--columns: " + columns.error().text};
+  }
+  if (done && !options.regions.empty()) {
+    done = keep(RegionTrace::create(options.regions), outputs.regions);
+  }
+  if (done && !options.record.empty()) {
+    done = keep(RecordingWriter::create(options.record,
+                                        begin_recording(session, options.scene.prepare_options())),
+                outputs.record);
+  }
+#ifdef TORSION_WITH_RENDER
+  if (done && !options.html.empty()) {
+    done = keep(PageFile::create(options.html, session, steps), outputs.page);
+  }
+#endif
+  return done;
+}
+
+RunFiles files_of(Outputs& outputs) {
+  RunFiles files;
+  files.trace = outputs.trace ? &*outputs.trace : nullptr;
+  files.regions = outputs.regions ? &*outputs.regions : nullptr;
+  files.record = outputs.record ? &*outputs.record : nullptr;
+#ifdef TORSION_WITH_RENDER
+  if (outputs.page) {
+    files.watch = [&page = *outputs.page](const Session& now, std::uint64_t step) {
+      page.watch(now, step);
+    };
+  }
+#endif
+  return files;
+}
+
+/// Finishes what was written. A recording that has a problem does not keep the rest from it.
+Result<Done> finish(const SimulateOptions& options, [[maybe_unused]] const Session& session,
+                    Outputs& outputs, RunFacts& facts) {
+  Result<Done> done = Done{};
+  if (outputs.trace) {
+    done = outputs.trace->finish();
+    facts.trace = options.trace;
+  }
+  if (done && outputs.regions) {
+    done = outputs.regions->finish();
+  }
+#ifdef TORSION_WITH_RENDER
+  if (done && outputs.page) {
+    done = outputs.page->finish(session);
+    facts.page = options.html;
+  }
+#endif
+  if (done && outputs.record) {
+    const Result<Done> recorded = outputs.record->finish();
+    (recorded ? facts.recording : facts.problem) =
+        recorded ? options.record : recorded.error().text;
+  }
+  return done;
+}
+
+/// On the clock or as fast as it goes.
 Result<RunStatistics> run(const SimulateOptions& options, Session& session, std::uint64_t steps,
                           const RunFiles& files, RunFacts& facts) {
   RunStatistics statistics;
@@ -84,22 +174,6 @@ Result<RunStatistics> run(const SimulateOptions& options, Session& session, std:
                              statistics.lost_rows > 0 ? options.trace : options.record,
                              statistics.lost_rows + statistics.lost_inputs)};
   }
-  if (files.trace != nullptr) {
-    const Result<Done> done = files.trace->finish();
-    if (!done) {
-      return done.error();
-    }
-    facts.trace = options.trace;
-  }
-  if (files.regions != nullptr) {
-    if (const Result<Done> done = files.regions->finish(); !done) {
-      return done.error();
-    }
-  }
-  if (files.record != nullptr) {
-    const Result<Done> done = files.record->finish();
-    (done ? facts.recording : facts.problem) = done ? options.record : done.error().text;
-  }
   return statistics;
 }
 
@@ -119,48 +193,23 @@ int simulate(const SimulateOptions& options) {
     return fail(opened.error().text);
   }
   Session& session = opened.value();
-  std::optional<TraceWriter> trace;
-  if (!options.trace.empty()) {
-    Result<std::vector<TraceColumn>> columns = read_trace_columns(options.columns);
-    if (!columns) {
-      return fail("--columns: " + columns.error().text);
-    }
-    Result<TraceWriter> created =
-        TraceWriter::create(options.trace, tool_names(session.scene), std::move(columns).value());
-    if (!created) {
-      return fail(created.error().text);
-    }
-    trace = std::move(created).value();
-  }
-  std::optional<RegionTrace> regions;
-  if (!options.regions.empty()) {
-    Result<RegionTrace> created = RegionTrace::create(options.regions);
-    if (!created) {
-      return fail(created.error().text);
-    }
-    regions = std::move(created).value();
-  }
-  std::optional<RecordingWriter> record;
-  if (!options.record.empty()) {
-    Result<RecordingWriter> created = RecordingWriter::create(
-        options.record, begin_recording(session, options.scene.prepare_options()));
-    if (!created) {
-      return fail(created.error().text);
-    }
-    record = std::move(created).value();
-  }
   Replay replay{replayed ? &*replayed : nullptr, 0};
-  const RunFiles files{&interrupt,
-                       trace ? &*trace : nullptr,
-                       regions ? &*regions : nullptr,
-                       record ? &*record : nullptr,
-                       replayed ? &replay : nullptr,
-                       options.quiet || options.json};
-  RunFacts facts;
   const std::uint64_t steps = steps_of_run(options, session, replay.recording);
+  Outputs outputs;
+  if (const Result<Done> done = open_outputs(options, session, steps, outputs); !done) {
+    return fail(done.error().text);
+  }
+  RunFiles files = files_of(outputs);
+  files.interrupt = &interrupt;
+  files.replay = replayed ? &replay : nullptr;
+  files.quiet = options.quiet || options.json;
+  RunFacts facts;
   const Result<RunStatistics> ran = run(options, session, steps, files, facts);
   if (!ran) {
     return fail(ran.error().text);
+  }
+  if (const Result<Done> done = finish(options, session, outputs, facts); !done) {
+    return fail(done.error().text);
   }
   facts.steps_left = steps - std::min(steps, ran.value().steps);
   if (options.json) {
@@ -190,10 +239,17 @@ void add_simulate(CLI::App& app, Command& command) {
   CLI::Option* regions = subcommand->add_option(
       "--regions", options->regions,
       "CSV or HDF5 (.h5) file to write, one row for each contact region in each step");
+#ifdef TORSION_WITH_RENDER
+  CLI::Option* html = subcommand->add_option(
+      "--html", options->html, "A page to write that plays the run in a browser, in 3D");
+#endif
   subcommand->add_option("--seconds", options->seconds, "How long; else the animation's length")
       ->check(CLI::Range(0.0, 1e6));
   CLI::Option* realtime = subcommand->add_flag("--realtime", options->realtime,
                                                "Run on the clock, not as fast as it goes");
+#ifdef TORSION_WITH_RENDER
+  html->excludes(realtime);
+#endif
   regions->excludes(realtime);  // as many rows as there are regions: record, then replay
   CLI::Option* record = subcommand->add_option(
       "--record", options->record, "File to write with everything that goes into the run");

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
+
 #include "app/live/device_link.hpp"
 #include "app/live/interrupt.hpp"
 #include "app/live/realtime_mode.hpp"
@@ -18,6 +21,8 @@ struct RunFiles {
   TraceWriter* trace = nullptr;
   RegionTrace* regions = nullptr;  // not on the clock
   RecordingWriter* record = nullptr;
+  /// Who looks at the session after each step, by its number; may be empty. Not on the clock.
+  std::function<void(const Session& session, std::uint64_t step)> watch;
   Replay* replay = nullptr;  // where poses come from instead of the scene's animations
   bool quiet = false;
 };

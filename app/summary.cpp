@@ -112,6 +112,9 @@ std::string summary_text(const Session& session, const RunStatistics& statistics
   if (!facts.recording.empty()) {
     text += fmt::format("recorded {}\n", facts.recording);
   }
+  if (!facts.page.empty()) {
+    text += fmt::format("page     {}\n", facts.page);
+  }
   const std::uint32_t faults = world.state.clock.faults_ever;
   return faults == 0
              ? text
@@ -170,6 +173,9 @@ std::string summary_json(const Session& session, const RunStatistics& statistics
   }
   if (!facts.recording.empty()) {
     json["recording"] = facts.recording;
+  }
+  if (!facts.page.empty()) {
+    json["page"] = facts.page;
   }
   return json.dump(2) + "\n";
 }

@@ -15,6 +15,7 @@ namespace torsion::engine {
 struct RunFacts {
   std::string trace;                 // where the trace is; empty: there is none
   std::string recording;             // likewise
+  std::string page;                  // likewise, that plays the run
   std::string problem;               // why there is no recording though one was asked for
   std::optional<DeviceView> device;  // of what held the tool at the end
   std::uint64_t steps_left = 0;      // that a signal has kept the run from

@@ -92,5 +92,31 @@ TEST(RunPageTest, IsOfARunNotOfAMoment) {
   EXPECT_NE(ran.err.find("with --animate in .html"), std::string::npos) << ran.err;
 }
 
+// simulate's page is export's of the same moments, to the byte, and what it keeps is no part of the
+// run.
+TEST(RunPageTest, SimulateWritesThePageThatExportWrites) {
+  const Folder folder;
+  const std::string scene = write_scene(folder);
+  const test::Ran plain = run_torsion({"simulate", scene, "--json"});
+  const test::Ran paged =
+      run_torsion({"simulate", scene, "--json", "--html", folder / "simulated.html"});
+  ASSERT_EQ(paged.exit_code, 0) << paged.err;
+  const auto hash = [](const std::string& json) {
+    return json.substr(json.find("\"world_hash\""), 40);
+  };
+  EXPECT_EQ(hash(paged.out), hash(plain.out));
+  EXPECT_NE(paged.out.find("simulated.html"), std::string::npos);
+  // A second has 40 moments; its last step begins at 0.999 s.
+  const test::Ran exported = run_torsion({"export", scene, "--animate", "--fps", "40", "--seconds",
+                                          "0.975", "--out", folder / "exported.html"});
+  ASSERT_EQ(exported.exit_code, 0) << exported.err;
+  EXPECT_TRUE(read_text(folder / "simulated.html") == read_text(folder / "exported.html"));
+  const test::Ran none =
+      run_torsion({"simulate", scene, "--seconds", "0", "--html", folder / "none.html"});
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_NE(none.err.find("nothing to show"), std::string::npos) << none.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "none.html"));
+}
+
 }  // namespace
 }  // namespace torsion::engine

@@ -16,6 +16,7 @@
 #include "app/report/html_report.hpp"
 #ifdef TORSION_WITH_RENDER
 #include "app/report/scene_picture.hpp"
+#include "app/run_page/run_page.hpp"
 #endif
 
 namespace torsion::engine {
@@ -52,24 +53,30 @@ Result<std::vector<MeasuredCase>> run_all(const ReportOptions& options) {
   return cases;
 }
 
-/// A picture of each case; without one where this machine cannot draw, which it says once.
-std::vector<std::string> draw_pictures(std::span<const MeasuredCase> cases, bool quiet) {
-  std::vector<std::string> pictures(cases.size());
+/// What is seen of each case; nothing where this machine cannot draw, which it says once.
+ReportViews draw_views(std::span<const MeasuredCase> cases, bool quiet) {
+  ReportViews views;
+  views.pictures.resize(cases.size());
+  views.runs.resize(cases.size());
 #ifdef TORSION_WITH_RENDER
   Progress progress("drawing", quiet);
   for (std::size_t i = 0; i < cases.size(); ++i) {
     Result<std::string> picture = scene_picture(cases[i].reference_case);
-    if (!picture) {
-      fmt::print(stderr, "no pictures of the scenes: {}\n", picture.error().text);
+    Result<std::string> run =
+        picture ? scene_run(cases[i].reference_case) : Result<std::string>(picture.error());
+    if (!run) {
+      fmt::print(stderr, "no pictures of the scenes: {}\n", run.error().text);
       break;
     }
-    pictures[i] = std::move(picture).value();
+    views.pictures[i] = std::move(picture).value();
+    views.runs[i] = std::move(run).value();
     progress.show(static_cast<double>(i + 1) / static_cast<double>(cases.size()));
   }
+  views.run_parts = run_page_parts();
 #else
   static_cast<void>(quiet);
 #endif
-  return pictures;
+  return views;
 }
 
 int report(const ReportOptions& options) {
@@ -91,8 +98,8 @@ int report(const ReportOptions& options) {
     return fail(cases.error().text);
   }
   const Machine machine = this_machine();
-  const std::vector<std::string> pictures = draw_pictures(cases.value(), options.quiet);
-  const Result<std::string> html = html_text(cases.value(), pictures, machine);
+  const ReportViews views = draw_views(cases.value(), options.quiet);
+  const Result<std::string> html = html_text(cases.value(), views, machine);
   if (!html) {
     return fail(html.error().text);
   }

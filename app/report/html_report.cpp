@@ -10,6 +10,7 @@
 #include "app/base64.hpp"
 #include "app/html_text.hpp"
 #include "app/report/gnuplot.hpp"
+#include "app/report/html_script.hpp"
 #include "app/report/html_style.hpp"
 #include "app/report/report_plots.hpp"
 #include "ecs/model_names.hpp"
@@ -159,8 +160,19 @@ std::vector<Plot> plots_of(const MeasuredCase& measured) {
   return plots;
 }
 
+/// What opens a frame in which a case's run plays; empty without one.
+std::string run_html(const std::string& name, const std::string& run) {
+  return run.empty() ? run
+                     : fmt::format(
+                           "<details class=\"run\"><summary>The whole path in three "
+                           "dimensions: drag to turn it</summary></details>\n"
+                           "<script type=\"application/json\" id=\"run-{}\">{}</script>\n",
+                           name, run);
+}
+
 std::string case_html(const MeasuredCase& measured, const std::string& picture,
-                      std::span<const Plot> plots, std::span<const std::string> svgs) {
+                      const std::string& run, std::span<const Plot> plots,
+                      std::span<const std::string> svgs) {
   const ReferenceCase& one = measured.reference_case;
   std::string html = fmt::format(
       "<section class=\"case\" id=\"{}\">\n<h2>{}</h2>\n<div class=\"intro\"><div>\n<p>{}</p>\n"
@@ -178,7 +190,8 @@ std::string case_html(const MeasuredCase& measured, const std::string& picture,
         "program.</figcaption></figure>\n",
         base64(picture));
   }
-  html += "</div>\n" + faults_html(measured) + "<div class=\"figures\">\n";
+  html +=
+      "</div>\n" + run_html(one.name, run) + faults_html(measured) + "<div class=\"figures\">\n";
   for (std::size_t i = 0; i < plots.size(); ++i) {
     html += figure(svgs[i], plots[i].caption);
   }
@@ -210,8 +223,8 @@ std::vector<Plot> overview_plots(std::span<const MeasuredCase> cases) {
 
 }  // namespace
 
-Result<std::string> html_text(std::span<const MeasuredCase> cases,
-                              std::span<const std::string> pictures, const Machine& machine) {
+Result<std::string> html_text(std::span<const MeasuredCase> cases, const ReportViews& views,
+                              const Machine& machine) {
   // All plots are drawn by one process.
   const std::vector<Plot> overview = overview_plots(cases);
   std::vector<Plot> all = overview;
@@ -243,8 +256,13 @@ Result<std::string> html_text(std::span<const MeasuredCase> cases,
   html += "</div>\n" + overview_table(cases) + kDefinitions;
   for (std::size_t c = 0; c < cases.size(); ++c) {
     const std::size_t count = first[c + 1] - first[c];
-    html += case_html(cases[c], pictures[c], std::span(all).subspan(first[c], count),
-                      svgs.subspan(first[c], count));
+    html += case_html(cases[c], views.pictures[c], views.runs[c],
+                      std::span(all).subspan(first[c], count), svgs.subspan(first[c], count));
+  }
+  if (!views.run_parts.empty()) {
+    html += fmt::format(
+        "<script type=\"application/json\" id=\"run-parts\">{}</script>\n<script>{}</script>\n",
+        views.run_parts, kReportScript);
   }
   return html + "</body>\n</html>\n";
 }

@@ -29,6 +29,9 @@ figure svg, figure img { width: 100%; height: auto; display: block; }
 figcaption { font-size: 0.85rem; color: #333; margin-top: 0.2rem; }
 .intro { display: grid; grid-template-columns: 3fr 2fr; gap: 1.5rem; align-items: start; }
 .intro p:first-child { margin-top: 0; }
+details.run { margin: 0.8rem 0; }
+summary { cursor: pointer; }
+iframe { width: 100%; height: 32rem; border: 1px solid #999; margin-top: 0.5rem; }
 @media screen and (max-width: 50rem) { .figures, .intro { grid-template-columns: 1fr; } }
 @media print {
   @page { size: A4; margin: 15mm; }
@@ -41,6 +44,7 @@ figcaption { font-size: 0.85rem; color: #333; margin-top: 0.2rem; }
   table { font-size: 0.8rem; margin: 0.5rem 0; break-inside: avoid; }
   th, td { padding: 0.1rem 0.35rem; }
   .wide { overflow: visible; }
+  details.run { display: none; }
 }
 )css";
 

@@ -14,17 +14,6 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-Result<Simulation> prepare_case(const ReferenceCase& reference_case, const ModelPair& models) {
-  PrepareOptions options;
-  options.contact_model = models.contact;
-  options.body_model = models.body;
-  options.settings.grid_side = models.grid_side;
-  for (const PathPoint& point : reference_case.path) {
-    options.expected_poses.push_back({point.tool});
-  }
-  return prepare(reference_case.scene, options);
-}
-
 /// Steps to a point of the path from the one before, and calls stepped(seconds) after each step.
 template <class Stepped>
 void move_to_point(Simulation& simulation, const std::vector<PathPoint>& path, std::size_t point,
@@ -114,6 +103,21 @@ double quantile(std::vector<double>& values, double share) {
 
 }  // namespace
 
+Result<Simulation> prepare_case(const ReferenceCase& reference_case, const ModelPair& models) {
+  PrepareOptions options;
+  options.contact_model = models.contact;
+  options.body_model = models.body;
+  options.settings.grid_side = models.grid_side;
+  for (const PathPoint& point : reference_case.path) {
+    options.expected_poses.push_back({point.tool});
+  }
+  return prepare(reference_case.scene, options);
+}
+
+void move_case(Simulation& simulation, const ReferenceCase& reference_case, std::size_t point) {
+  move_to_point(simulation, reference_case.path, point, [](double) {});
+}
+
 Result<CaseRun> run_case(const ReferenceCase& reference_case, const ModelPair& models) {
   Result<Simulation> prepared = prepare_case(reference_case, models);
   if (!prepared) {
@@ -152,7 +156,7 @@ Result<Simulation> simulate_to(const ReferenceCase& reference_case, const ModelP
   Result<Simulation> prepared = prepare_case(reference_case, models);
   if (prepared) {
     for (std::size_t i = 0; i <= point; ++i) {
-      move_to_point(prepared.value(), reference_case.path, i, [](double) {});
+      move_case(prepared.value(), reference_case, i);
     }
   }
   return prepared;

@@ -25,6 +25,12 @@ struct CaseRun {
 /// the scene cannot be prepared.
 Result<CaseRun> run_case(const ReferenceCase& reference_case, const ModelPair& models);
 
+/// The simulation of a case before its path.
+Result<Simulation> prepare_case(const ReferenceCase& reference_case, const ModelPair& models);
+
+/// Drives it from the point of the path before `point` to that.
+void move_case(Simulation& simulation, const ReferenceCase& reference_case, std::size_t point);
+
 /// The simulation of a case after the point `point` of its path.
 Result<Simulation> simulate_to(const ReferenceCase& reference_case, const ModelPair& models,
                                std::size_t point);

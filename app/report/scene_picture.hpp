@@ -9,4 +9,7 @@ namespace torsion::engine {
 /// bytes. Fails where there is no device to draw on.
 Result<std::string> scene_picture(const ReferenceCase& reference_case);
 
+/// The whole path with the models of the picture, for a frame of the page: run_page_data().
+Result<std::string> scene_run(const ReferenceCase& reference_case);
+
 }  // namespace torsion::engine

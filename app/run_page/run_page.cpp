@@ -239,6 +239,17 @@ std::string in_script(const json& value) {
 
 }  // namespace
 
+std::string run_page_parts() {
+  return in_script({{"page", text_between(torsion_run_page_begin, torsion_run_page_end)},
+                    {"three", text_between(torsion_three_begin, torsion_three_end)},
+                    {"orbit", text_between(torsion_three_orbit_begin, torsion_three_orbit_end)},
+                    {"view", text_between(torsion_run_view_begin, torsion_run_view_end)}});
+}
+
+std::string run_page_data(const Session& session, const DeformedRun& run) {
+  return in_script(run_json(session, run));
+}
+
 std::string run_page(const Session& session, const DeformedRun& run) {
   const SceneDescription& scene = session.scene;
   const std::string title = scene.view.title.empty()
@@ -252,7 +263,7 @@ std::string run_page(const Session& session, const DeformedRun& run) {
        {"%CAPTION%", html_escaped(scene.view.caption)},
        {"%THREE%", script(torsion_three_begin, torsion_three_end)},
        {"%ORBIT%", script(torsion_three_orbit_begin, torsion_three_orbit_end)},
-       {"%DATA%", in_script(run_json(session, run))},
+       {"%DATA%", run_page_data(session, run)},
        {"%VIEW%", script(torsion_run_view_begin, torsion_run_view_end)}}};
   return filled(text_between(torsion_run_page_begin, torsion_run_page_end), values);
 }

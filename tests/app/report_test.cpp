@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/app/browser.hpp"
 #include "tests/app/program.hpp"
 
 namespace torsion::engine {
@@ -197,9 +198,38 @@ void expect_errors_within_bounds(const std::string& csv) {
   }
 }
 
-void expect_page_complete_and_alone(const std::string& page) {
+/// The page without what its runs are made of, which is no part of it before one is opened.
+std::string without_runs(const std::string& page) {
+  const std::string begin = "<script type=\"application/json\"";
+  const std::string end = "</script>";
+  std::string rest;
+  std::size_t from = 0;
+  for (std::size_t at = page.find(begin); at != std::string::npos; at = page.find(begin, from)) {
+    rest += page.substr(from, at - from);
+    from = page.find(end, at) + end.size();
+  }
+  return rest + page.substr(from);
+}
+
+/// Opens the first run: in a browser without a network it has to be drawn.
+void expect_run_plays(const Folder& folder, std::string page) {
+  const std::string opener =
+      "<script>const one = document.querySelector('details.run'); one.open = true; "
+      "setTimeout(() => { document.body.dataset.triangles = "
+      "one.querySelector('iframe').contentDocument.body.dataset.triangles; }, 1500);</script>";
+  page.insert(page.rfind("</body>"), opener);
+  test::write_text(folder / "opened.html", page);
+  ASSERT_EQ(test::chromium(folder, "--dump-dom", folder / "opened.html", folder / "dom"), 0);
+  const std::string dom = read_text(folder / "dom");
+  const std::size_t at = dom.rfind("data-triangles=\"");
+  ASSERT_NE(at, std::string::npos) << read_text(folder / "chromium.log");
+  EXPECT_GT(std::atoi(dom.c_str() + at + 16), 1000);
+}
+
+void expect_page_complete_and_alone(const std::string& whole) {
+  const std::string page = without_runs(whole);
   for (const char* outside :
-       {"http://", "https://", "file:", "<script", "<link", "@import", "url(h"}) {
+       {"http://", "https://", "file:", "<script ", "<link", "@import", "url(h"}) {
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
   }
   const std::string source = "src=\"";
@@ -233,6 +263,7 @@ void expect_page_complete_and_alone(const std::string& page) {
     }
     EXPECT_EQ(count_of(section, "data:image/png"), 1U) << title;
     EXPECT_GE(count_of(section, "<svg"), 2U) << title;
+    EXPECT_EQ(count_of(section, "<details class=\"run\">"), 1U) << title;
     ++sections;
   }
   EXPECT_EQ(sections, kCases);
@@ -252,7 +283,10 @@ TEST(ReportTest, QuickErrorsStayWithinTheirBoundsAndThePageNeedsNothingElse) {
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
   EXPECT_EQ(ran.out, (folder / "made/report.csv") + "\n" + (folder / "made/report.html") + "\n");
   expect_errors_within_bounds(read_text(folder / "made/report.csv"));
-  expect_page_complete_and_alone(read_text(folder / "made/report.html"));
+  const std::string page = read_text(folder / "made/report.html");
+  EXPECT_EQ(count_of(page, "id=\"run-"), 15U + 1U);
+  expect_page_complete_and_alone(page);
+  expect_run_plays(folder, page);
 }
 
 TEST(ReportTest, FolderThatCannotBeMadeIsSaid) {

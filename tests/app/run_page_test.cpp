@@ -1,11 +1,12 @@
 // The page that plays a run, in headless Chromium without a network.
 
-#include <cstdlib>
+#include <filesystem>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "render/image_io.hpp"
+#include "tests/app/browser.hpp"
 #include "tests/app/program.hpp"
 #include "tests/app/window_pictures.hpp"
 #include "tests/scenes/gltf_builder.hpp"
@@ -13,6 +14,7 @@
 namespace torsion::engine {
 namespace {
 
+using test::chromium;
 using test::Folder;
 using test::read_text;
 using test::run_torsion;
@@ -29,17 +31,6 @@ std::string write_scene(const Folder& folder) {
       {"torsion_caption", "<img src=x onerror='document.title=1'>"}};
   test::write_text(folder / "scene.gltf", builder.text());
   return folder / "scene.gltf";
-}
-
-int chromium(const Folder& folder, const std::string& words, const std::string& page,
-             const std::string& out) {
-  const std::string command =
-      "timeout 300 chromium --headless --no-sandbox --disable-gpu --use-gl=angle "
-      "--use-angle=swiftshader --enable-unsafe-swiftshader --host-resolver-rules='MAP * ~NOTFOUND' "
-      "--hide-scrollbars --window-size=640,480 --virtual-time-budget=2000 --user-data-dir=" +
-      (folder / "profile") + " " + words + " 'file://" + page + "' > " + out + " 2> " +
-      (folder / "chromium.log");
-  return std::system(command.c_str());  // NOLINT(cert-env33-c,concurrency-mt-unsafe): a browser
 }
 
 TEST(RunPageTest, PlaysInABrowserWithoutANetwork) {

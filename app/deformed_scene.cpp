@@ -46,6 +46,7 @@ std::vector<glm::vec3> deformed_normals(const WrittenMesh& mesh, const DrawMesh&
 void set_look(const DrawMesh& draw, WrittenMesh& mesh) {
   mesh.triangles = draw.triangles;
   mesh.texcoords = draw.texcoords;
+  mesh.colors = draw.colors;
   mesh.materials = draw.materials;
   mesh.triangle_materials = draw.triangle_materials;
 }

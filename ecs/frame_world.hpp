@@ -32,12 +32,12 @@ struct FrameBody {
 struct FrameWorld {
   Table<Pose, DrawRange, FrameBody> bodies;  // row = row of Model::bodies
   Table<Pose, DrawRange> tools;  // row = row of Model::tools; pose written by surface_field
-  Table<VertexRest, VertexNormal, VertexTexcoord, VertexDisplacement> body_vertices;
+  Table<VertexRest, VertexNormal, VertexPaint, VertexDisplacement> body_vertices;
   Table<TwistAngle> twist;
   Table<TwistAxis> axes;
   Table<Triangle> body_triangles;
   Table<DrawGroup> body_groups;
-  Table<VertexRest, VertexNormal, VertexTexcoord> tool_vertices;  // tool frame
+  Table<VertexRest, VertexNormal, VertexPaint> tool_vertices;  // tool frame
   Table<Triangle> tool_triangles;
   Table<DrawGroup> tool_groups;
   std::vector<DrawMaterial> materials;

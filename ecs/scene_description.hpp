@@ -30,6 +30,7 @@ struct DrawMesh {
   std::vector<glm::vec3> positions;  // m
   std::vector<glm::vec3> normals;    // unit; one for each position
   std::vector<glm::vec2> texcoords;  // of the base colour's texture; one for each position, or none
+  std::vector<glm::vec3> colors;     // linear rgb, times the material's; likewise
   std::vector<glm::uvec3> triangles;
   std::vector<bool> fixed;  // bodies only: vertices of the fixed region; one for each position
   std::vector<DrawMaterial> materials{1};         // at least one

@@ -223,17 +223,19 @@ void make_layouts(const Gpu& gpu, Pipelines& pipelines) {
                   sizeof(shared::DrawConstants));
 }
 
-/// `count` vertex buffers of one vec4 each, perhaps one more of texture coordinates: binding i is
-/// location i.
+/// `count` vertex buffers of one vec4 each: binding i is location i. Perhaps one more with
+/// VertexPaint, which has the next two locations.
 struct RowInput {
-  explicit RowInput(std::uint32_t count, bool texcoords = false) {
+  explicit RowInput(std::uint32_t count, bool paint = false) {
     for (std::uint32_t i = 0; i < count; ++i) {
       bindings.push_back({i, sizeof(shared::vec4), vk::VertexInputRate::eVertex});
       attributes.push_back({i, i, vk::Format::eR32G32B32A32Sfloat, 0});
     }
-    if (texcoords) {
-      bindings.push_back({count, sizeof(VertexTexcoord), vk::VertexInputRate::eVertex});
-      attributes.push_back({count, count, vk::Format::eR32G32Sfloat, 0});
+    if (paint) {
+      bindings.push_back({count, sizeof(VertexPaint), vk::VertexInputRate::eVertex});
+      attributes.push_back({count, count, vk::Format::eR32G32Sfloat, offsetof(VertexPaint, uv)});
+      attributes.push_back(
+          {count + 1, count, vk::Format::eR32G32B32Sfloat, offsetof(VertexPaint, color)});
     }
   }
   std::vector<vk::VertexInputBindingDescription> bindings;

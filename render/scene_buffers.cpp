@@ -86,10 +86,10 @@ Result<SceneBuffers> make_scene_buffers(const Gpu& gpu, const FrameWorld& frame,
       BufferUsage::eStorageBuffer | BufferUsage::eUniformTexelBuffer | BufferUsage::eVertexBuffer;
   vertex_columns(frame.body_vertices, both, buffers.rest, buffers.rest_normals);
   vertex_columns(frame.tool_vertices, both, buffers.tool_positions, buffers.tool_normals);
-  buffers.texcoords = make_constant_buffer(
-      gpu, std::as_bytes(frame.body_vertices.column<VertexTexcoord>()), BufferUsage::eVertexBuffer);
-  buffers.tool_texcoords = make_constant_buffer(
-      gpu, std::as_bytes(frame.tool_vertices.column<VertexTexcoord>()), BufferUsage::eVertexBuffer);
+  buffers.paint = make_constant_buffer(
+      gpu, std::as_bytes(frame.body_vertices.column<VertexPaint>()), BufferUsage::eVertexBuffer);
+  buffers.tool_paint = make_constant_buffer(
+      gpu, std::as_bytes(frame.tool_vertices.column<VertexPaint>()), BufferUsage::eVertexBuffer);
   buffers.body_indices = make_constant_buffer(
       gpu, std::as_bytes(frame.body_triangles.column<Triangle>()), BufferUsage::eIndexBuffer);
   buffers.tool_indices = make_constant_buffer(

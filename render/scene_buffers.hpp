@@ -38,8 +38,8 @@ struct SceneBuffers {
   Buffer ring_entries;    // NormalRings::entries
   Buffer tool_positions;  // VertexRest of the tools
   Buffer tool_normals;    // VertexNormal of the tools
-  Buffer texcoords;       // VertexTexcoord of the bodies
-  Buffer tool_texcoords;  // VertexTexcoord of the tools
+  Buffer paint;           // VertexPaint of the bodies
+  Buffer tool_paint;      // VertexPaint of the tools
   Buffer tool_indices;    // Triangle of the tools
   // written by the compute passes
   Buffer positions;  // vec4 for each vertex of the bodies: m, body; w what the heat map shows

@@ -65,7 +65,7 @@ void draw_bodies(const Commands& commands, const FrameInputs& inputs) {
   bind(commands, inputs.pipelines.body);
   const SceneBuffers& buffers = inputs.buffers;
   bind_vertices(commands, {*buffers.positions.handle, *buffers.normals.handle, *buffers.rest.handle,
-                           *buffers.texcoords.handle});
+                           *buffers.paint.handle});
   commands.bindIndexBuffer(*buffers.body_indices.handle, 0, vk::IndexType::eUint32);
   draw_each(
       commands, inputs, inputs.frame.bodies, inputs.frame.body_groups,
@@ -89,7 +89,7 @@ void draw_tools(const Commands& commands, const FrameInputs& inputs, bool glass)
   }
   const SceneBuffers& buffers = inputs.buffers;
   bind_vertices(commands, {*buffers.tool_positions.handle, *buffers.tool_normals.handle,
-                           *buffers.tool_texcoords.handle});
+                           *buffers.tool_paint.handle});
   commands.bindIndexBuffer(*buffers.tool_indices.handle, 0, vk::IndexType::eUint32);
   const auto draw_with = [&](const vk::raii::Pipeline& pipeline) {
     bind(commands, pipeline);

@@ -149,4 +149,25 @@ std::vector<glm::vec2> read_texcoords(const tinygltf::Model& model,
   return texcoords;
 }
 
+std::vector<glm::vec3> read_colors(const tinygltf::Model& model,
+                                   const tinygltf::Primitive& primitive) {
+  const auto attribute = primitive.attributes.find("COLOR_0");
+  if (attribute == primitive.attributes.end()) {
+    return {};
+  }
+  const int type = model.accessors[static_cast<std::size_t>(attribute->second)].type;
+  if (type != TINYGLTF_TYPE_VEC3 && type != TINYGLTF_TYPE_VEC4) {
+    return {};
+  }
+  const std::size_t components = type == TINYGLTF_TYPE_VEC3 ? 3 : 4;  // alpha: not drawn
+  const std::vector<double> numbers = read_numbers(model, attribute->second);
+  std::vector<glm::vec3> colors(numbers.size() / components);
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      colors[i][static_cast<int>(c)] = share(numbers[components * i + c]);
+    }
+  }
+  return colors;
+}
+
 }  // namespace torsion::engine

@@ -32,4 +32,8 @@ DrawMaterial read_material(const tinygltf::Model& model, const tinygltf::Primiti
 std::vector<glm::vec2> read_texcoords(const tinygltf::Model& model,
                                       const tinygltf::Primitive& primitive);
 
+/// Each vertex's COLOR_0, linear rgb; nothing where the primitive has none.
+std::vector<glm::vec3> read_colors(const tinygltf::Model& model,
+                                   const tinygltf::Primitive& primitive);
+
 }  // namespace torsion::engine

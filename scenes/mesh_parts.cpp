@@ -67,6 +67,23 @@ void append_triangles(const tinygltf::Model& model, const tinygltf::Primitive& p
   }
 }
 
+/// Appends `more` to `rows`, which stay empty as long as nobody has any.
+/// @param first  rows so far of what has one for each
+/// @param count  rows that come; as many of `more` as that, or none
+template <class Row>
+void append_or_fill(std::vector<Row>& rows, std::size_t first, std::size_t count,
+                    const std::vector<Row>& more, const Row& otherwise) {
+  const bool has_more = !more.empty() && more.size() == count;
+  if (rows.empty() && !has_more) {
+    return;
+  }
+  rows.resize(first, otherwise);
+  if (has_more) {
+    rows.insert(rows.end(), more.begin(), more.end());
+  }
+  rows.resize(first + count, otherwise);
+}
+
 /// Attributes that not every primitive has are dropped or filled up, so that rows stay parallel.
 void append_attributes(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                        const glm::dmat4& to_owner, MeshTriangles& mesh) {
@@ -86,14 +103,10 @@ void append_attributes(const tinygltf::Model& model, const tinygltf::Primitive& 
   } else {
     mesh.normals.clear();
   }
+  const std::size_t count = mesh.positions.size() - first;
   const std::vector<glm::vec2> texcoords = read_texcoords(model, primitive);
-  if (texcoords.size() == mesh.positions.size() - first) {
-    mesh.texcoords.resize(first, glm::vec2(0.0F));
-    mesh.texcoords.insert(mesh.texcoords.end(), texcoords.begin(), texcoords.end());
-  }
-  if (!mesh.texcoords.empty()) {
-    mesh.texcoords.resize(mesh.positions.size(), glm::vec2(0.0F));
-  }
+  append_or_fill(mesh.texcoords, first, count, texcoords, glm::vec2(0.0F));
+  append_or_fill(mesh.colors, first, count, read_colors(model, primitive), glm::vec3(1.0F));
   for (const auto& [name, accessor] : primitive.attributes) {
     if (is_called_fixed(name) &&
         model.accessors[static_cast<std::size_t>(accessor)].type == TINYGLTF_TYPE_SCALAR) {
@@ -177,11 +190,8 @@ void append_draw_mesh(const MeshTriangles& mesh, DrawMesh& draw) {
     draw.normals.emplace_back(normals[i]);
     draw.fixed.push_back(!mesh.fixed.empty() && mesh.fixed[i] > 0.5);
   }
-  if (!mesh.texcoords.empty() || !draw.texcoords.empty()) {
-    draw.texcoords.resize(first, glm::vec2(0.0F));
-    draw.texcoords.insert(draw.texcoords.end(), mesh.texcoords.begin(), mesh.texcoords.end());
-    draw.texcoords.resize(draw.positions.size(), glm::vec2(0.0F));
-  }
+  append_or_fill(draw.texcoords, first, mesh.positions.size(), mesh.texcoords, glm::vec2(0.0F));
+  append_or_fill(draw.colors, first, mesh.positions.size(), mesh.colors, glm::vec3(1.0F));
   for (const glm::uvec3& triangle : mesh.triangles) {
     draw.triangles.push_back(triangle + first);
   }

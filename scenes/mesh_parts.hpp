@@ -17,6 +17,7 @@ struct MeshTriangles {
   std::vector<glm::dvec3> normals;    // unit; as many as positions, or none where the file has none
   std::vector<double> fixed;          // the _FIXED attribute, as many as positions, or none
   std::vector<glm::vec2> texcoords;   // as many as positions, or none
+  std::vector<glm::vec3> colors;      // linear rgb; as many as positions, or none
   std::vector<glm::uvec3> triangles;  // counter-clockwise seen from outside
   std::vector<DrawMaterial> materials;            // one for each primitive
   std::vector<std::uint32_t> triangle_materials;  // one for each triangle

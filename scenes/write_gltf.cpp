@@ -66,6 +66,9 @@ void add_mesh(tinygltf::Model& model, MaterialWriter& materials, const WrittenMe
                                 {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2,
                                  mesh.texcoords.size(), TINYGLTF_TARGET_ARRAY_BUFFER});
   }
+  if (!mesh.colors.empty()) {
+    vertices.attributes["COLOR_0"] = add_vectors(model, mesh.colors);
+  }
   if (!mesh.rest_positions.empty()) {
     vertices.attributes["_REST_POSITION"] = add_vectors(model, mesh.rest_positions);
   }

@@ -23,6 +23,7 @@ struct WrittenMesh {
   std::vector<float> twist_angles;         // rad: attribute _TWIST_ANGLE; may be empty
   std::vector<glm::vec3> rest_positions;   // m: attribute _REST_POSITION; may be empty
   std::vector<glm::vec2> texcoords;        // as many as positions; may be empty
+  std::vector<glm::vec3> colors;           // linear rgb, likewise
   std::vector<DrawMaterial> materials{1};  // as DrawMesh has them
   std::vector<std::uint32_t> triangle_materials;
 };

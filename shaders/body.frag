@@ -16,6 +16,7 @@ layout(location = 2) in vec4 rest_position;
 layout(location = 3) in float heat;
 layout(location = 4) in vec3 in_shadow_map;
 layout(location = 5) in vec2 texcoord;
+layout(location = 6) in vec3 painted;  // linear rgb
 
 layout(location = 0) out vec4 color;
 
@@ -46,7 +47,7 @@ float material_lines() {
 }
 
 void main() {
-  vec3 base = draw.color.rgb;
+  vec3 base = draw.color.rgb * painted;
   if ((draw.rows.w & kTextured) != 0) {
     base *= texture(base_color, texcoord).rgb;
   }

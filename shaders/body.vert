@@ -9,6 +9,7 @@ layout(location = 0) in vec4 position;  // m, body; w what the heat map shows
 layout(location = 1) in vec4 normal;    // body
 layout(location = 2) in vec4 rest;      // m, body; w 1 where fixed
 layout(location = 3) in vec2 uv;
+layout(location = 4) in vec3 paint;  // linear rgb
 
 layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;
@@ -16,6 +17,7 @@ layout(location = 2) out vec4 rest_position;
 layout(location = 3) out float heat;
 layout(location = 4) out vec3 in_shadow_map;
 layout(location = 5) out vec2 texcoord;
+layout(location = 6) out vec3 painted;
 
 void main() {
   world_position = point_to_world(position.xyz);
@@ -23,6 +25,7 @@ void main() {
   rest_position = rest;
   heat = position.w;
   texcoord = uv;
+  painted = paint;
   in_shadow_map = shadow_lookup(world_position, world_normal);
   if (kQuick) {
     vec3 to_eye = normalize(frame.eye.xyz - world_position);

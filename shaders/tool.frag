@@ -12,6 +12,7 @@ layout(location = 1) in vec3 world_normal;
 layout(location = 2) in vec3 tool_position;
 layout(location = 3) in vec3 in_shadow_map;
 layout(location = 4) in vec2 texcoord;
+layout(location = 5) in vec3 painted;  // linear rgb
 
 layout(location = 0) out vec4 color;
 
@@ -45,7 +46,7 @@ float glass_cover(vec3 normal, vec3 to_eye, float mark) {
 void main() {
   vec3 normal = normalize(world_normal);
   vec3 to_eye = normalize(frame.eye.xyz - world_position);
-  vec3 base = draw.color.rgb;
+  vec3 base = draw.color.rgb * painted;
   if ((draw.rows.w & kTextured) != 0) {
     base *= texture(base_color, texcoord).rgb;
   }

@@ -69,7 +69,7 @@ struct Gateway::State {
   std::uint16_t port = 0;
   std::thread thread;
 
-  GatewayNonce nonce = draw_nonce();  // another one for each client, and after each silence
+  GatewayNonce nonce = draw_nonce();  // another one after each silence, so for each client
 
   Address client;  // who has the tool
   std::uint32_t session = 0;
@@ -101,16 +101,16 @@ struct Gateway::State {
   void take(const GatewaySample& came);
   void fall_silent();
   void send(const Address& to, const GatewayAnswer& answer) const;
-  void send_bytes(const Address& to, Bytes packet, const GatewayNonce& over) const;
+  void send_bytes(const Address& to, Bytes packet) const;
   [[nodiscard]] bool wait() const;
 };
 
-/// @param over  the nonce of its tag, where there is a secret
-void Gateway::State::send_bytes(const Address& to, Bytes packet, const GatewayNonce& over) const {
+/// With its tag, where there is a secret.
+void Gateway::State::send_bytes(const Address& to, Bytes packet) const {
   std::array<std::uint8_t, kGatewayAnswerSize + kGatewayTagSize> bytes{};
   auto* end = std::ranges::copy(packet, bytes.begin()).out;
   if (!options.secret.empty()) {
-    end = std::ranges::copy(authentication_tag(options.secret, over, packet), end).out;
+    end = std::ranges::copy(authentication_tag(options.secret, nonce, packet), end).out;
   }
   // A client that is gone, or whose queue is full, hears nothing, and lets go by itself.
   (void)::sendto(socket.number(), bytes.data(), static_cast<std::size_t>(end - bytes.begin()),
@@ -118,13 +118,13 @@ void Gateway::State::send_bytes(const Address& to, Bytes packet, const GatewayNo
 }
 
 void Gateway::State::send(const Address& to, const GatewayAnswer& answer) const {
-  send_bytes(to, encode_gateway_answer(answer), nonce);
+  send_bytes(to, encode_gateway_answer(answer));
 }
 
 /// Tells a client that has the secret what number it shall make its tags over. It is shorter than
 /// what was sent: nobody is flooded by it whose address a stranger gave as his own.
 void Gateway::State::challenge(const GatewaySample& who, const Address& from) const {
-  send_bytes(from, encode_gateway_challenge({who.session, who.sequence, nonce}), nonce);
+  send_bytes(from, encode_gateway_challenge({who.session, who.sequence, nonce}));
 }
 
 /// Who has the tool has the secret: a stranger does not disturb it.

@@ -22,8 +22,9 @@ struct VertexNormal {
 };
 
 /// Written by: load.
-struct VertexTexcoord {
-  glm::vec2 uv{0.0F};  // of the base colour's texture, (0, 0) at its top left
+struct VertexPaint {
+  glm::vec2 uv{0.0F};     // of the base colour's texture, (0, 0) at its top left
+  glm::vec3 color{0.0F};  // linear rgb, times the material's; white where the mesh has none
 };
 
 /// Written by: surface_field.

@@ -65,13 +65,11 @@ class Gateway:
         return hmac.digest(self.secret, nonce + packet, "sha256")[:TAG] if self.secret else b""
 
     def receive(self):
-        """The next packet that is Torsion's, without its tag."""
-        while True:
-            came = self.socket.recv(512)
-            packet = came[:-TAG] if self.secret else came
-            nonce = packet[HEAD.size:] if len(packet) == CHALLENGE_SIZE else self.nonce
-            if hmac.compare_digest(self.tag(packet, nonce), came[len(packet):]):
-                return packet
+        """The next packet without its tag; nothing of one that is not Torsion's."""
+        came = self.socket.recv(512)
+        packet = came[:-TAG] if self.secret else came
+        nonce = packet[HEAD.size:] if len(packet) == CHALLENGE_SIZE else self.nonce
+        return packet if hmac.compare_digest(self.tag(packet, nonce), came[len(packet):]) else b""
 
     def exchange(self, position, rotation=(0.0, 0.0, 0.0, 1.0), velocity=(0.0,) * 3, turn_rate=(0.0,) * 3, buttons=0):
         """Tells where the handle is: m, from the middle of its workspace, +y up, +z towards the user; rotation x, y, z, w.
@@ -83,6 +81,8 @@ class Gateway:
             self.send(asked, position, rotation, velocity, turn_rate, buttons)
             while time.monotonic() < asked + PATIENCE:
                 packet = self.receive()
+                if len(packet) < HEAD.size:
+                    continue
                 magic, version, kind, *whose = HEAD.unpack_from(packet)
                 if (magic, version, *whose) != head:
                     continue  # of an older sample

@@ -111,12 +111,12 @@ DrawRange append_mesh(const DrawMesh& mesh, VertexTable& vertices, Table<Triangl
   range.groups = append_groups(mesh, range.triangles, groups, materials);
   const auto rest = vertices.template rows<VertexRest>(range.vertices);
   const auto normals = vertices.template rows<VertexNormal>(range.vertices);
-  const auto texcoords = vertices.template rows<VertexTexcoord>(range.vertices);
-  std::ranges::transform(mesh.texcoords, texcoords.begin(),
-                         [](const glm::vec2& uv) { return VertexTexcoord{uv}; });
+  const auto paint = vertices.template rows<VertexPaint>(range.vertices);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const bool fixed = i < mesh.fixed.size() && mesh.fixed[i];
     rest[i].position = glm::vec4(mesh.positions[i], fixed ? 1.0F : 0.0F);
+    paint[i].uv = i < mesh.texcoords.size() ? mesh.texcoords[i] : glm::vec2(0.0F);
+    paint[i].color = i < mesh.colors.size() ? mesh.colors[i] : glm::vec3(1.0F);
     normals[i].normal =
         i < mesh.normals.size() ? glm::vec4(mesh.normals[i], 0.0F) : glm::vec4(0.0F);
   }

@@ -144,6 +144,9 @@ class Refinement {
       if (!mesh_.texcoords.empty()) {
         mesh_.texcoords.push_back(0.5F * (mesh_.texcoords[a] + mesh_.texcoords[b]));
       }
+      if (!mesh_.colors.empty()) {
+        mesh_.colors.push_back(0.5F * (mesh_.colors[a] + mesh_.colors[b]));
+      }
       if (!mesh_.fixed.empty()) {
         mesh_.fixed.push_back(mesh_.fixed[a] && mesh_.fixed[b]);
       }

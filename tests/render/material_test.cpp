@@ -71,7 +71,7 @@ TEST_F(MaterialTest, ATextureIsOnItsPlaceAndTimesTheColor) {
   frame.materials[0].color = {1.0F, 1.0F, 0.0F, 1.0F};
   for (std::uint32_t i = 0; i < frame.body_vertices.size(); ++i) {
     const glm::vec4 p = frame.body_vertices.at<VertexRest>(i).position;
-    frame.body_vertices.at<VertexTexcoord>(i).uv = {0.5F + 10.0F * p.x, 0.5F + 10.0F * p.z};
+    frame.body_vertices.at<VertexPaint>(i).uv = {0.5F + 10.0F * p.x, 0.5F + 10.0F * p.z};
   }
   const Image seen = draw(frame, above());
   const Color red = at(seen, 0.25, 0.25);
@@ -82,6 +82,28 @@ TEST_F(MaterialTest, ATextureIsOnItsPlaceAndTimesTheColor) {
   EXPECT_GT(yellow.r, 150);
   EXPECT_GT(yellow.g, 150);
   EXPECT_LT(yellow.b, 100);  // what is mirrored
+}
+
+TEST_F(MaterialTest, AVertexColorIsTimesTheMaterialsAndBetweenItsNeighbours) {
+  FrameWorld frame = slab();
+  const Image plain = draw(frame, above());
+  frame.materials[0].color = {1.0F, 1.0F, 1.0F, 1.0F};
+  const Image white = draw(frame, above());
+  // From red on the left to green on the right.
+  for (std::uint32_t i = 0; i < frame.body_vertices.size(); ++i) {
+    const float right = 0.5F + 10.0F * frame.body_vertices.at<VertexRest>(i).position.x;
+    frame.body_vertices.at<VertexPaint>(i).color = {1.0F - right, right, 0.0F};
+  }
+  const Image seen = draw(frame, above());
+  EXPECT_GT(at(seen, 0.2, 0.5).r, 2 * at(seen, 0.2, 0.5).g);
+  EXPECT_GT(at(seen, 0.8, 0.5).g, 2 * at(seen, 0.8, 0.5).r);
+  EXPECT_NEAR(at(seen, 0.5, 0.5).r, at(seen, 0.5, 0.5).g, 12);
+  EXPECT_LT(at(seen, 0.5, 0.5).r, at(white, 0.5, 0.5).r);
+  for (std::uint32_t i = 0; i < frame.body_vertices.size(); ++i) {
+    frame.body_vertices.at<VertexPaint>(i).color = glm::vec3(1.0F);
+  }
+  EXPECT_EQ(draw(frame, above()), white);
+  EXPECT_NE(plain, white);
 }
 
 TEST_F(MaterialTest, ATextureThatCannotBeReadLeavesTheColor) {

@@ -32,6 +32,7 @@ Range append_mesh(const TestMesh& mesh, Table& vertices, FrameWorld& frame, bool
   for (std::uint32_t i = 0; i < rows.count; ++i) {
     vertices.template at<VertexRest>(rows.first + i).position = glm::vec4(mesh.positions[i], 0.0F);
     vertices.template at<VertexNormal>(rows.first + i).normal = glm::vec4(mesh.normals[i], 0.0F);
+    vertices.template at<VertexPaint>(rows.first + i).color = glm::vec3(1.0F);
   }
   auto& groups = is_body ? frame.body_groups : frame.tool_groups;
   drawn.groups = *groups.append(1);

@@ -66,6 +66,36 @@ TEST(MaterialsTest, ATransformOfTheTextureMovesItsCoordinates) {
   EXPECT_NEAR(uv[2].y, 0.2, 1e-6);
 }
 
+TEST(MaterialsTest, VertexColorsAreReadAsFloatsAndAsNormalizedBytes) {
+  GltfBuilder builder = good_scene();
+  json& attributes = builder.document["meshes"][0]["primitives"][0]["attributes"];
+  std::vector<float> floats(24, 0.25F);
+  floats[3] = 1.0F;
+  attributes["COLOR_0"] = builder.add_floats(floats, "VEC3");
+  LoadedScene loaded = load_text(builder.text());
+  ASSERT_TRUE(loaded.scene.has_value()) << to_text(loaded.problems);
+  const std::vector<glm::vec3>& colors = loaded.scene->bodies[0].draw.colors;
+  ASSERT_EQ(colors.size(), loaded.scene->bodies[0].draw.positions.size());
+  EXPECT_EQ(colors[0], glm::vec3(0.25F));
+  EXPECT_EQ(colors[1], glm::vec3(1.0F, 0.25F, 0.25F));
+  EXPECT_TRUE(loaded.scene->tools[0].draw.colors.empty());
+
+  std::string bytes(32, '\x33');  // 51 of 255; alpha is not drawn
+  bytes[4] = '\xFF';
+  json& accessors = builder.document["accessors"];
+  attributes["COLOR_0"] = accessors.size();
+  accessors.push_back({{"bufferView", builder.add_view(bytes)},
+                       {"componentType", 5121},
+                       {"normalized", true},
+                       {"count", 8},
+                       {"type", "VEC4"}});
+  loaded = load_text(builder.text());
+  ASSERT_TRUE(loaded.scene.has_value()) << to_text(loaded.problems);
+  const glm::vec3& second = loaded.scene->bodies[0].draw.colors[1];
+  EXPECT_NEAR(second.r, 1.0F, 1e-6F);
+  EXPECT_NEAR(second.g, 0.2F, 1e-6F);
+}
+
 TEST(MaterialsTest, CoordinatesOfAnotherKindAreRefusedOrPassedOver) {
   GltfBuilder builder = textured_scene();
   json& primitive = builder.document["meshes"][0]["primitives"][0];

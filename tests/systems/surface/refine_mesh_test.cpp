@@ -161,6 +161,7 @@ TEST(RefineMeshTest, TextureAndMaterialsStayWhereTheyAre) {
   DrawMesh mesh = box(glm::vec3(1.0F, 0.5F, 2.0F));
   for (const glm::vec3& p : mesh.positions) {
     mesh.texcoords.emplace_back(p.x + 2.0F * p.y, 3.0F * p.z);
+    mesh.colors.emplace_back(p.x, p.y, 2.0F * p.z);
   }
   mesh.materials.resize(3);
   for (std::uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
@@ -175,6 +176,7 @@ TEST(RefineMeshTest, TextureAndMaterialsStayWhereTheyAre) {
     const glm::vec3& p = mesh.positions[i];
     EXPECT_NEAR(mesh.texcoords[i].x, p.x + 2.0F * p.y, 1e-5);
     EXPECT_NEAR(mesh.texcoords[i].y, 3.0F * p.z, 1e-5);
+    EXPECT_NEAR(glm::distance(mesh.colors[i], glm::vec3(p.x, p.y, 2.0F * p.z)), 0.0F, 1e-5F);
   }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto axis = static_cast<int>(mesh.triangle_materials[i]);

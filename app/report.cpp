@@ -72,7 +72,8 @@ ReportViews draw_views(std::span<const MeasuredCase> cases, bool quiet) {
     views.runs[i] = std::move(run).value();
     progress.show(static_cast<double>(i + 1) / static_cast<double>(cases.size()));
   }
-  views.run_parts = run_page_parts();
+  const bool any = !views.runs.empty() && !views.runs.front().empty();
+  views.run_parts = any ? run_page_parts() : std::string();
 #else
   static_cast<void>(quiet);
 #endif

@@ -24,8 +24,9 @@ const tinygltf::Texture* base_texture(const tinygltf::Model& model,
   return row_or_null(model.textures, material.pbrMetallicRoughness.baseColorTexture.index);
 }
 
+/// Also of what is no number.
 float share(double value) {
-  return static_cast<float>(std::clamp(value, 0.0, 1.0));
+  return value > 0.0 ? static_cast<float>(std::min(value, 1.0)) : 0.0F;
 }
 
 TextureWrap wrap_of(int mode) {

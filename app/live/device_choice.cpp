@@ -101,9 +101,9 @@ Result<std::vector<std::uint8_t>> load_secret(const std::filesystem::path& path)
   const std::size_t last = text.find_last_not_of(kWhite) + 1;  // 0 of nothing
   const std::string_view secret =
       std::string_view(text).substr(first, last - std::min(first, last));
-  if (secret.size() < kShortestSecret) {
-    return Error{fmt::format("--gateway-secret {}: {} bytes, expected {} or more; {}",
-                             path.string(), secret.size(), kShortestSecret, make)};
+  if (secret.size() < kShortestSecret || secret.size() > kLongestSecret) {
+    return Error{fmt::format("--gateway-secret {}: {} bytes, expected {} to {}; {}", path.string(),
+                             secret.size(), kShortestSecret, kLongestSecret, make)};
   }
   return std::vector<std::uint8_t>(secret.begin(), secret.end());
 }

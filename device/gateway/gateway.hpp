@@ -20,8 +20,9 @@ namespace torsion::engine {
 inline constexpr std::uint16_t kGatewayPort = 7747;
 inline constexpr std::string_view kLoopback = "127.0.0.1";  // no other machine reaches it
 
-/// A secret is not shorter: 128 bits are not guessed.
+/// Bytes of a secret: 128 bits are not guessed; what is longer is no file that was made for it.
 inline constexpr std::size_t kShortestSecret = 16;
+inline constexpr std::size_t kLongestSecret = 255;
 
 /// s: a client that says nothing for as long is gone, and its force with it. One that says it sends
 /// less often than that is waited for two and a half of its periods.

@@ -82,11 +82,13 @@ TEST(GatewaySecretTest, IsTheTextOfAFileThatOnlyItsOwnerReads) {
     ASSERT_FALSE(secret.ok());
     EXPECT_TRUE(says(secret.error(), "chmod 600")) << secret.error().text;
   }
-  for (const char* const few : {"", " \n", "fifteen bytes..\n"}) {
-    const auto secret = load_secret(SecretFile(few).path());
-    ASSERT_FALSE(secret.ok()) << few;
-    EXPECT_TRUE(says(secret.error(), "expected 16 or more")) << secret.error().text;
+  for (const std::string& wrong : {std::string(), std::string(" \n"),
+                                   std::string("fifteen bytes..\n"), std::string(256, 'x')}) {
+    const auto secret = load_secret(SecretFile(wrong).path());
+    ASSERT_FALSE(secret.ok()) << wrong;
+    EXPECT_TRUE(says(secret.error(), "expected 16 to 255")) << secret.error().text;
   }
+  EXPECT_TRUE(load_secret(SecretFile(std::string(255, 'x')).path()).ok());
   EXPECT_TRUE(says(load_secret("/nowhere/at/all").error(), "cannot be read"));
   EXPECT_TRUE(says(load_secret("/tmp").error(), "not a regular file"));
   EXPECT_TRUE(says(load_firmware("/tmp").error(), "not a regular file"));

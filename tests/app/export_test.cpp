@@ -25,10 +25,11 @@ using test::Ran;
 using test::run_torsion;
 using test::scene;
 
-tinygltf::Model exported(const std::string& name, const std::string& time,
-                         const std::string& file) {
+/// @param path  of a scene
+tinygltf::Model exported_file(const std::string& path, const std::string& time,
+                              const std::string& file) {
   const Folder folder;
-  const Ran ran = run_torsion({"export", scene(name), "--at", time, "--out", folder / file});
+  const Ran ran = run_torsion({"export", path, "--at", time, "--out", folder / file});
   EXPECT_EQ(ran.exit_code, 0) << ran.err;
   tinygltf::Model model;
   tinygltf::TinyGLTF reader;
@@ -40,6 +41,11 @@ tinygltf::Model exported(const std::string& name, const std::string& time,
       << errors;
   EXPECT_EQ(warnings, "");
   return model;
+}
+
+tinygltf::Model exported(const std::string& name, const std::string& time,
+                         const std::string& file) {
+  return exported_file(scene(name), time, file);
 }
 
 const tinygltf::Accessor& attribute(const tinygltf::Model& model, std::size_t mesh,
@@ -347,6 +353,23 @@ TEST(ExportTest, MaterialsAndTexturesGoWithTheirMeshes) {
       model.materials.at(static_cast<std::size_t>(model.meshes.at(1).primitives.at(0).material));
   EXPECT_EQ(skin.extensions.count("KHR_materials_diffuse_transmission"), 1U);
   EXPECT_EQ(model.images.size(), 2U);  // the skin's once, for three parts
+}
+
+TEST(ExportTest, VertexColorsGoWithTheirMesh) {
+  test::GltfBuilder builder = test::good_scene();
+  builder.document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+      builder.add_floats(std::vector<float>(24, 0.25F), "VEC3");
+  const Folder folder;
+  test::write_text(folder / "scene.gltf", builder.text());
+  const tinygltf::Model model = exported_file(folder / "scene.gltf", "0", "painted.glb");
+  // The body is cut into more triangles, whose new vertices lie between.
+  const std::vector<glm::vec3> colors = rows_of<glm::vec3>(model, attribute(model, 0, "COLOR_0"));
+  EXPECT_EQ(colors.size(), attribute(model, 0, "POSITION").count);
+  EXPECT_GT(colors.size(), 8U);
+  for (const glm::vec3& color : colors) {
+    EXPECT_EQ(color, glm::vec3(0.25F));
+  }
+  EXPECT_EQ(model.meshes.at(1).primitives.at(0).attributes.count("COLOR_0"), 0U);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "scenes/materials.hpp"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "tests/scenes/gltf_builder.hpp"
@@ -71,6 +73,7 @@ TEST(MaterialsTest, VertexColorsAreReadAsFloatsAndAsNormalizedBytes) {
   json& attributes = builder.document["meshes"][0]["primitives"][0]["attributes"];
   std::vector<float> floats(24, 0.25F);
   floats[3] = 1.0F;
+  floats[6] = std::numeric_limits<float>::quiet_NaN();
   attributes["COLOR_0"] = builder.add_floats(floats, "VEC3");
   LoadedScene loaded = load_text(builder.text());
   ASSERT_TRUE(loaded.scene.has_value()) << to_text(loaded.problems);
@@ -78,6 +81,7 @@ TEST(MaterialsTest, VertexColorsAreReadAsFloatsAndAsNormalizedBytes) {
   ASSERT_EQ(colors.size(), loaded.scene->bodies[0].draw.positions.size());
   EXPECT_EQ(colors[0], glm::vec3(0.25F));
   EXPECT_EQ(colors[1], glm::vec3(1.0F, 0.25F, 0.25F));
+  EXPECT_EQ(colors[2], glm::vec3(0.0F, 0.25F, 0.25F));
   EXPECT_TRUE(loaded.scene->tools[0].draw.colors.empty());
 
   std::string bytes(32, '\x33');  // 51 of 255; alpha is not drawn

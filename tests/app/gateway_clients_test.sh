@@ -112,4 +112,14 @@ for check in c_sharp:2 ros:3 haply:3 chai3d:3; do
     [[ $other == "$axis" ]] || is_between -0.01 "${words[other]}" 0.01 || fail "$name: $line"
   done
 done
+# The way there and back is a part of the delay that Torsion has to count on.
+for client in "python3 $source/examples/gateway/torsion_gateway.py" "$folder/touch" "mono $folder/client.exe"; do
+  /usr/bin/python3 "$source/tests/gateway_stubs/slow_gateway.py" 7748 > "$folder/slow.txt" 2>&1 &
+  slow=$!
+  until grep -q ready "$folder/slow.txt"; do sleep 0.1; done
+  timeout 20 $client 7748 < /dev/null > /dev/null 2>&1 &
+  wait "$slow" || fail "$client against a slow gateway: $(cat "$folder/slow.txt")"
+  kill %% 2> /dev/null || true
+  is_between 0.002 "$(sed -n 's/^delay //p' "$folder/slow.txt")" 1 || fail "$client: $(cat "$folder/slow.txt")"
+done
 echo "gateway clients: all passed"

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -78,6 +79,14 @@ WrittenMesh rest_mesh(const std::string& name, const Pose& pose, const DrawMesh&
   return mesh;
 }
 
+std::vector<BodyModel> body_models(const Model& model) {
+  std::vector<BodyModel> models;
+  for (const BodyModels& chosen : model.bodies.column<BodyModels>()) {
+    models.push_back(chosen.body);
+  }
+  return models;
+}
+
 WrittenMesh placed_tool(const Session& session, std::uint32_t row) {
   const ToolDescription& tool = session.scene.tools[row];
   return rest_mesh(tool.node, session.simulation.world.state.tools.at<ToolPose>(row).now,
@@ -105,7 +114,8 @@ std::vector<WrittenMesh> deformed_scene(const Session& session) {
 
 DeformedRun::DeformedRun(const Session& session)
     : frame_(prepare_frame(session.scene, session.simulation.world.model,
-                           session.simulation.world.state)) {
+                           session.simulation.world.state)),
+      frame_models_(body_models(session.simulation.world.model)) {
   const World& world = session.simulation.world;
   snapshot_.reserve(world.model, world.state);
   for (std::uint32_t row = 0; row < session.scene.bodies.size(); ++row) {
@@ -120,6 +130,11 @@ DeformedRun::DeformedRun(const Session& session)
 
 void DeformedRun::add(const Session& session, double time) {
   const World& world = session.simulation.world;
+  // A frame hangs on the body's anchors, which another model has elsewhere.
+  if (std::vector<BodyModel> now = body_models(world.model); now != frame_models_) {
+    frame_ = prepare_frame(session.scene, world.model, world.state);
+    frame_models_ = std::move(now);
+  }
   take_snapshot(session.simulation, snapshot_);
   surface_field(world.model, snapshot_, frame_);
   const auto bodies = static_cast<std::uint32_t>(session.scene.bodies.size());

@@ -19,7 +19,7 @@ class DeformedRun {
   /// @param session  at its start, or anywhere: bodies are at rest in what is kept
   explicit DeformedRun(const Session& session);
 
-  /// Keeps the state after the last step.
+  /// Keeps the state after the last step. The session may have other models than at its start.
   void add(const Session& session, double time);
 
   [[nodiscard]] const std::vector<AnimatedMesh>& meshes() const { return meshes_; }
@@ -36,6 +36,7 @@ class DeformedRun {
 
  private:
   FrameWorld frame_;
+  std::vector<BodyModel> frame_models_;  // (bodies): what the frame was prepared for
   Snapshot snapshot_;
   std::vector<AnimatedMesh> meshes_;  // bodies, then tools
   std::vector<float> times_;          // s

@@ -27,17 +27,12 @@ void include(const Owners& owners, const Vertices& vertices, Box& box) {
   }
 }
 
-double largest_side(const Box& box) {
-  const glm::dvec3 size = box.size();
-  return std::max({size.x, size.y, size.z});
-}
-
 /// The corners of a tool's box on its way, and the ends of arrows over its middle. A tool that
 /// comes from afar is not to make the contact small: what is farther from the bodies than their own
 /// size is left out.
 void include_way(const FrameWorld& frame, const Box& bodies,
                  std::span<const std::vector<Pose>> poses, Box& box) {
-  const double side = largest_side(bodies);
+  const double side = bodies.largest_side();
   const glm::dvec3 lowest = bodies.lowest - side;
   const glm::dvec3 highest = bodies.highest + side;
   const auto add = [&](const glm::dvec3& point) {

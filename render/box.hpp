@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <limits>
+#include <span>
 
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
@@ -21,6 +23,18 @@ struct Box {
     return empty() ? glm::dvec3(0.0) : 0.5 * (lowest + highest);
   }
   [[nodiscard]] glm::dvec3 size() const { return empty() ? glm::dvec3(0.0) : highest - lowest; }
+  [[nodiscard]] double largest_side() const {
+    const glm::dvec3 sides = size();
+    return std::max({sides.x, sides.y, sides.z});
+  }
 };
+
+inline Box box_of(std::span<const glm::vec3> points) {
+  Box box;
+  for (const glm::vec3& point : points) {
+    box.add(glm::dvec3(point));
+  }
+  return box;
+}
 
 }  // namespace torsion::engine

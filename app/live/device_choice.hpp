@@ -46,7 +46,7 @@ Result<GatewayChoice> gateway_choice(const std::string& what);
 Result<GatewayOptions> gateway_options(const DeviceChoice& choice, const std::string& gateway);
 
 /// What a file that only its owner can read has, without the white space around it.
-/// Error: it cannot be read, others can read it, or it is shorter than a secret.
+/// Error: it cannot be read, others can read it, or it is too short or too long for a secret.
 Result<std::vector<std::uint8_t>> load_secret(const std::filesystem::path& path);
 
 /// How the devices of a choice are driven. @param firmware  of a Falcon, has to outlive them

@@ -7,8 +7,9 @@
 #include <map>
 #include <vector>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+
+#include "render/box.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -32,22 +33,12 @@ bool is_flat_shaded(const DrawMesh& mesh) {
   });
 }
 
-glm::vec3 middle_of(const DrawMesh& mesh) {
-  glm::vec3 low = mesh.positions.front();
-  glm::vec3 high = low;
-  for (const glm::vec3& position : mesh.positions) {
-    low = glm::min(low, position);
-    high = glm::max(high, position);
-  }
-  return 0.5F * (low + high);
-}
-
 }  // namespace
 
 DrawMesh coarse_mesh(const DrawMesh& mesh, const glm::vec3& center, float fine, float cell) {
   constexpr float kSamePlace = 1e-3F;  // of a cell
   const bool flat = is_flat_shaded(mesh);
-  const glm::vec3 middle = middle_of(mesh);
+  const glm::vec3 middle(box_of(mesh.positions).center());
   std::map<Cluster, std::uint32_t> rows;
   std::vector<std::uint32_t> row_of;
   std::vector<float> members;

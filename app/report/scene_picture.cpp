@@ -25,11 +25,7 @@ constexpr ModelPair kDrawnModels{ContactModel::kPatch, BodyModel::kNone, 16};
 
 /// m: of the box around it, ascending.
 std::array<double, 3> sides_of(const DrawMesh& mesh) {
-  Box box;
-  for (const glm::vec3& position : mesh.positions) {
-    box.add(glm::dvec3(position));
-  }
-  const glm::dvec3 size = box.size();
+  const glm::dvec3 size = box_of(mesh.positions).size();
   std::array<double, 3> sides = {size.x, size.y, size.z};
   std::ranges::sort(sides);
   return sides;

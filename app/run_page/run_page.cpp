@@ -75,15 +75,6 @@ json pose_json(const Pose& pose) {
   return {pose.position.x, pose.position.y, pose.position.z, q.x, q.y, q.z, q.w};
 }
 
-double largest_side(const WrittenMesh& mesh) {
-  Box box;
-  for (const glm::vec3& position : mesh.positions) {
-    box.add(glm::dvec3(position));
-  }
-  const glm::dvec3 size = box.size();
-  return std::max({size.x, size.y, size.z});
-}
-
 /// @param limit  rad: the end of the twist's scale
 json body_json(const AnimatedMesh& body, double limit) {
   constexpr double kNormalUnit = 2.0;  // normals differ by up to that
@@ -118,7 +109,7 @@ json body_json(const AnimatedMesh& body, double limit) {
           {"shifts", packed(shifts)},
           {"shift_unit", static_cast<double>(largest) / 32767.0},
           {"normal_shifts", packed(normals)},
-          {"grid", grid_spacing(largest_side(body.rest))},
+          {"grid", grid_spacing(box_of(body.rest.positions).largest_side())},
           {"twists", packed(twists)}};
 }
 

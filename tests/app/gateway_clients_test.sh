@@ -75,9 +75,8 @@ cxx=(c++ -std=c++17 -O1 -Wall -Wextra -Werror -I"$source/examples/gateway" -I"$s
 "$folder/rotations" || fail "chai3d: turns are wrong"
 over_network chai3d 7747 "$folder/chai3d" "$own" 7747 "$folder/secret"
 
-# Up is y for HDAPI and z for DHD: a wrong axis or sign is seen here.
-for client in touch:hd:2 force_dimension:dhd:3; do
-  IFS=: read -r name maker axis <<< "$client"
+for client in touch:hd force_dimension:dhd; do
+  IFS=: read -r name maker <<< "$client"
   cc -std=c11 -Wall -Wextra -Werror -D_DEFAULT_SOURCE -I"$source/tests/gateway_stubs" -o "$folder/$name" \
     "$source/examples/gateway/$name.c" "$source/tests/gateway_stubs/${maker}_emulator.c" -lm
   cc -std=c11 -Wall -Wextra -Werror -D_DEFAULT_SOURCE -DCLIENT="\"$name.c\"" -I"$source/examples/gateway" \
@@ -85,12 +84,6 @@ for client in touch:hd:2 force_dimension:dhd:3; do
     "$source/tests/gateway_stubs/${maker}_emulator.c" -lm
   "$folder/rotations" || fail "$name: turns are wrong"
   session "$name" 7747 "$folder/$name"
-  line=$(grep '^force' "$folder/$name.txt")
-  read -ra words <<< "$line"
-  is_between 0.02 "${words[axis]}" 0.5 || fail "$name: $line"
-  for other in 1 2 3; do
-    [[ $other == "$axis" ]] || is_between -0.01 "${words[other]}" 0.01 || fail "$name: $line"
-  done
 done
 mcs -warnaserror -out:"$folder/client.exe" "$source/examples/gateway/TorsionGateway.cs"
 over_network c_sharp 7747 mono "$folder/client.exe" 7747 "$own" "$folder/secret"
@@ -103,7 +96,9 @@ over_network haply 7747 /usr/bin/python3 "$source/examples/gateway/haply.py" --g
 wait "$service" || fail "haply: $(cat "$folder/service.txt")"
 grep -q sideways "$folder/service.txt" && fail "haply: $(cat "$folder/service.txt")"
 cp "$folder/service.txt" "$folder/haply.txt"
-for check in c_sharp:2 ros:3 haply:3 chai3d:3; do
+# Up is y for Torsion and HDAPI, and z for the others: a wrong axis or sign is seen here. The largest force upwards is
+# looked at, and not the last one: after a stall of a busy machine the force rises anew for a second.
+for check in touch:2 force_dimension:3 c_sharp:2 ros:3 haply:3 chai3d:3; do
   IFS=: read -r name axis <<< "$check"
   line=$(grep '^force' "$folder/$name.txt")
   read -ra words <<< "${line//,/}"

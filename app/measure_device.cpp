@@ -82,7 +82,8 @@ std::string request_of(MeasurementStage stage) {
       return "Hold the handle loosely in the middle of its range and press Enter. It will tremble "
              "for some seconds.";
     case MeasurementStage::kLetGo:
-      return "It goes where it is pushed. Now let go of it, keep clear of it, and press Enter.";
+      return "It goes where it is pushed. It holds itself now: let go of it, keep clear of it, and "
+             "press Enter.";
     default:
       return "";
   }
@@ -107,7 +108,8 @@ std::string why_failed(const DeviceMeasurement& measurement) {
     case GuardReason::kReversed:
       return "it goes the other way than it is pushed; mend the signs of its motors or encoders";
     case GuardReason::kTooFast:
-      return "it moved faster than a hand should";
+      return "it moved faster than a hand should. Was it pushed, or is it too heavy for its "
+             "motors?";
     default:
       return "the device was silent or went away";
   }
@@ -223,8 +225,15 @@ int measure_device(const DeviceChoice& choice, bool agreed) {
   if (found.mass == 0.0 && found.inertia == 0.0) {
     return fail("not measured: it hardly moved, or not as a mass with damping and friction does");
   }
+  if (found.weight > 0.0) {
+    say(
+        fmt::format("it weighs {:.3g} N at its handle, which its motors will carry while it holds "
+                    "a tool",
+                    found.weight));
+  }
   const Result<Done> saved = save_measured_traits(
-      kind, {found.mass, found.damping, found.inertia, found.turn_damping, found.delay});
+      kind,
+      {found.mass, found.damping, found.inertia, found.turn_damping, found.delay, found.weight});
   if (!saved) {
     return fail(saved.error().text);
   }

@@ -128,6 +128,7 @@ DeviceTraits traits_of(const DeviceLoop& loop, const DeviceRow& row) {
   replace(traits.damping, measured.damping);
   replace(traits.inertia, measured.inertia);
   replace(traits.turn_damping, measured.turn_damping);
+  replace(traits.weight, measured.weight);
   traits.delay = std::max(traits.delay, measured.delay);
   return traits;
 }
@@ -139,6 +140,7 @@ void add_traits(DeviceTraits& whole, const DeviceLoop& loop, const DeviceRow& ro
   if (translates(row.role)) {
     whole.damping = part.damping;
     whole.mass = part.mass;
+    whole.weight = part.weight;
     whole.encoder_step = part.encoder_step;
     whole.largest_force = part.largest_force;
     whole.continuous_force = part.continuous_force;

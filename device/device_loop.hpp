@@ -30,6 +30,7 @@ struct MeasuredTraits {
   double inertia = 0.0;       // kg m^2
   double turn_damping = 0.0;  // N m s/rad
   double delay = 0.0;         // s: from a force asked for to what it does
+  double weight = 0.0;        // N: of handle and mechanism, as the motors have to carry it
 };
 
 struct LoopOptions {

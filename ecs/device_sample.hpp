@@ -59,6 +59,7 @@ struct DeviceTraits {
   double thermal_time = 0.0;            // s: in which they get warm
   double largest_stiffness = 0.0;       // N/m, as its maker says
   double largest_turn_stiffness = 0.0;  // N m/rad
+  double weight = 0.0;  // N: upwards, it carries handle and mechanism in the middle of their range
 };
 
 /// A device at one moment.

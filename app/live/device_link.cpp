@@ -232,7 +232,7 @@ Wrench DeviceLink::take(const DeviceSample& said) {
   show_guard();
   views_.back() = now_;
   views_.publish();
-  return outcome.wrench;
+  return outcome.sent;
 }
 
 void DeviceLink::show_guard() {

@@ -19,11 +19,12 @@ struct Entry {
   double MeasuredTraits::*value;
 };
 
-constexpr std::array<Entry, 5> kEntries = {{{"mass_kg", &MeasuredTraits::mass},
+constexpr std::array<Entry, 6> kEntries = {{{"mass_kg", &MeasuredTraits::mass},
                                             {"damping_N_s_per_m", &MeasuredTraits::damping},
                                             {"inertia_kg_m2", &MeasuredTraits::inertia},
                                             {"turn_damping_N_m_s", &MeasuredTraits::turn_damping},
-                                            {"delay_s", &MeasuredTraits::delay}}};
+                                            {"delay_s", &MeasuredTraits::delay},
+                                            {"weight_N", &MeasuredTraits::weight}}};
 
 Result<MeasuredTraits> read(const fs::path& path) {
   std::ifstream file(path);

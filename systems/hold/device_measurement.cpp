@@ -8,7 +8,7 @@
 namespace torsion::engine {
 namespace {
 
-constexpr double kShareToCheck = 0.05;   // of the largest force, as in a session
+constexpr double kShareToCheck = 0.1;    // of the largest force: dry friction has to be overcome
 constexpr double kShareToSwing = 0.15;   // of it
 constexpr double kShareAtMost = 0.65;    // of it: to swing it and to hold its weight
 constexpr double kTimeToLargest = 0.01;  // s
@@ -129,6 +129,9 @@ Wrench take_measurement_sample(DeviceMeasurement& measurement, const DeviceSampl
     input.wanted = take_identification_sample(measurement.identification, sample.pose,
                                               measurement.guard.sent, period);
   }
+  if (measurement.stage == MeasurementStage::kLetGo) {
+    input.wanted = hold_still(measurement.identification, sample.pose, period);
+  }
   const Wrench sent = guard_output(measurement.guard, measurement.limits, input, period);
   go_on(measurement);
   return sent;
@@ -159,6 +162,10 @@ DeviceTraits measured_traits(const DeviceMeasurement& measurement) {
       (axis >= 3 ? turning : translation).take(found);
       traits.delay = std::max(traits.delay, found.delay);
     }
+  }
+  constexpr std::size_t kUp = 1;
+  if (is_reliable(measured_axis(measurement, kUp))) {
+    traits.weight = std::max(0.0, measurement.identification.carried[kUp]);
   }
   if (translation.any) {
     traits.mass = translation.mass;

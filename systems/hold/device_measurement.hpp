@@ -52,7 +52,7 @@ bool is_reliable(const AxisDynamics& found);
 
 /// Of its axes that are reliable, the smallest mass and damping and the longest delay: what a
 /// coupling that is stable along all of them may count on. In turning likewise. Zero where none is,
-/// and a damping of zero where one axis has none.
+/// and a damping of zero where one axis has none. Its weight is what its motors held it up with.
 DeviceTraits measured_traits(const DeviceMeasurement& measurement);
 
 }  // namespace torsion::engine

@@ -16,6 +16,7 @@ namespace {
 constexpr double kNearHandle = 0.01;      // m: a hand finds that without a guide
 constexpr double kRiseTime = 0.01;        // s: from nothing to the largest force, at the fastest
 constexpr double kShareOfCheck = 0.05;    // of the largest force: may see whether it goes right
+constexpr double kMostOfWeight = 0.5;     // of it: is left to carry the device itself
 constexpr double kUsualPeriod = 1e-3;     // s
 constexpr double kShortestPeriod = 1e-5;  // s
 constexpr double kLongestPeriod = 20e-3;  // s: a gap, not a period
@@ -95,6 +96,10 @@ GuardInput guard_input(HandleSide& side, const DeviceSample& sample, double peri
   if (!sample.steers_rate || sample.actuated != kNoAxes) {
     measure_speed(side.speed, sample.pose, period);
   }
+  if ((sample.actuated & kTranslationAxes) != 0) {
+    const double most = kMostOfWeight * side.limits.largest_force;
+    input.weight.y = std::min(sample.traits.weight, most);
+  }
   input.velocity = side.speed.velocity;
   input.turn_speed = side.speed.turn_speed;
   if (side.guard.state == GuardState::kChecking) {
@@ -132,6 +137,7 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
   if (live && !begins && was_silent) {
     // What the motors hold is nothing: the force comes back as after any fault.
     side.guard.sent = {};
+    side.guard.carried = {};
   }
   const bool waits = live && side.guard.state == GuardState::kWaiting;
   const double elapsed = std::clamp(now - side.last_time, kShortestPeriod, kLongestPeriod);
@@ -156,7 +162,8 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
   input.live = input.live && (begins || !was_silent);
   input.distance = outcome.distance;
   const bool was_checked = side.guard.checked;
-  outcome.wrench = guard_output(side.guard, side.limits, input, period);
+  outcome.sent = guard_output(side.guard, side.limits, input, period);
+  outcome.wrench = side.guard.sent;
   note_sent(side.books, outcome.wrench);
   if (side.guard.checked && !was_checked) {
     choose_springs(side, sample.traits);
@@ -164,6 +171,8 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
   if (sample.state == DeviceState::kAbsent) {  // nothing displays what falls
     side.guard.state = GuardState::kWaiting;   // a device that was off has gone
     side.guard.sent = {};
+    side.guard.carried = {};
+    outcome.sent = {};
     outcome.wrench = {};
   }
   outcome.holds = live && side.guard.state != GuardState::kWaiting;

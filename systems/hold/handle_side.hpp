@@ -65,6 +65,7 @@ struct PhysicsResult {
 struct HandleOutcome {
   Pose handle;            // world
   Wrench wrench;          // to display, about the handle, world axes
+  Wrench sent;            // that and what carries the device itself: for its motors
   double distance = 0.0;  // m: from handle to tool
   bool holds = false;     // whether the handle moves the tool; else it is to be brought to it
 };

@@ -20,6 +20,10 @@ constexpr double kSpringReach = 0.05;  // m: at which the spring has the swingin
 constexpr double kSpringTurn = 0.5;    // rad
 constexpr double kDamperTime = 0.05;   // s: damping over stiffness of what holds it
 constexpr double kLearnTime = 2.0;     // s
+// Before it is swung, while a person lets go of it: it may be heavy, and nobody knows how heavy.
+constexpr double kStiffer = 5.0;
+constexpr double kLearnSooner = 0.3;   // s
+constexpr double kLeash = 0.02;        // m: farther from its place its place follows
 constexpr double kMostWeight = 3.0;    // of the swinging force
 constexpr double kStrays = 0.04;       // m
 constexpr double kTurnStrays = 1.0;    // rad
@@ -99,20 +103,43 @@ void end_run(Identification& identification) {
   identification.time = 0.0;
   identification.run += 1;
   if (identification.run == kIdentificationRuns) {
+    identification.carried[identification.axis] = identification.weight[identification.axis];
     identification.run = 0;
     identification.axis += 1;
     skip_axes(identification);
   }
 }
 
-/// What holds it in place along an axis: a soft spring and damper, and its weight.
-double holding_force(Identification& identification, std::size_t axis, double period) {
+/// What holds it in place along an axis: a spring and damper, and its weight.
+double holding_force(Identification& identification, std::size_t axis, double period,
+                     bool is_swung) {
+  const bool translates = group_of(axis) == 0;
+  const bool firmly = translates && !is_swung;
   const double largest = identification.largest[group_of(axis)];
-  const double stiffness = largest / (group_of(axis) == 0 ? kSpringReach : kSpringTurn);
+  const double stiffness =
+      (firmly ? kStiffer : 1.0) * largest / (translates ? kSpringReach : kSpringTurn);
   const double pull = -stiffness * identification.way[axis];
-  identification.weight[axis] = std::clamp(identification.weight[axis] + pull * period / kLearnTime,
+  const double learnt = pull * period / (firmly ? kLearnSooner : kLearnTime);
+  identification.weight[axis] = std::clamp(identification.weight[axis] + learnt,
                                            -kMostWeight * largest, kMostWeight * largest);
   return identification.weight[axis] + pull - stiffness * kDamperTime * identification.speed[axis];
+}
+
+std::array<double, kIdentifiedAxes> holding_forces(Identification& identification, double period,
+                                                   bool is_swung) {
+  std::array<double, kIdentifiedAxes> forces{};
+  for (std::size_t axis = 0; axis < kIdentifiedAxes; ++axis) {
+    forces[axis] = is_asked(identification, axis)
+                       ? holding_force(identification, axis, period, is_swung)
+                       : 0.0;
+  }
+  return forces;
+}
+
+Wrench wrench_of(const Identification& identification,
+                 const std::array<double, kIdentifiedAxes>& forces) {
+  return {{forces[0], forces[1], forces[2]},
+          identification.frame * glm::dvec3(forces[3], forces[4], forces[5])};
 }
 
 /// A response that counts, and how much.
@@ -200,6 +227,22 @@ void begin_identification(Identification& identification, std::uint8_t axes,
   skip_axes(identification);
 }
 
+Wrench hold_still(Identification& identification, const Pose& measured, double period) {
+  if (!identification.begun) {
+    identification.begun = true;
+    identification.home = measured;
+  }
+  const glm::dvec3 off = measured.position - identification.home.position;
+  const double far = glm::length(off);
+  if (far > kLeash) {
+    identification.home.position += off * (1.0 - kLeash / far);
+  }
+  identification.home.rotation = measured.rotation;
+  take_motion(identification, measured, period);
+  identification.strayed = false;
+  return wrench_of(identification, holding_forces(identification, period, false));
+}
+
 Wrench take_identification_sample(Identification& identification, const Pose& measured,
                                   const Wrench& sent, double period) {
   if (!identification.begun) {
@@ -215,11 +258,7 @@ Wrench take_identification_sample(Identification& identification, const Pose& me
   if (identification.time >= run_up(identification) + kSwings) {
     end_run(identification);
   }
-  std::array<double, kIdentifiedAxes> forces{};
-  for (std::size_t axis = 0; axis < kIdentifiedAxes; ++axis) {
-    forces[axis] =
-        is_asked(identification, axis) ? holding_force(identification, axis, period) : 0.0;
-  }
+  auto forces = holding_forces(identification, period, true);
   if (identification.axis < kIdentifiedAxes) {
     const double swinging =
         identification.run == 0 ? identification.time - kSettle : identification.time;
@@ -229,8 +268,7 @@ Wrench take_identification_sample(Identification& identification, const Pose& me
                                      std::cos(rate_of(identification.run) * identification.time);
     }
   }
-  return {{forces[0], forces[1], forces[2]},
-          identification.frame * glm::dvec3(forces[3], forces[4], forces[5])};
+  return wrench_of(identification, forces);
 }
 
 bool is_done(const Identification& identification) {

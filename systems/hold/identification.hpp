@@ -49,6 +49,8 @@ struct Identification {
   std::array<double, kIdentifiedAxes> way{};     // m, rad, from home
   std::array<double, kIdentifiedAxes> speed{};   // m/s, rad/s: smoothed
   std::array<double, kIdentifiedAxes> weight{};  // N, N m: of itself, as the spring has to bear it
+  // N, N m: likewise, when the axis had been swung to its end, which overcomes dry friction
+  std::array<double, kIdentifiedAxes> carried{};
   AxisResponse now;
   std::array<std::array<AxisResponse, kIdentificationRuns>, kIdentifiedAxes> responses{};
 };
@@ -57,6 +59,11 @@ struct Identification {
 /// @param largest  N and N m: that may swing it; holding it in place may take as much three times
 void begin_identification(Identification& identification, std::uint8_t axes,
                           std::array<double, 2> largest, const glm::dquat& frame);
+
+/// One sample before it begins: the handle is held where a person lets go of it, by a stiffer
+/// spring, which learns what it weighs.
+/// @return what its motors are to hold next, world axes
+Wrench hold_still(Identification& identification, const Pose& measured, double period);
 
 /// One sample.
 /// @param measured  the handle, world axes

@@ -36,7 +36,8 @@ GuardReason reason_against(OutputGuard& guard, const GuardLimits& limits, const 
     return GuardReason::kNotLive;
   }
   if (input.faulty || input.result_age > limits.longest_silence || !finite(input.wanted) ||
-      !finite(input.probe) || !std::isfinite(input.distance)) {
+      !finite(input.probe) || !finite({input.weight, glm::dvec3(0.0)}) ||
+      !std::isfinite(input.distance)) {
     return GuardReason::kPhysics;
   }
   if (!input.held) {
@@ -97,6 +98,19 @@ void change_state(OutputGuard& guard, const GuardLimits& limits, const GuardInpu
   }
 }
 
+/// What carries the device, likewise: it comes and goes with what it displays.
+glm::dvec3 share_of_weight(const OutputGuard& guard, const GuardInput& input, bool good) {
+  switch (guard.state) {
+    case GuardState::kFalling:
+      return guard.share * guard.last_carried;
+    case GuardState::kRising:
+    case GuardState::kLive:
+      return good ? guard.share * input.weight : glm::dvec3(0.0);
+    default:
+      return glm::dvec3(0.0);
+  }
+}
+
 /// Before the limits of size and rate.
 Wrench share_of_wanted(const OutputGuard& guard, const GuardInput& input, bool good) {
   switch (guard.state) {
@@ -126,12 +140,14 @@ Wrench guard_output(OutputGuard& guard, const GuardLimits& limits, const GuardIn
     guard.state = GuardState::kFalling;
     guard.reason = against;
     guard.last_good = guard.sent;
+    guard.last_carried = guard.carried;
     guard.share = 1.0;
   }
   change_state(guard, limits, input, against, period);
   const Wrench source = share_of_wanted(guard, input, good);
-  const glm::dvec3 force =
-      at_most(source.force, allowed_now(guard.force_heat, limits.largest_force));
+  const double allowed = allowed_now(guard.force_heat, limits.largest_force);
+  const glm::dvec3 carried = at_most(share_of_weight(guard, input, good), allowed);
+  const glm::dvec3 force = at_most(source.force, std::max(0.0, allowed - glm::length(carried)));
   const glm::dvec3 torque =
       at_most(source.torque, allowed_now(guard.torque_heat, limits.largest_torque));
   // A fall has its own rate, which is safer than any slower one.
@@ -139,11 +155,17 @@ Wrench guard_output(OutputGuard& guard, const GuardLimits& limits, const GuardIn
                      guard.state == GuardState::kOff;
   const double force_step = falls ? limits.largest_force : limits.largest_force_rate * period;
   const double torque_step = falls ? limits.largest_torque : limits.largest_torque_rate * period;
-  guard.sent.force += at_most(force - guard.sent.force, force_step);
+  const glm::dvec3 carried_step = at_most(carried - guard.carried, force_step);
+  guard.carried += carried_step;
+  const double step_left = std::max(0.0, force_step - glm::length(carried_step));
+  guard.sent.force += at_most(force - guard.sent.force, step_left);
   guard.sent.torque += at_most(torque - guard.sent.torque, torque_step);
-  take_loss(guard.force_heat, glm::length(guard.sent.force), period);
-  take_loss(guard.torque_heat, glm::length(guard.sent.torque), period);
-  return guard.sent;
+  // While one makes room for the other they are together no more than the limit, either.
+  const Wrench whole{at_most(guard.sent.force + guard.carried, limits.largest_force),
+                     guard.sent.torque};
+  take_loss(guard.force_heat, glm::length(whole.force), period);
+  take_loss(guard.torque_heat, glm::length(whole.torque), period);
+  return whole;
 }
 
 }  // namespace torsion::engine

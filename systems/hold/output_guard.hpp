@@ -60,7 +60,9 @@ struct OutputGuard {
   double share = 0.0;
   double against_for = 0.0;  // s: that it has gone against the force so fast
   Wrench last_good;          // what falls
-  Wrench sent;
+  Wrench sent;               // without what carries the device
+  glm::dvec3 last_carried{0.0};
+  glm::dvec3 carried{0.0};  // N: what carries the device
   ThermalLimit force_heat;
   ThermalLimit torque_heat;
 };
@@ -68,6 +70,7 @@ struct OutputGuard {
 /// What the guard goes by in one sample of the device.
 struct GuardInput {
   Wrench wanted;
+  glm::dvec3 weight{0.0};                        // N: carries the device itself, world axes
   Wrench probe;                                  // of the sign check, to be sent while it goes on
   double result_age = 0.0;                       // s: of the newest result of the physics
   bool faulty = false;                           // the physics says so
@@ -79,9 +82,10 @@ struct GuardInput {
   SignVerdict signs = SignVerdict::kUnresolved;  // of the check; kRunning: it goes on
 };
 
-/// One sample: the wrench to send. Never more than the limits, never faster, no more for long than
-/// the motors bear, nothing that is not finite, and no share of a result that is too old. After a
-/// fall it waits again for the handle; a device that goes the wrong way stays off.
+/// One sample: the wrench to send, `sent` and `carried` together. Never more than the limits, never
+/// faster, no more for long than the motors bear, nothing that is not finite, and no share of a
+/// result that is too old. After a fall it waits again for the handle; a device that goes the wrong
+/// way stays off.
 /// @param period  s
 Wrench guard_output(OutputGuard& guard, const GuardLimits& limits, const GuardInput& input,
                     double period);

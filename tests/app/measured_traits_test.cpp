@@ -26,7 +26,7 @@ class MeasuredTraitsTest : public testing::Test {
 
 TEST_F(MeasuredTraitsTest, AreReadAsTheyWereWritten) {
   EXPECT_EQ(load_measured_traits().value()[0].mass, 0.0);  // nothing was measured yet
-  const MeasuredTraits traits{0.148, 0.9, 0.0, 0.0, 1.25e-3};
+  const MeasuredTraits traits{0.148, 0.9, 0.0, 0.0, 1.25e-3, 1.4};
   ASSERT_TRUE(save_measured_traits(DeviceKind::kFalcon, traits));
   const auto all = load_measured_traits();
   ASSERT_TRUE(all) << all.error().text;
@@ -34,6 +34,7 @@ TEST_F(MeasuredTraitsTest, AreReadAsTheyWereWritten) {
   EXPECT_EQ(read.mass, 0.148);
   EXPECT_EQ(read.damping, 0.9);
   EXPECT_EQ(read.delay, 1.25e-3);
+  EXPECT_EQ(read.weight, 1.4);
   EXPECT_EQ(all.value()[static_cast<std::size_t>(DeviceKind::kOdrive)].inertia, 0.0);
 }
 

@@ -48,7 +48,7 @@ struct Person {
       physics.tool.position = handle.position + glm::dvec3(0.0, 3e-3, 0.0);
       physics.tool.rotation = glm::angleAxis(0.3, glm::dvec3(0.0, 1.0, 0.0)) * handle.rotation;
     }
-    return take_handle_sample(person.side, sample, physics, sample.time).wrench;
+    return take_handle_sample(person.side, sample, physics, sample.time).sent;
   }
   SampleSink sink() { return {this, on_sample}; }
 };

@@ -216,6 +216,62 @@ TEST(OutputGuardTest, OneThatGoesTheOtherWayStaysOff) {
   EXPECT_EQ(guard.sent.force, glm::dvec3(0.0));
 }
 
+/// More than the limit, and faster, where what carries the device is counted in?
+void expect_within(const Wrench& sent, const Wrench& before) {
+  EXPECT_LE(glm::length(sent.force), limits().largest_force + 1e-12);
+  EXPECT_LE(glm::length(sent.force - before.force), limits().largest_force_rate * kPeriod + 1e-12);
+}
+
+TEST(OutputGuardTest, WhatCarriesTheDeviceComesAndGoesWithItsForceAndWithinItsLimits) {
+  GuardInput input = wants(3.0, 0.1);
+  input.weight.y = 1.5;
+  input.distance = 0.05;
+  OutputGuard guard;
+  EXPECT_EQ(guard_output(guard, limits(), input, kPeriod).force, glm::dvec3(0.0));
+  input.distance = 0.0;
+  Wrench before;
+  for (int i = 0; i < 200; ++i) {
+    const Wrench sent = guard_output(guard, limits(), input, kPeriod);
+    EXPECT_NEAR(sent.force.y, guard.share * 4.5, 1e-12);
+    expect_within(sent, before);
+    before = sent;
+  }
+  EXPECT_EQ(guard.sent.force.y, 3.0);  // what the person feels of the tool
+  EXPECT_EQ(guard.carried.y, 1.5);
+  // One of 5 N, the other 6: no more than 8 together, and the arm is carried.
+  for (const double force : {6.0, -8.0, 8.0}) {
+    for (const double weight : {5.0, 0.0, 1.5}) {
+      input.wanted.force = {0.3 * force, force, 0.0};
+      input.weight.y = weight;
+      for (int i = 0; i < 10; ++i) {
+        const Wrench sent = guard_output(guard, limits(), input, kPeriod);
+        expect_within(sent, before);
+        before = sent;
+      }
+      EXPECT_EQ(guard.carried.y, weight);
+    }
+  }
+  input.live = false;
+  EXPECT_LE(samples_to_fall(guard, input), 11);
+  EXPECT_EQ(guard.carried, glm::dvec3(0.0));
+  input.live = true;
+  input.weight.y = std::numeric_limits<double>::quiet_NaN();
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(guard_output(guard, limits(), input, kPeriod).force, glm::dvec3(0.0));
+  }
+}
+
+TEST(OutputGuardTest, WhatCarriesTheDeviceWarmsItsMotors) {
+  GuardInput input = wants(0.0);
+  input.weight.y = 1.5;
+  OutputGuard guard;
+  guard.force_heat.continuous = 4.0;
+  for (int i = 0; i < 100'000; ++i) {
+    guard_output(guard, limits(), input, kPeriod);
+  }
+  EXPECT_NEAR(guard.force_heat.loss, 1.5 * 1.5, 1e-3);
+}
+
 TEST(OutputGuardTest, OneOfUnknownSignsThatRunsAgainstTheForceIsTurnedOff) {
   for (const SignVerdict signs : {SignVerdict::kUnresolved, SignVerdict::kRight}) {
     GuardLimits slow = limits();

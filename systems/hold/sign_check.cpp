@@ -119,6 +119,26 @@ bool is_inside_out(const SignCheck& check) {
   return glm::determinant(mobility) < -kShare * size;
 }
 
+/// Likewise in a hand of springs, where each axis answers the right way by itself: its answer says
+/// how late the hand is at its frequency. With that taken out of each column, the answers are the
+/// forces as the motors turn them, whose determinant is positive where all of them are right.
+bool is_inside_out_in_phase(const SignCheck& check) {
+  constexpr double kShare = 0.05;  // as above
+  glm::dmat3 turned(0.0);
+  double size = 1.0;
+  for (std::size_t by = 0; by < 3; ++by) {
+    const std::complex<double> in_phase = std::polar(1.0, -std::arg(check.first[by][by]));
+    double square = 0.0;
+    for (std::size_t of = 0; of < 3; ++of) {
+      turned[static_cast<glm::length_t>(by)][static_cast<glm::length_t>(of)] =
+          (check.first[of][by] * in_phase).real();
+      square += std::norm(check.first[of][by]);
+    }
+    size *= std::sqrt(square);
+  }
+  return glm::determinant(turned) < -kShare * size;
+}
+
 /// Whether an axis did not answer because the hand moved too much; a handle that nothing moves
 /// would not answer another time either.
 bool was_moved(const SignCheck& check, std::uint32_t resolved) {
@@ -143,7 +163,9 @@ bool take_window(SignCheck& check, const Pose& measured) {
     resolved |= answer.resolved ? 1U << axis : 0U;
     reversed |= answer.reversed ? 1U << axis : 0U;
   }
-  if (checked_axes(check) == 3 && reversed == 0U && is_inside_out(check)) {
+  const bool all_right = resolved == 7U && reversed == 0U;
+  if (checked_axes(check) == 3 && reversed == 0U &&
+      (is_inside_out(check) || (all_right && is_inside_out_in_phase(check)))) {
     reversed = 7U;
   }
   check.resolved &= static_cast<std::uint8_t>(~(7U << shift));

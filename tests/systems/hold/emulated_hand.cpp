@@ -25,6 +25,30 @@ glm::dquat quaternion(const glm::dvec3& turn) {
 
 }  // namespace
 
+HandTraits random_hand(std::mt19937& random) {
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const auto spread = [&](double low, double high) {
+    return low * std::pow(high / low, between(0.0, 1.0));
+  };
+  HandTraits hand;
+  hand.mass = spread(0.05, 0.6);
+  hand.grip_stiffness = spread(50.0, 1500.0);
+  // Damped by a quarter to all of what would just keep it from swinging.
+  hand.grip_damping = between(0.25, 1.0) * 2.0 * std::sqrt(hand.grip_stiffness * hand.mass);
+  hand.inertia = spread(5e-5, 5e-4);
+  hand.grip_turn_stiffness = spread(0.05, 1.0);
+  hand.grip_turn_damping =
+      between(0.25, 1.0) * 2.0 * std::sqrt(hand.grip_turn_stiffness * hand.inertia);
+  hand.tremor = between(0.0, 0.2);
+  hand.encoder_step = between(0.0, 8e-5);
+  hand.encoder_turn_step = between(0.0, 1.5e-3);
+  hand.largest_force = spread(3.0, 12.0);
+  hand.delay = static_cast<std::uint32_t>(between(0.0, 3.0));
+  return hand;
+}
+
 DeviceTraits device_of(const HandTraits& hand, double period) {
   DeviceTraits device;
   device.damping = hand.device_damping;

@@ -36,6 +36,9 @@ struct HandTraits {
   glm::dvec3 encoders{1.0};           // signs of what they say
 };
 
+/// Hands that differ in all that they may, from loose to firm, none of which swings by itself.
+HandTraits random_hand(std::mt19937& random);
+
 /// What stability may know of it.
 /// @param period  s
 DeviceTraits device_of(const HandTraits& hand, double period);

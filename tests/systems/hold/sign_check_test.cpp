@@ -54,30 +54,10 @@ SignVerdict verdict(const Person& person, std::uint8_t axes, SignCheck* left = n
   return now;
 }
 
-/// Hands that differ in all that a check could be led astray by.
 Person random_person(std::mt19937& random) {
-  const auto between = [&](double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  };
-  const auto spread = [&](double low, double high) {
-    return low * std::pow(high / low, between(0.0, 1.0));
-  };
   Person person;
-  HandTraits& hand = person.hand;
-  hand.mass = spread(0.05, 0.6);
-  hand.grip_stiffness = spread(50.0, 1500.0);
-  // Damped by a quarter to all of what would just keep it from swinging.
-  hand.grip_damping = between(0.25, 1.0) * 2.0 * std::sqrt(hand.grip_stiffness * hand.mass);
-  hand.inertia = spread(5e-5, 5e-4);
-  hand.grip_turn_stiffness = spread(0.05, 1.0);
-  hand.grip_turn_damping =
-      between(0.25, 1.0) * 2.0 * std::sqrt(hand.grip_turn_stiffness * hand.inertia);
-  hand.tremor = between(0.0, 0.2);
-  hand.encoder_step = between(0.0, 8e-5);
-  hand.encoder_turn_step = between(0.0, 1.5e-3);
-  hand.largest_force = spread(3.0, 12.0);
-  hand.delay = static_cast<std::uint32_t>(between(0.0, 3.0));
-  person.sway = between(0.0, 5e-3);
+  person.hand = test::random_hand(random);
+  person.sway = std::uniform_real_distribution<double>(0.0, 5e-3)(random);
   person.seed = static_cast<std::uint32_t>(random());
   return person;
 }
@@ -124,15 +104,19 @@ TEST(SignCheckTest, FindsAReversedKnob) {
   EXPECT_EQ(verdict(person, kTranslationAxes | kTurnAxis), SignVerdict::kReversed);
 }
 
+/// Three legs a third of a turn apart: with one motor reversed the force is turned over along that
+/// leg, so that no world axis has to show it.
+glm::dmat3 one_leg_reversed(int leg) {
+  const double angle = 2.0 * std::numbers::pi * leg / 3.0;
+  const glm::dvec3 along = glm::normalize(glm::dvec3(std::numbers::sqrt2 * std::cos(angle), 1.0,
+                                                     std::numbers::sqrt2 * std::sin(angle)));
+  return glm::dmat3(1.0) - 2.0 * glm::outerProduct(along, along);
+}
+
 TEST(SignCheckTest, FindsOneReversedMotorOfThreeThatActTogether) {
-  // Three legs a third of a turn apart: with one motor reversed the force is turned over along that
-  // leg, so that no world axis has to show it.
   for (int leg = 0; leg < 3; ++leg) {
-    const double angle = 2.0 * std::numbers::pi * leg / 3.0;
-    const glm::dvec3 along = glm::normalize(glm::dvec3(std::numbers::sqrt2 * std::cos(angle), 1.0,
-                                                       std::numbers::sqrt2 * std::sin(angle)));
     Person person;
-    person.hand.motors = glm::dmat3(1.0) - 2.0 * glm::outerProduct(along, along);
+    person.hand.motors = one_leg_reversed(leg);
     SignCheck left;
     EXPECT_EQ(verdict(person, kTranslationAxes, &left), SignVerdict::kReversed) << leg;
   }
@@ -166,6 +150,10 @@ TEST(SignCheckTest, IsNeverWrongWhoeverHoldsIt) {
     const SignVerdict wrong = verdict(person, kTranslationAxes | kTurnAxis);
     EXPECT_NE(wrong, SignVerdict::kRight) << i;
     missed += wrong == SignVerdict::kUnresolved ? 1 : 0;
+    // One motor of a mechanism's three: no axis alone has to go the wrong way.
+    person.hand.turn_motor = 1.0;
+    person.hand.motors = one_leg_reversed(i % 3);
+    EXPECT_NE(verdict(person, kTranslationAxes), SignVerdict::kRight) << i;
   }
   RecordProperty("unresolved", unresolved);
   RecordProperty("missed", missed);

@@ -74,7 +74,7 @@ void begin(WoodenDriver& driver, DriverCall& call) {
   sample.sensed = kTranslationAxes;
   sample.actuated = kTranslationAxes;
   sample.traits = {};
-  sample.traits.encoder_step = 50e-6;     // m: a count of a motor at the end of the arm
+  sample.traits.encoder_step = 64e-6;     // m: a count of motor c at the end of the arm
   sample.traits.largest_force = 5.0;      // N, as its makers say of the build of 2015
   sample.traits.largest_stiffness = 1e3;  // N/m, likewise
   set_cautious_heat(sample.traits);

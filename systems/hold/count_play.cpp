@@ -1,6 +1,7 @@
 #include "systems/hold/count_play.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -26,6 +27,16 @@ glm::dvec3 followed(const glm::dvec3& change, double count, double period) {
   return at_once + share * beyond(change - at_once, kPlay * count);
 }
 
+bool is_coarse(double count, double stiffness, double largest) {
+  constexpr double kSmall = 0.005;
+  return stiffness * count > kSmall * largest;
+}
+
+/// N/m or N m/rad: of which play feeds no swing of a hand.
+double softer_than(double damping, double mass) {
+  return std::numbers::pi * std::numbers::pi * damping * damping / mass;
+}
+
 }  // namespace
 
 Pose follow_counts(const Pose& last, const Pose& measured, double count, double turn_count,
@@ -43,6 +54,14 @@ Pose follow_counts(const Pose& last, const Pose& measured, double count, double 
                         : last.rotation;
   }
   return pose;
+}
+
+bool needs_play(double count, double stiffness, double largest) {
+  return is_coarse(count, stiffness, largest) && stiffness < softer_than(2.0, 0.1);
+}
+
+bool needs_turn_play(double count, double stiffness, double largest) {
+  return is_coarse(count, stiffness, largest) && stiffness < softer_than(3e-3, 2.5e-4);
 }
 
 }  // namespace torsion::engine

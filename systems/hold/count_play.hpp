@@ -22,7 +22,7 @@ namespace torsion::engine {
 /// is c / k = 0.12 s.
 ///
 /// Moving, the pose lags behind by up to two and a half counts, which over a way s of the handle
-/// costs an energy of up to K (5/2 count) s; the passivity controller sees it.
+/// costs an energy of up to K (5/2 count) s. needs_play() says where that is the smaller evil.
 /// @param last        what this returned before
 /// @param measured    what the encoders say
 /// @param count       m; 0: they do not count, and `measured` is returned
@@ -30,5 +30,20 @@ namespace torsion::engine {
 /// @param period      s, since `last`
 Pose follow_counts(const Pose& last, const Pose& measured, double count, double turn_count,
                    double period);
+
+/// Whether a spring is to pull at follow_counts() and not at what the encoders say: where a count's
+/// toggling comes to more than 0.5 % of the largest force, and the spring is soft.
+///
+/// For the lag of a pose feeds a swing: of play h and a spring K a swing A gets 4 K h (A - h) each
+/// time, of which a hand of damping c takes pi c w A^2 with w^2 = K / m. None is fed where
+/// K < pi^2 c^2 / m, by A = 2 h, the worst. A loose hand that damps little on a device without
+/// friction is taken for it: 2 N s/m and 0.1 kg, 3 mN m s and 0.25 g m^2.
+/// @param count      m
+/// @param stiffness  of the coupling, N/m
+/// @param largest    N
+bool needs_play(double count, double stiffness, double largest);
+
+/// Likewise in turning: rad, N m/rad, N m.
+bool needs_turn_play(double count, double stiffness, double largest);
 
 }  // namespace torsion::engine

@@ -83,6 +83,21 @@ void wait_for_hold(HandleSide& side, const DeviceSample& sample, const Pose& too
   begin_group_anew(side.signs);
   side.books = {};
   side.last = handle_pose(side.map, side.device);
+  side.steady = side.last;
+}
+
+/// What the springs pull at: what the encoders say, or what stands still while their counts toggle.
+Pose pulling_pose(const HandleSide& side, const DeviceSample& sample) {
+  const VirtualCoupling& springs = side.coupling;
+  const DeviceTraits& device = sample.traits;
+  Pose pose = sample.pose;
+  if (needs_play(device.encoder_step, springs.stiffness, springs.largest_force)) {
+    pose.position = side.device.position;
+  }
+  if (needs_turn_play(device.encoder_turn_step, springs.turn_stiffness, springs.largest_torque)) {
+    pose.rotation = side.device.rotation;
+  }
+  return pose;
 }
 
 /// What the guard is told of the device itself.
@@ -148,12 +163,14 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
     side.device = follow_counts(side.device, sample.pose, sample.traits.encoder_step,
                                 sample.traits.encoder_turn_step, period);
   }
-  outcome.handle = live ? handle_pose(side.map, side.device) : side.last;
+  outcome.handle = live ? handle_pose(side.map, pulling_pose(side, sample)) : side.last;
+  // The toggling of a count would look like a way to and fro, and be damped by a pulse each time.
+  const Pose steady = live ? handle_pose(side.map, side.device) : side.steady;
   const Wrench wanted =
       keep_passive(side.books, side.passivity,
                    felt_wrench(side.hold, side.coupling, outcome.handle, tool, result.contact),
-                   outcome.handle.position - side.last.position,
-                   turn_between(side.last.rotation, outcome.handle.rotation), period);
+                   steady.position - side.steady.position,
+                   turn_between(side.steady.rotation, steady.rotation), period);
   outcome.distance = glm::length(outcome.handle.position - tool.position);
   GuardInput input = guard_input(side, sample, std::max(now - side.last_time, kShortestPeriod));
   input.wanted = wanted;
@@ -177,6 +194,7 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
   }
   outcome.holds = live && side.guard.state != GuardState::kWaiting;
   side.last = outcome.handle;
+  side.steady = steady;
   side.last_time = now;
   return outcome;
 }

@@ -64,6 +64,7 @@ class FakeBus {
 
   [[nodiscard]] double now() const { return now_; }
   [[nodiscard]] DeviceLoop& loop() { return loop_; }
+  EmulatedDevice& device(std::size_t row) { return devices_[row].device; }
   template <class T>
   T& device(std::size_t row) {
     return std::get<T>(devices_[row].device);

@@ -36,6 +36,16 @@ TEST(CountPlayTest, AHandleThatTremblesAboutTheEdgeOfACountStandsStill) {
   }
 }
 
+TEST(CountPlayTest, IsForCoarseCountsBehindSoftSprings) {
+  EXPECT_TRUE(needs_play(0.1 / 256.0, 200.0, 8.0));
+  EXPECT_FALSE(needs_play(64e-6, 390.0, 8.0));   // a Falcon's: 0.3 %
+  EXPECT_FALSE(needs_play(64e-6, 1000.0, 5.0));  // a WoodenHaptics', which play would let swing
+  EXPECT_FALSE(needs_play(0.0, 200.0, 8.0));
+  EXPECT_TRUE(needs_turn_play(0.025, 0.2, 0.2));
+  EXPECT_FALSE(needs_turn_play(7.7e-4, 0.2, 0.2));
+  EXPECT_FALSE(needs_turn_play(0.025, 0.5, 0.2));
+}
+
 TEST(CountPlayTest, GoesAtOnceToWithinTwoCountsAndSlowlyToWithinOne) {
   Pose pose;
   const Pose measured = said(10.0 * kCount, 10.0 * kTurnCount);

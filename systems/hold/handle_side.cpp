@@ -83,7 +83,6 @@ void wait_for_hold(HandleSide& side, const DeviceSample& sample, const Pose& too
   begin_group_anew(side.signs);
   side.books = {};
   side.last = handle_pose(side.map, side.device);
-  side.steady = side.last;
 }
 
 /// What the springs pull at: what the encoders say, or what stands still while their counts toggle.
@@ -157,20 +156,22 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
   const bool waits = live && side.guard.state == GuardState::kWaiting;
   const double elapsed = std::clamp(now - side.last_time, kShortestPeriod, kLongestPeriod);
   const double period = waits ? kUsualPeriod : elapsed;
+  Pose steady_before = handle_pose(side.map, side.device);
   if (waits) {
     wait_for_hold(side, sample, tool);
+    steady_before = side.last;
   } else if (live) {
     side.device = follow_counts(side.device, sample.pose, sample.traits.encoder_step,
                                 sample.traits.encoder_turn_step, period);
   }
   outcome.handle = live ? handle_pose(side.map, pulling_pose(side, sample)) : side.last;
   // The toggling of a count would look like a way to and fro, and be damped by a pulse each time.
-  const Pose steady = live ? handle_pose(side.map, side.device) : side.steady;
+  const Pose steady = handle_pose(side.map, side.device);
   const Wrench wanted =
       keep_passive(side.books, side.passivity,
                    felt_wrench(side.hold, side.coupling, outcome.handle, tool, result.contact),
-                   steady.position - side.steady.position,
-                   turn_between(side.steady.rotation, steady.rotation), period);
+                   steady.position - steady_before.position,
+                   turn_between(steady_before.rotation, steady.rotation), period);
   outcome.distance = glm::length(outcome.handle.position - tool.position);
   GuardInput input = guard_input(side, sample, std::max(now - side.last_time, kShortestPeriod));
   input.wanted = wanted;
@@ -194,7 +195,6 @@ HandleOutcome take_handle_sample(HandleSide& side, const DeviceSample& sample,
   }
   outcome.holds = live && side.guard.state != GuardState::kWaiting;
   side.last = outcome.handle;
-  side.steady = steady;
   side.last_time = now;
   return outcome;
 }

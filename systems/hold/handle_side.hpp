@@ -47,7 +47,6 @@ struct HandleSide {
   SignCheck signs;
   Pose device;                // of the device's handle, still while its counts toggle
   Pose last;                  // m, world: of the handle in the sample before
-  Pose steady;                // likewise, of one that stands still while its counts toggle
   double last_time = 0.0;     // s: of that sample
   std::uint32_t epoch = 0;    // of the device
   std::uint32_t plugged = 0;  // likewise: what is known of its signs is of that one

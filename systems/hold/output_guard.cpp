@@ -98,30 +98,26 @@ void change_state(OutputGuard& guard, const GuardLimits& limits, const GuardInpu
   }
 }
 
-/// What carries the device, likewise: it comes and goes with what it displays.
-glm::dvec3 share_of_weight(const OutputGuard& guard, const GuardInput& input, bool good) {
-  switch (guard.state) {
-    case GuardState::kFalling:
-      return guard.share * guard.last_carried;
-    case GuardState::kRising:
-    case GuardState::kLive:
-      return good ? guard.share * input.weight : glm::dvec3(0.0);
-    default:
-      return glm::dvec3(0.0);
-  }
-}
+/// What is to be sent, before the limits of size and rate. What carries the device comes and goes
+/// with what it displays.
+struct WantedOutput {
+  Wrench wrench;
+  glm::dvec3 carried{0.0};
+};
 
-/// Before the limits of size and rate.
-Wrench share_of_wanted(const OutputGuard& guard, const GuardInput& input, bool good) {
+WantedOutput wanted_output(const OutputGuard& guard, const GuardInput& input, bool good) {
+  const auto share = [&guard](const Wrench& wrench, const glm::dvec3& carried) {
+    return WantedOutput{{guard.share * wrench.force, guard.share * wrench.torque},
+                        guard.share * carried};
+  };
   switch (guard.state) {
     case GuardState::kChecking:
-      return good ? input.probe : Wrench{};
+      return good ? WantedOutput{input.probe} : WantedOutput{};
     case GuardState::kFalling:
-      return {guard.share * guard.last_good.force, guard.share * guard.last_good.torque};
+      return share(guard.last_good, guard.last_carried);
     case GuardState::kRising:
     case GuardState::kLive:
-      return good ? Wrench{guard.share * input.wanted.force, guard.share * input.wanted.torque}
-                  : Wrench{};
+      return good ? share(input.wanted, input.weight) : WantedOutput{};
     default:
       return {};
   }
@@ -144,12 +140,13 @@ Wrench guard_output(OutputGuard& guard, const GuardLimits& limits, const GuardIn
     guard.share = 1.0;
   }
   change_state(guard, limits, input, against, period);
-  const Wrench source = share_of_wanted(guard, input, good);
+  const WantedOutput wanted = wanted_output(guard, input, good);
   const double allowed = allowed_now(guard.force_heat, limits.largest_force);
-  const glm::dvec3 carried = at_most(share_of_weight(guard, input, good), allowed);
-  const glm::dvec3 force = at_most(source.force, std::max(0.0, allowed - glm::length(carried)));
+  const glm::dvec3 carried = at_most(wanted.carried, allowed);
+  const glm::dvec3 force =
+      at_most(wanted.wrench.force, std::max(0.0, allowed - glm::length(carried)));
   const glm::dvec3 torque =
-      at_most(source.torque, allowed_now(guard.torque_heat, limits.largest_torque));
+      at_most(wanted.wrench.torque, allowed_now(guard.torque_heat, limits.largest_torque));
   // A fall has its own rate, which is safer than any slower one.
   const bool falls = guard.state == GuardState::kFalling || guard.state == GuardState::kWaiting ||
                      guard.state == GuardState::kOff;

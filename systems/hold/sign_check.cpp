@@ -89,54 +89,62 @@ AxisAnswer answer_of(const SignCheck& check, std::size_t axis) {
   return {std::abs(sum) > kSure * uncertain, sum < -kSure * uncertain};
 }
 
-/// Whether the motion along all three axes together turns round what the forces were, though no
-/// axis alone has to: an odd number of a mechanism's motors is reversed. The mobility of a passive
-/// hand has a positive definite real part, turned here by a third of a right angle to where neither
-/// mass nor damping is far from it.
-bool is_inside_out(const SignCheck& check) {
+/// m: how much all axes answered to the force along one.
+double column_size(const SignCheck& check, std::size_t by) {
+  double square = 0.0;
+  for (std::size_t of = 0; of < 3; ++of) {
+    square += std::norm(check.first[of][by]);
+  }
+  return std::sqrt(square);
+}
+
+/// Whether the answers along all three axes together, each column turned by its phase, turn round
+/// what the forces were.
+bool turns_inside_out(const SignCheck& check, const std::array<std::complex<double>, 3>& phases) {
   constexpr double kShare = 0.05;  // of what axes of their own would have
-  constexpr double kSpring = 0.2;  // an axis that goes back so much by itself is a spring's
-  const std::complex<double> turned = std::polar(1.0, std::numbers::pi / 6.0);
-  glm::dmat3 mobility(0.0);
+  glm::dmat3 turned(0.0);
   double size = 1.0;
   for (std::size_t by = 0; by < 3; ++by) {
-    const std::complex<double> rate(0.0, turn_rate(kFirst[by]));
-    double square = 0.0;
-    double noise = 0.0;
     for (std::size_t of = 0; of < 3; ++of) {
-      mobility[static_cast<glm::length_t>(by)][static_cast<glm::length_t>(of)] =
-          (check.first[of][by] * rate * turned).real();
-      square += std::norm(check.first[of][by]);
-      noise += std::norm(check.noise[of][0]);
+      turned[static_cast<glm::length_t>(by)][static_cast<glm::length_t>(of)] =
+          (check.first[of][by] * phases[by]).real();
     }
-    const double column = std::abs(rate) * std::sqrt(square);
-    const double own = mobility[static_cast<glm::length_t>(by)][static_cast<glm::length_t>(by)];
-    if (!(square > kClear * kClear * noise) || own < -kSpring * column) {
+    size *= column_size(check, by);
+  }
+  return glm::determinant(turned) < -kShare * size;
+}
+
+/// Whether an odd number of a mechanism's motors is reversed, though no axis alone has to show it.
+/// The mobility of a passive hand has a positive definite real part, turned here by a third of a
+/// right angle to where neither mass nor damping is far from it.
+bool is_inside_out(const SignCheck& check) {
+  constexpr double kSpring = 0.2;  // an axis that goes back so much by itself is a spring's
+  // From a place to its speed, and on by a third.
+  const std::complex<double> phase =
+      std::polar(1.0, std::numbers::pi / 2.0 + std::numbers::pi / 6.0);
+  double noise = 0.0;
+  for (std::size_t of = 0; of < 3; ++of) {
+    noise += std::norm(check.noise[of][0]);
+  }
+  for (std::size_t by = 0; by < 3; ++by) {
+    const double size = column_size(check, by);
+    const double own = (check.first[by][by] * phase).real();
+    if (!(size > kClear * std::sqrt(noise)) || own < -kSpring * size) {
       return false;
     }
-    size *= column;
   }
-  return glm::determinant(mobility) < -kShare * size;
+  return turns_inside_out(check, {phase, phase, phase});
 }
 
 /// Likewise in a hand of springs, where each axis answers the right way by itself: its answer says
 /// how late the hand is at its frequency. With that taken out of each column, the answers are the
 /// forces as the motors turn them, whose determinant is positive where all of them are right.
 bool is_inside_out_in_phase(const SignCheck& check) {
-  constexpr double kShare = 0.05;  // as above
-  glm::dmat3 turned(0.0);
-  double size = 1.0;
+  std::array<std::complex<double>, 3> phases;
   for (std::size_t by = 0; by < 3; ++by) {
-    const std::complex<double> in_phase = std::polar(1.0, -std::arg(check.first[by][by]));
-    double square = 0.0;
-    for (std::size_t of = 0; of < 3; ++of) {
-      turned[static_cast<glm::length_t>(by)][static_cast<glm::length_t>(of)] =
-          (check.first[of][by] * in_phase).real();
-      square += std::norm(check.first[of][by]);
-    }
-    size *= std::sqrt(square);
+    phases[by] = std::polar(1.0, -std::arg(check.first[by][by]));
   }
-  return glm::determinant(turned) < -kShare * size;
+  return turns_inside_out(check, phases);
 }
 
 /// Whether an axis did not answer because the hand moved too much; a handle that nothing moves

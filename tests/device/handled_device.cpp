@@ -1,9 +1,6 @@
 #include "tests/device/handled_device.hpp"
 
-#include <cmath>
 #include <numbers>
-
-#include <glm/matrix.hpp>
 
 #include "device/drivers/wooden_driver.hpp"
 #include "device/protocols/falcon_kinematics.hpp"
@@ -19,25 +16,6 @@ const glm::dvec3 kFalconCentre(0.0, 0.0, 0.115);
 /// rad, to the left: about the axis that comes to who holds it.
 double angle_of(const MovingFrame& handle) {
   return turn_between(glm::dquat(1.0, 0.0, 0.0, 0.0), handle.pose.rotation).y;
-}
-
-glm::dvec3 wooden_home() {
-  const WoodenGeometry geometry = wooden_haptics_2015();
-  WoodenInput home;
-  home.encoders = geometry.home;
-  return wooden_body_angles(geometry, home);
-}
-
-/// d(place)/d(angles) of a WoodenHaptics, by differences, base axes.
-glm::dmat3 wooden_ways(const glm::dvec3& angles) {
-  const WoodenGeometry geometry = wooden_haptics_2015();
-  glm::dmat3 ways;
-  for (glm::length_t i = 0; i < 3; ++i) {
-    glm::dvec3 more = angles;
-    more[i] += kStep;
-    ways[i] = (wooden_position(geometry, more) - wooden_position(geometry, angles)) / kStep;
-  }
-  return ways;
 }
 
 /// A Falcon's force by virtual work: torque times the turn of each joint is force times way. A
@@ -59,22 +37,13 @@ glm::dvec3 falcon_push(const EmulatedFalcon& falcon, const glm::dvec3& place,
   return force;
 }
 
-glm::dvec3 wooden_push(const EmulatedWooden& wooden, const glm::dvec3& angles,
-                       const std::array<double, 3>& signs) {
-  const WoodenGeometry geometry = wooden_haptics_2015();
-  glm::dvec3 torque;
-  for (glm::length_t i = 0; i < 3; ++i) {
-    const auto motor = static_cast<std::size_t>(i);
-    torque[i] = signs[motor] * 1e-3 * wooden.currents[motor] * geometry.torque_constant[i] *
-                geometry.body[i] / geometry.capstan[i] * geometry.turns_with_motor[i];
-  }
-  return glm::inverse(glm::transpose(wooden_ways(angles))) * torque;
-}
-
 }  // namespace
 
 HandledDevice::HandledDevice(const HandTraits& hand, const Miswiring& wrong, std::uint32_t seed)
-    : wrong_(wrong), hand_(hand, {}, seed), angles_(wooden_home() + wrong.home) {}
+    : wrong_(wrong), hand_(hand, {}, seed), arm_(wrong.home) {
+  arm_.motors = wrong.motors;
+  arm_.encoders = wrong.encoders;
+}
 
 Wrench HandledDevice::push_of(const EmulatedDevice& device) const {
   Wrench push;
@@ -82,7 +51,7 @@ Wrench HandledDevice::push_of(const EmulatedDevice& device) const {
     push.force = falcon_push(*falcon, kFalconCentre + wrong_.home + hand_.state().pose.position,
                              wrong_.motors);
   } else if (const auto* const wooden = std::get_if<EmulatedWooden>(&device)) {
-    push.force = wooden_to_world(wooden_push(*wooden, angles_, wrong_.motors));
+    push.force = wooden_to_world(test::push_of(arm_, *wooden));
   } else if (const auto* const odrive = std::get_if<EmulatedOdrive>(&device)) {
     push.torque.y = odrive->closed_loop ? wrong_.motors[0] * odrive->torque : 0.0;
   } else if (const auto* const moteus = std::get_if<EmulatedMoteus>(&device)) {
@@ -93,20 +62,12 @@ Wrench HandledDevice::push_of(const EmulatedDevice& device) const {
   return {wrong_.strength * push.force, wrong_.strength * push.torque};
 }
 
-void HandledDevice::count(EmulatedDevice& device) {
+void HandledDevice::count(EmulatedDevice& device, const glm::dvec3& way) {
   const double turns = wrong_.encoders[0] * angle_of(hand_.state()) / kTurn;
   if (auto* const falcon = std::get_if<EmulatedFalcon>(&device)) {
     falcon->place = kFalconCentre + hand_.state().pose.position;  // it counts from where it was
   } else if (auto* const wooden = std::get_if<EmulatedWooden>(&device)) {
-    const WoodenGeometry geometry = wooden_haptics_2015();
-    const glm::dvec3 moved = angles_ - wooden_home() - wrong_.home;
-    for (glm::length_t i = 0; i < 3; ++i) {
-      const auto encoder = static_cast<std::size_t>(i);
-      wooden->encoders[encoder] = static_cast<std::int16_t>(
-          geometry.home[encoder] +
-          std::lround(wrong_.encoders[encoder] * geometry.turns_with_motor[i] * moved[i] *
-                      geometry.body[i] / geometry.capstan[i] * geometry.counts_per_turn / kTurn));
-    }
+    move_by(arm_, *wooden, world_to_wooden(way));
   } else if (auto* const odrive = std::get_if<EmulatedOdrive>(&device)) {
     odrive->turns = turns;
   } else if (auto* const moteus = std::get_if<EmulatedMoteus>(&device)) {
@@ -119,9 +80,7 @@ void HandledDevice::count(EmulatedDevice& device) {
 void HandledDevice::move(EmulatedDevice& device, const Pose& wanted, double period) {
   const glm::dvec3 before = hand_.state().pose.position;
   hand_.move(push_of(device), wanted, period);
-  const glm::dvec3 way = world_to_wooden(hand_.state().pose.position - before);
-  angles_ += glm::inverse(wooden_ways(angles_)) * way;
-  count(device);
+  count(device, hand_.state().pose.position - before);
 }
 
 }  // namespace torsion::engine::test

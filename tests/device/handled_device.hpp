@@ -6,6 +6,7 @@
 #include <array>
 
 #include "tests/device/emulated_devices.hpp"
+#include "tests/device/wooden_arm.hpp"
 #include "tests/systems/hold/emulated_hand.hpp"
 
 namespace torsion::engine::test {
@@ -28,11 +29,12 @@ class HandledDevice {
 
  private:
   [[nodiscard]] Wrench push_of(const EmulatedDevice& device) const;
-  void count(EmulatedDevice& device);
+  /// @param way  m, world: that the handle went
+  void count(EmulatedDevice& device, const glm::dvec3& way);
 
   Miswiring wrong_;
   EmulatedHand hand_;
-  glm::dvec3 angles_{0.0};  // rad: of a WoodenHaptics' bodies
+  WoodenArm arm_;  // where the device is a WoodenHaptics
 };
 
 }  // namespace torsion::engine::test

@@ -104,21 +104,35 @@ TEST(SignCheckTest, FindsAReversedKnob) {
   EXPECT_EQ(verdict(person, kTranslationAxes | kTurnAxis), SignVerdict::kReversed);
 }
 
-/// Three legs a third of a turn apart: with one motor reversed the force is turned over along that
-/// leg, so that no world axis has to show it.
-glm::dmat3 one_leg_reversed(int leg) {
-  const double angle = 2.0 * std::numbers::pi * leg / 3.0;
-  const glm::dvec3 along = glm::normalize(glm::dvec3(std::numbers::sqrt2 * std::cos(angle), 1.0,
-                                                     std::numbers::sqrt2 * std::sin(angle)));
+/// With one motor of a mechanism's three reversed the force is turned over along that leg, so that
+/// no world axis has to show it.
+glm::dmat3 reversed_along(const glm::dvec3& leg) {
+  const glm::dvec3 along = glm::normalize(leg);
   return glm::dmat3(1.0) - 2.0 * glm::outerProduct(along, along);
 }
 
 TEST(SignCheckTest, FindsOneReversedMotorOfThreeThatActTogether) {
-  for (int leg = 0; leg < 3; ++leg) {
+  for (int leg = 0; leg < 3; ++leg) {  // a third of a turn apart
+    const double angle = 2.0 * std::numbers::pi * leg / 3.0;
     Person person;
-    person.hand.motors = one_leg_reversed(leg);
+    person.hand.motors = reversed_along(
+        {std::numbers::sqrt2 * std::cos(angle), 1.0, std::numbers::sqrt2 * std::sin(angle)});
     SignCheck left;
     EXPECT_EQ(verdict(person, kTranslationAxes, &left), SignVerdict::kReversed) << leg;
+  }
+}
+
+// Every axis goes the right way by itself, and to a hand that is all spring at these frequencies
+// the mobility says nothing.
+TEST(SignCheckTest, FindsOneReversedMotorOfThreeInAHandOfSprings) {
+  for (const double damping : {2.0, 4.0, 8.0}) {
+    Person person;
+    person.hand.mass = 0.05;
+    person.hand.grip_stiffness = 1500.0;
+    person.hand.grip_damping = damping;
+    EXPECT_NE(verdict(person, kTranslationAxes), SignVerdict::kReversed) << damping;
+    person.hand.motors = reversed_along({1.0, 1.0, 1.0});
+    EXPECT_NE(verdict(person, kTranslationAxes), SignVerdict::kRight) << damping;
   }
 }
 
@@ -137,6 +151,7 @@ TEST(SignCheckTest, SaysThatItSawNothingWhereNothingMoves) {
 
 TEST(SignCheckTest, IsNeverWrongWhoeverHoldsIt) {
   std::mt19937 random(7);
+  std::mt19937 legs(8);
   int unresolved = 0;
   int missed = 0;
   constexpr int kHands = 200;
@@ -150,9 +165,11 @@ TEST(SignCheckTest, IsNeverWrongWhoeverHoldsIt) {
     const SignVerdict wrong = verdict(person, kTranslationAxes | kTurnAxis);
     EXPECT_NE(wrong, SignVerdict::kRight) << i;
     missed += wrong == SignVerdict::kUnresolved ? 1 : 0;
-    // One motor of a mechanism's three: no axis alone has to go the wrong way.
+    std::normal_distribution<double> normal;
+    const double x = normal(legs);
+    const double y = normal(legs);
     person.hand.turn_motor = 1.0;
-    person.hand.motors = one_leg_reversed(i % 3);
+    person.hand.motors = reversed_along({x, y, normal(legs)});
     EXPECT_NE(verdict(person, kTranslationAxes), SignVerdict::kRight) << i;
   }
   RecordProperty("unresolved", unresolved);

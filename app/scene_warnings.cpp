@@ -155,21 +155,26 @@ bool has_exact_part(const std::vector<PartDescription>& parts) {
       parts, [](const PartDescription& part) { return part.shape.kind != ShapeKind::kMesh; });
 }
 
-/// Of textures that cannot be decoded.
+/// Of textures that are not drawn.
 void warn_of_textures(const std::string& node, const std::vector<DrawMaterial>& materials,
                       std::vector<std::string>& warnings) {
   constexpr std::uint32_t kLargestSide = 16384;  // pixels, as of what renders on a processor
   std::set<const EncodedImage*> seen;
   for (const DrawMaterial& material : materials) {
-    const EncodedImage* texture = material.texture.get();
-    if (texture == nullptr || !seen.insert(texture).second) {
-      continue;
-    }
-    const Result<Image> image = decode_image(texture->bytes, kLargestSide);
-    if (!image) {
-      warnings.push_back(
-          fmt::format(R"("{}" is drawn without its texture "{}": {}; save it as PNG or JPEG)", node,
-                      texture->name, image.error().text));
+    for (const MaterialTexture& texture : material.textures) {
+      const EncodedImage* encoded = texture.image.get();
+      if (encoded == nullptr || !seen.insert(encoded).second) {
+        continue;
+      }
+      std::string fault = encoded->fault;
+      if (fault.empty()) {
+        const Result<Image> image = decode_image(encoded->bytes, kLargestSide);
+        fault = image ? "" : image.error().text + "; save it as PNG or JPEG";
+      }
+      if (!fault.empty()) {
+        warnings.push_back(fmt::format(R"("{}" is drawn without its texture "{}": {})", node,
+                                       encoded->name, fault));
+      }
     }
   }
 }

@@ -7,11 +7,14 @@
 #include <vector>
 
 #include "ecs/components.hpp"
+#include "ecs/draw_material.hpp"
 #include "render/overlay_draw_list.hpp"
 #include "shaders/arrow.frag.hpp"
 #include "shaders/arrow.vert.hpp"
 #include "shaders/body.frag.hpp"
 #include "shaders/body.vert.hpp"
+#include "shaders/cut_out_shadow.frag.hpp"
+#include "shaders/cut_out_shadow.vert.hpp"
 #include "shaders/deform.comp.hpp"
 #include "shaders/ground.frag.hpp"
 #include "shaders/ground.vert.hpp"
@@ -43,12 +46,16 @@ struct Recipe {
   vk::Format depth_format = kDepthFormat;
   vk::SampleCountFlagBits samples = vk::SampleCountFlagBits::e1;
   vk::CullModeFlags cull = vk::CullModeFlagBits::eBack;
+  bool dynamic_cull = false;  // each draw says it
   bool write_color = true;
   bool write_depth = true;
   bool test_depth = true;
   bool blend = false;
   bool depth_bias = false;
-  bool quick = false;  // constant 0 of the shaders: the overlay's whole pixels, less work a pixel
+  // Constants of the shaders.
+  bool quick = false;    // 0: the overlay's whole pixels, less work a pixel
+  bool cut_out = false;  // 1: pixels of little alpha are left out
+  std::uint32_t read_textures = kReadTextures.back();  // 2
 };
 
 vk::PipelineColorBlendAttachmentState blend_state(const Recipe& recipe) {
@@ -86,10 +93,15 @@ vk::raii::Pipeline make_graphics_pipeline(const Gpu& gpu, vk::PipelineLayout lay
                                           const Recipe& recipe) {
   const vk::raii::ShaderModule vertex = make_module(gpu, recipe.vertex);
   vk::raii::ShaderModule fragment = nullptr;
-  const vk::Bool32 quick = recipe.quick ? VK_TRUE : VK_FALSE;
-  const vk::SpecializationMapEntry entry{.constantID = 0, .offset = 0, .size = sizeof quick};
-  const vk::SpecializationInfo constants{
-      .mapEntryCount = 1, .pMapEntries = &entry, .dataSize = sizeof quick, .pData = &quick};
+  const std::array<std::uint32_t, 3> values = {
+      recipe.quick ? VK_TRUE : VK_FALSE, recipe.cut_out ? VK_TRUE : VK_FALSE, recipe.read_textures};
+  constexpr std::uint32_t kSize = sizeof(std::uint32_t);
+  constexpr std::array<vk::SpecializationMapEntry, 3> entries = {
+      {{0, 0, kSize}, {1, kSize, kSize}, {2, 2 * kSize, kSize}}};
+  const vk::SpecializationInfo constants{.mapEntryCount = entries.size(),
+                                         .pMapEntries = entries.data(),
+                                         .dataSize = sizeof values,
+                                         .pData = values.data()};
   std::vector<vk::PipelineShaderStageCreateInfo> stages = {
       {.stage = vk::ShaderStageFlagBits::eVertex,
        .module = *vertex,
@@ -122,9 +134,10 @@ vk::raii::Pipeline make_graphics_pipeline(const Gpu& gpu, vk::PipelineLayout lay
   const vk::PipelineColorBlendAttachmentState attachment = blend_state(recipe);
   const vk::PipelineColorBlendStateCreateInfo blend{.attachmentCount = has_color ? 1U : 0U,
                                                     .pAttachments = &attachment};
-  const std::array dynamic_states = {vk::DynamicState::eViewport, vk::DynamicState::eScissor};
-  const vk::PipelineDynamicStateCreateInfo dynamic{.dynamicStateCount = dynamic_states.size(),
-                                                   .pDynamicStates = dynamic_states.data()};
+  constexpr std::array kDynamicStates = {vk::DynamicState::eViewport, vk::DynamicState::eScissor,
+                                         vk::DynamicState::eCullMode};
+  const vk::PipelineDynamicStateCreateInfo dynamic{
+      .dynamicStateCount = recipe.dynamic_cull ? 3U : 2U, .pDynamicStates = kDynamicStates.data()};
   const vk::PipelineRenderingCreateInfo rendering{
       .colorAttachmentCount = has_color ? 1U : 0U,
       .pColorAttachmentFormats = &recipe.color_format,
@@ -215,7 +228,8 @@ void make_layouts(const Gpu& gpu, Pipelines& pipelines) {
       {draw_binding::kContacts, Type::eStorageBuffer, 1, Stage::eVertex | Stage::eFragment},
       {draw_binding::kGlyphs, Type::eCombinedImageSampler, 1, Stage::eFragment},
       {draw_binding::kStudio, Type::eCombinedImageSampler, 1, Stage::eVertex | Stage::eFragment},
-      {draw_binding::kBaseColor, Type::eCombinedImageSampler, 1, Stage::eFragment},
+      {draw_binding::kTextures, Type::eCombinedImageSampler, kTextureRoles,
+       Stage::eVertex | Stage::eFragment},
   }};
   pipelines.draw_bindings = make_bindings(gpu, draw);
   pipelines.draw_layout =
@@ -267,6 +281,40 @@ vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, vk::PipelineLayout layo
                                  .quick = quick});
 }
 
+/// @param recipe  of what is solid
+/// @param glass   some of it may be seen through
+SurfacePipelines make_surface_pipelines(const Gpu& gpu, vk::PipelineLayout layout, Recipe recipe,
+                                        const SurfaceNeeds& needs, bool glass) {
+  SurfacePipelines pipelines;
+  recipe.dynamic_cull = true;
+  for (std::size_t row = 0; row < kReadTextures.size(); ++row) {
+    vk::raii::Pipeline& solid = pipelines.solid.emplace_back(nullptr);
+    vk::raii::Pipeline& blended = pipelines.glass.emplace_back(nullptr);
+    if (needs.read[row]) {
+      recipe.read_textures = kReadTextures[row];
+      recipe.blend = false;
+      solid = make_graphics_pipeline(gpu, layout, recipe);
+      recipe.blend = true;
+      blended = glass ? make_graphics_pipeline(gpu, layout, recipe) : nullptr;
+    }
+  }
+  recipe.read_textures = kReadTextures.back();
+  recipe.blend = false;
+  recipe.cut_out = true;
+  pipelines.cut_out = needs.cut_out ? make_graphics_pipeline(gpu, layout, recipe) : nullptr;
+  recipe.cut_out = false;
+  recipe.fragment = {};
+  recipe.write_color = false;
+  pipelines.glass_depth = glass ? make_graphics_pipeline(gpu, layout, recipe) : nullptr;
+  return pipelines;
+}
+
+/// Positions and texture coordinates alone, of vertex buffers as RowInput(1, true) has them.
+std::array<vk::VertexInputAttributeDescription, 2> cut_out_attributes() {
+  return {{{0, 0, vk::Format::eR32G32B32A32Sfloat, 0},
+           {1, 1, vk::Format::eR32G32Sfloat, offsetof(VertexPaint, uv)}}};
+}
+
 }  // namespace
 
 vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, const Pipelines& pipelines,
@@ -275,8 +323,16 @@ vk::raii::Pipeline make_overlay_pipeline(const Gpu& gpu, const Pipelines& pipeli
                                vk::SampleCountFlagBits::e1, true);
 }
 
+std::size_t read_textures_row(std::uint32_t textures) {
+  std::size_t row = 0;
+  while ((textures & ~kReadTextures[row]) != 0) {
+    ++row;
+  }
+  return row;
+}
+
 Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCountFlagBits samples,
-                         bool quick, bool texels) {
+                         const SurfaceNeeds& needs, bool quick, bool texels) {
   Pipelines pipelines;
   make_layouts(gpu, pipelines);
   ComputeConstants constants{.texels = texels ? VK_TRUE : VK_FALSE};
@@ -298,7 +354,17 @@ Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCoun
                                             {.vertex = k_shadow_vert,
                                              .bindings = positions.bindings,
                                              .attributes = positions.attributes,
+                                             .dynamic_cull = true,
                                              .depth_bias = true});
+  const RowInput painted_positions(1, true);
+  const auto cut_out = cut_out_attributes();
+  pipelines.cut_out_shadow = make_graphics_pipeline(gpu, layout,
+                                                    {.vertex = k_cut_out_shadow_vert,
+                                                     .fragment = k_cut_out_shadow_frag,
+                                                     .bindings = painted_positions.bindings,
+                                                     .attributes = cut_out,
+                                                     .dynamic_cull = true,
+                                                     .depth_bias = true});
   Recipe recipe{.vertex = k_ground_vert,
                 .fragment = k_ground_frag,
                 .color_format = color_format,
@@ -310,7 +376,7 @@ Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCoun
   recipe.attributes = body_rows.attributes;
   recipe.vertex = k_body_vert;
   recipe.fragment = k_body_frag;
-  pipelines.body = make_graphics_pipeline(gpu, layout, recipe);
+  pipelines.body = make_surface_pipelines(gpu, layout, recipe, needs, needs.glass_bodies);
   recipe.bindings = arrow_rows.bindings;
   recipe.attributes = arrow_rows.attributes;
   recipe.vertex = k_arrow_vert;
@@ -321,11 +387,7 @@ Pipelines make_pipelines(const Gpu& gpu, vk::Format color_format, vk::SampleCoun
   recipe.attributes = tool_rows.attributes;
   recipe.vertex = k_tool_vert;
   recipe.fragment = k_tool_frag;
-  recipe.blend = true;
-  pipelines.tool = make_graphics_pipeline(gpu, layout, recipe);
-  recipe.fragment = {};
-  recipe.write_color = false;
-  pipelines.tool_depth = make_graphics_pipeline(gpu, layout, recipe);
+  pipelines.tool = make_surface_pipelines(gpu, layout, recipe, needs, true);
 
   pipelines.overlay =
       make_overlay_pipeline(gpu, layout, color_format, kDepthFormat, samples, false);

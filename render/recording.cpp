@@ -45,18 +45,22 @@ void push_draw_bindings(const vk::raii::CommandBuffer& commands, const FrameInpu
                                 writes);
 }
 
-void push_base_color(const vk::raii::CommandBuffer& commands, const FrameInputs& inputs,
-                     std::uint32_t material) {
+void push_textures(const vk::raii::CommandBuffer& commands, const FrameInputs& inputs,
+                   std::uint32_t material) {
   const MaterialTextures& textures = inputs.textures;
-  const vk::DescriptorImageInfo image{*textures.samplers[material],
-                                      *textures.images[textures.image_of[material]].view,
-                                      vk::ImageLayout::eShaderReadOnlyOptimal};
+  const auto& roles = inputs.frame.materials[material].textures;
+  std::array<vk::DescriptorImageInfo, kTextureRoles> images;
+  for (std::size_t role = 0; role < kTextureRoles; ++role) {
+    images[role] = vk::DescriptorImageInfo{*textures.samplers[sampler_row(roles[role])],
+                                           *textures.images[textures.image_of[material][role]].view,
+                                           vk::ImageLayout::eShaderReadOnlyOptimal};
+  }
   commands.pushDescriptorSetKHR(vk::PipelineBindPoint::eGraphics, *inputs.pipelines.draw_layout, 0,
                                 vk::WriteDescriptorSet{
-                                    .dstBinding = draw_binding::kBaseColor,
-                                    .descriptorCount = 1,
+                                    .dstBinding = draw_binding::kTextures,
+                                    .descriptorCount = kTextureRoles,
                                     .descriptorType = vk::DescriptorType::eCombinedImageSampler,
-                                    .pImageInfo = &image,
+                                    .pImageInfo = images.data(),
                                 });
 }
 

@@ -26,9 +26,9 @@ inline vk::DescriptorBufferInfo whole(vk::Buffer buffer) {
 void push_draw_bindings(const vk::raii::CommandBuffer& commands, const FrameInputs& inputs,
                         bool with_shadow_map);
 
-/// The texture of a material's base colour.
-void push_base_color(const vk::raii::CommandBuffer& commands, const FrameInputs& inputs,
-                     std::uint32_t material);
+/// The textures of a material.
+void push_textures(const vk::raii::CommandBuffer& commands, const FrameInputs& inputs,
+                   std::uint32_t material);
 
 void bind(const vk::raii::CommandBuffer& commands, const vk::raii::Pipeline& pipeline);
 

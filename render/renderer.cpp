@@ -52,6 +52,18 @@ std::optional<Error> check(const RendererOptions& options) {
   return std::nullopt;
 }
 
+/// By the materials of a scene.
+SurfaceNeeds needs_of(const FrameWorld& frame, const MaterialTextures& textures) {
+  SurfaceNeeds needs;
+  for (std::uint32_t row = 0; row < frame.materials.size(); ++row) {
+    const AlphaMode mode = frame.materials[row].alpha_mode;
+    needs.read[read_textures_row(textures.bits(row))] = true;
+    needs.cut_out = needs.cut_out || mode == AlphaMode::kMask;
+    needs.glass_bodies = needs.glass_bodies || mode == AlphaMode::kBlend;
+  }
+  return needs;
+}
+
 }  // namespace
 
 /// Members are in the order of creation.
@@ -271,9 +283,9 @@ Result<Renderer> Renderer::create(const RendererOptions& options, const FrameWor
     impl->pictures.emplace(impl->gpu, size, kSlots);
     fit_surfaces(impl->gpu, size, impl->pictures->format(), impl->samples, impl->surfaces);
   }
-  impl->pipelines =
-      make_pipelines(impl->gpu, impl->target().format(), impl->samples,
-                     impl->window.has_value() && on_processor, impl->buffers.has_texels);
+  impl->pipelines = make_pipelines(
+      impl->gpu, impl->target().format(), impl->samples, needs_of(frame, impl->textures),
+      options.quick.value_or(impl->window.has_value() && on_processor), impl->buffers.has_texels);
   if (impl->window) {
     impl->window_overlay =
         make_overlay_pipeline(impl->gpu, impl->pipelines, impl->window->window_format());

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ struct RendererOptions {
       device_name;  // part of a device's name; empty: the environment's TORSION_GPU, else the best
   const OverlayAtlas* overlay_atlas = nullptr;  // copied; without it no overlay is drawn
   const Window* window = nullptr;  // draw into it; must outlive the renderer. null: into pictures
+  std::optional<bool> quick;       // shaders for little time; nothing: in a window that a processor
+                                   // draws
 };
 
 /// Milliseconds that each pass of one frame took on the device.

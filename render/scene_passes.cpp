@@ -1,6 +1,8 @@
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "render/barriers.hpp"
 #include "render/recording.hpp"
@@ -10,23 +12,45 @@ namespace {
 
 using Commands = vk::raii::CommandBuffer;
 
-constexpr float kClearTool = 0.13F;  // alpha of a tool where one looks straight through it
+constexpr float kClearTool = 0.13F;  // alpha of a glass tool where one looks straight through it
 
-bool is_glass(const DrawMaterial& material, ToolLook look) {
-  switch (look) {
-    case ToolLook::kGlass:
-      return true;
-    case ToolLook::kOpaque:
-      return false;
-    case ToolLook::kAuthored:
+/// How a group of triangles covers what is behind it.
+enum class Cover : std::uint8_t { kSolid, kCutOut, kGlass };
+
+Cover tool_cover(const DrawMaterial& material, ToolLook look) {
+  if (look == ToolLook::kGlass) {
+    return Cover::kGlass;
+  }
+  switch (material.alpha_mode) {
+    case AlphaMode::kMask:
+      return Cover::kCutOut;
+    case AlphaMode::kOpaque:
+      return Cover::kSolid;
+    case AlphaMode::kUnsaid:
+    case AlphaMode::kBlend:
       break;
   }
-  return material.alpha_mode != AlphaMode::kOpaque;
+  return look == ToolLook::kOpaque ? Cover::kSolid : Cover::kGlass;
 }
 
-/// Alpha of a material that is drawn as glass: its own where it was made to be seen through.
-float glass_alpha(const DrawMaterial& material) {
-  return material.alpha_mode == AlphaMode::kBlend ? material.color.w : kClearTool;
+Cover body_cover(const DrawMaterial& material) {
+  switch (material.alpha_mode) {
+    case AlphaMode::kMask:
+      return Cover::kCutOut;
+    case AlphaMode::kBlend:
+      return Cover::kGlass;
+    case AlphaMode::kUnsaid:
+    case AlphaMode::kOpaque:
+      break;
+  }
+  return Cover::kSolid;
+}
+
+/// Alpha of a tool: its material's, unless that was not made to be seen through and is all the
+/// same.
+float tool_alpha(const DrawMaterial& material, Cover cover) {
+  const bool own = cover != Cover::kGlass || material.alpha_mode == AlphaMode::kBlend;
+  return own ? material.color.w : kClearTool;
 }
 
 void draw_triangles(const Commands& commands, const DrawRange& drawn, Range triangles) {
@@ -34,56 +58,112 @@ void draw_triangles(const Commands& commands, const DrawRange& drawn, Range tria
                        static_cast<std::int32_t>(drawn.vertices.first), 0);
 }
 
-/// Placement and look of each group of triangles of each row of `things`. `f(row, material,
-/// constants)` may add to it before the draw; where it returns false, nothing is drawn.
-template <class Things, class F>
+/// The bits of a material, and of how it covers.
+std::uint32_t draw_bits(const FrameInputs& inputs, std::uint32_t material, Cover cover) {
+  const std::uint32_t bits =
+      inputs.textures.bits(material) | (cover == Cover::kGlass ? shared::kGlass : 0U);
+  const float strength = inputs.frame.materials[material].occlusion_strength;
+  return bits | static_cast<std::uint32_t>(std::lround(255.0F * strength))
+                    << shared::kOcclusionShift;
+}
+
+/// Which groups of triangles one pipeline draws.
+struct Selection {
+  Cover cover = Cover::kSolid;
+  bool textured = true;            // the shaders read textures
+  std::optional<std::size_t> row;  // of kReadTextures; none: all
+
+  [[nodiscard]] bool has(std::uint32_t textures) const {
+    return !row || read_textures_row(textures) == *row;
+  }
+};
+
+/// Placement and look of each selected group of triangles, of each row of `things`.
+/// @param cover_of  of a material
+/// @param f  f(row, material, constants) may add to the constants before the draw
+template <class Things, class CoverOf, class F>
 void draw_each(const Commands& commands, const FrameInputs& inputs, const Things& things,
-               const Table<DrawGroup>& groups, F&& f) {
+               const Table<DrawGroup>& groups, const Selection& selection, CoverOf&& cover_of,
+               F&& f) {
   for (std::uint32_t row = 0; row < things.size(); ++row) {
     const auto& drawn = things.template at<DrawRange>(row);
     for (const DrawGroup& group : groups.rows<DrawGroup>(drawn.groups)) {
       const DrawMaterial& material = inputs.frame.materials[group.material];
+      if (group.triangles.count == 0 || cover_of(material) != selection.cover ||
+          !selection.has(inputs.textures.bits(group.material))) {
+        continue;
+      }
       shared::DrawConstants constants{};
       set_pose(things.template at<Pose>(row), constants);
       constants.color = material.color;
-      constants.surface = {material.metallic, material.roughness, material.scattering, 0.0F};
-      const bool textured = inputs.textures.image_of[group.material] != 0;
-      constants.rows.w = textured ? shared::kTextured : 0U;
-      if (group.triangles.count > 0 && f(row, material, constants)) {
-        push_base_color(commands, inputs, group.material);
-        push_constants(commands, inputs.pipelines.draw_layout, kDrawStages, constants);
-        draw_triangles(commands, drawn, group.triangles);
+      constants.surface = {material.metallic, material.roughness, material.scattering,
+                           material.alpha_cutoff};
+      constants.emission = glm::vec4(material.emission, material.normal_scale);
+      constants.rows.w = draw_bits(inputs, group.material, selection.cover);
+      f(row, material, constants);
+      if (selection.textured) {
+        push_textures(commands, inputs, group.material);
       }
+      push_constants(commands, inputs.pipelines.draw_layout, kDrawStages, constants);
+      commands.setCullMode(material.double_sided ? vk::CullModeFlagBits::eNone
+                                                 : vk::CullModeFlagBits::eBack);
+      draw_triangles(commands, drawn, group.triangles);
     }
   }
 }
 
-void draw_bodies(const Commands& commands, const FrameInputs& inputs) {
+/// Draws with the pipelines of one cover.
+/// @param draw  draw(selection): all that is selected
+template <class F>
+void draw_with(const Commands& commands, const SurfacePipelines& pipelines, Cover cover, F&& draw) {
+  const auto draw_by = [&](const vk::raii::Pipeline& pipeline, const Selection& selection) {
+    if (*pipeline) {
+      bind(commands, pipeline);
+      draw(selection);
+    }
+  };
+  switch (cover) {
+    case Cover::kCutOut:
+      draw_by(pipelines.cut_out, {cover, true, {}});
+      return;
+    case Cover::kGlass:
+      draw_by(pipelines.glass_depth, {cover, true, {}});
+      break;
+    case Cover::kSolid:
+      break;
+  }
+  const auto& by_textures = cover == Cover::kGlass ? pipelines.glass : pipelines.solid;
+  for (std::size_t row = 0; row < kReadTextures.size(); ++row) {
+    draw_by(by_textures[row], {cover, true, row});
+  }
+}
+
+void draw_bodies(const Commands& commands, const FrameInputs& inputs, Cover cover) {
   if (inputs.frame.bodies.empty()) {
     return;
   }
-  bind(commands, inputs.pipelines.body);
   const SceneBuffers& buffers = inputs.buffers;
   bind_vertices(commands, {*buffers.positions.handle, *buffers.normals.handle, *buffers.rest.handle,
                            *buffers.paint.handle});
   commands.bindIndexBuffer(*buffers.body_indices.handle, 0, vk::IndexType::eUint32);
-  draw_each(
-      commands, inputs, inputs.frame.bodies, inputs.frame.body_groups,
-      [&](std::uint32_t row, const DrawMaterial& /*material*/, shared::DrawConstants& constants) {
-        constants.grid = inputs.extent.grids[row];
-        if (!inputs.options.grid) {
-          constants.grid.w = 0.0F;
-        }
-        const Range spots = inputs.contacts[row];
-        constants.rows.x = spots.first;
-        constants.rows.y = spots.count;
-        constants.rows.z = static_cast<std::uint32_t>(inputs.options.heat_map);
-        return true;
-      });
+  const auto add = [&](std::uint32_t row, const DrawMaterial& /*material*/,
+                       shared::DrawConstants& constants) {
+    constants.grid = inputs.extent.grids[row];
+    if (!inputs.options.grid) {
+      constants.grid.w = 0.0F;
+    }
+    const Range spots = inputs.contacts[row];
+    constants.rows.x = spots.first;
+    constants.rows.y = spots.count;
+    constants.rows.z = static_cast<std::uint32_t>(inputs.options.heat_map);
+  };
+  draw_with(commands, inputs.pipelines.body, cover, [&](const Selection& selection) {
+    draw_each(commands, inputs, inputs.frame.bodies, inputs.frame.body_groups, selection,
+              body_cover, add);
+  });
 }
 
-/// @param glass  those that are seen through, or the others
-void draw_tools(const Commands& commands, const FrameInputs& inputs, bool glass) {
+void draw_tools(const Commands& commands, const FrameInputs& inputs, Cover cover) {
   if (inputs.frame.tools.empty()) {
     return;
   }
@@ -91,22 +171,47 @@ void draw_tools(const Commands& commands, const FrameInputs& inputs, bool glass)
   bind_vertices(commands, {*buffers.tool_positions.handle, *buffers.tool_normals.handle,
                            *buffers.tool_paint.handle});
   commands.bindIndexBuffer(*buffers.tool_indices.handle, 0, vk::IndexType::eUint32);
-  const auto draw_with = [&](const vk::raii::Pipeline& pipeline) {
-    bind(commands, pipeline);
-    draw_each(
-        commands, inputs, inputs.frame.tools, inputs.frame.tool_groups,
-        [&](std::uint32_t row, const DrawMaterial& material, shared::DrawConstants& constants) {
-          constants.grid = inputs.extent.tool_centers[row];
-          constants.color.w = glass ? glass_alpha(material) : 1.0F;
-          constants.rows.w |= glass ? shared::kGlass : 0U;
-          constants.rows.w |= inputs.options.grid ? shared::kMarks : 0U;
-          return is_glass(material, inputs.options.tools) == glass;
-        });
+  const auto cover_of = [&](const DrawMaterial& material) {
+    return tool_cover(material, inputs.options.tools);
   };
-  if (glass) {
-    draw_with(inputs.pipelines.tool_depth);
-  }
-  draw_with(inputs.pipelines.tool);
+  const auto add = [&](std::uint32_t row, const DrawMaterial& material,
+                       shared::DrawConstants& constants) {
+    constants.grid = inputs.extent.tool_centers[row];
+    constants.color.w = tool_alpha(material, cover);
+    constants.rows.w |= inputs.options.grid ? shared::kMarks : 0U;
+  };
+  draw_with(commands, inputs.pipelines.tool, cover, [&](const Selection& selection) {
+    draw_each(commands, inputs, inputs.frame.tools, inputs.frame.tool_groups, selection, cover_of,
+              add);
+  });
+}
+
+/// All that casts a shadow and covers so, into its half of the map.
+void draw_shadows(const Commands& commands, const FrameInputs& inputs, Cover cover) {
+  const bool cut_out = cover == Cover::kCutOut;
+  bind(commands, cut_out ? inputs.pipelines.cut_out_shadow : inputs.pipelines.shadow);
+  const auto draw = [&](const auto& things, const auto& groups, const auto& cover_of,
+                        vk::Buffer positions, vk::Buffer paint, vk::Buffer indices) {
+    if (things.empty()) {
+      return;
+    }
+    if (cut_out) {
+      bind_vertices(commands, {positions, paint});
+    } else {
+      bind_vertices(commands, {positions});
+    }
+    commands.bindIndexBuffer(indices, 0, vk::IndexType::eUint32);
+    draw_each(commands, inputs, things, groups, {cover, cut_out, {}}, cover_of,
+              [](std::uint32_t /*row*/, const DrawMaterial& /*material*/,
+                 shared::DrawConstants& /*constants*/) {});
+  };
+  const SceneBuffers& buffers = inputs.buffers;
+  draw(inputs.frame.bodies, inputs.frame.body_groups, body_cover, *buffers.positions.handle,
+       *buffers.paint.handle, *buffers.body_indices.handle);
+  draw(
+      inputs.frame.tools, inputs.frame.tool_groups,
+      [&](const DrawMaterial& material) { return tool_cover(material, inputs.options.tools); },
+      *buffers.tool_positions.handle, *buffers.tool_paint.handle, *buffers.tool_indices.handle);
 }
 
 void draw_arrows(const Commands& commands, const FrameInputs& inputs) {
@@ -158,32 +263,14 @@ void record_shadow(const Commands& commands, const FrameInputs& inputs) {
   const vk::RenderingAttachmentInfo depth = depth_attachment(map, vk::AttachmentStoreOp::eStore);
   commands.beginRendering(vk::RenderingInfo{
       .renderArea = {{0, 0}, map.extent}, .layerCount = 1, .pDepthAttachment = &depth});
-  bind(commands, inputs.pipelines.shadow);
   push_draw_bindings(commands, inputs, false);
   // What is opaque left, glass right: light.glsl says why.
   const std::uint32_t side = map.extent.height;
-  const vk::Rect2D left{{0, 0}, {side, side}};
-  const vk::Rect2D right{{static_cast<std::int32_t>(side), 0}, {side, side}};
-  if (!inputs.frame.bodies.empty()) {
-    set_view(commands, left);
-    bind_vertices(commands, {*inputs.buffers.positions.handle});
-    commands.bindIndexBuffer(*inputs.buffers.body_indices.handle, 0, vk::IndexType::eUint32);
-    draw_each(commands, inputs, inputs.frame.bodies, inputs.frame.body_groups,
-              [](std::uint32_t /*row*/, const DrawMaterial& /*material*/,
-                 shared::DrawConstants& /*constants*/) { return true; });
-  }
-  if (!inputs.frame.tools.empty()) {
-    bind_vertices(commands, {*inputs.buffers.tool_positions.handle});
-    commands.bindIndexBuffer(*inputs.buffers.tool_indices.handle, 0, vk::IndexType::eUint32);
-    for (const bool glass : {false, true}) {
-      set_view(commands, glass ? right : left);
-      draw_each(commands, inputs, inputs.frame.tools, inputs.frame.tool_groups,
-                [&](std::uint32_t /*row*/, const DrawMaterial& material,
-                    shared::DrawConstants& /*constants*/) {
-                  return is_glass(material, inputs.options.tools) == glass;
-                });
-    }
-  }
+  set_view(commands, {{0, 0}, {side, side}});
+  draw_shadows(commands, inputs, Cover::kSolid);
+  draw_shadows(commands, inputs, Cover::kCutOut);
+  set_view(commands, {{static_cast<std::int32_t>(side), 0}, {side, side}});
+  draw_shadows(commands, inputs, Cover::kGlass);
   commands.endRendering();
   shadow_target_to_sampled(commands, *map.handle);
 }
@@ -209,14 +296,17 @@ void record_draw(const Frame& target, const FrameInputs& inputs) {
   set_view(commands, {{0, 0}, target.extent});
   commands.setScissor(0, inputs.part);
   push_draw_bindings(commands, inputs, true);
-  draw_bodies(commands, inputs);
-  draw_tools(commands, inputs, false);
+  for (const Cover cover : {Cover::kSolid, Cover::kCutOut}) {
+    draw_bodies(commands, inputs, cover);
+    draw_tools(commands, inputs, cover);
+  }
   draw_arrows(commands, inputs);
   if (inputs.options.ground) {
     bind(commands, inputs.pipelines.ground);
     commands.draw(6, 1, 0, 0);
   }
-  draw_tools(commands, inputs, true);
+  draw_bodies(commands, inputs, Cover::kGlass);
+  draw_tools(commands, inputs, Cover::kGlass);
   if (!inputs.overlay_apart) {
     const std::span<const OverlayClip> all = inputs.overlay == nullptr
                                                  ? std::span<const OverlayClip>{}

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "ecs/components.hpp"
+#include "ecs/draw_material.hpp"
 #include "shaders/shared.h"
 
 namespace torsion::engine {
@@ -25,7 +26,11 @@ static_assert(sizeof(FrameUniforms) == 2 * kMat4 + 16 * kVec4);
 static_assert(offsetof(DrawConstants, color) == 3 * kVec4);
 static_assert(offsetof(DrawConstants, grid) == 4 * kVec4);
 static_assert(offsetof(DrawConstants, surface) == 5 * kVec4);
-static_assert(offsetof(DrawConstants, rows) == 6 * kVec4);
+static_assert(offsetof(DrawConstants, emission) == 6 * kVec4);
+static_assert(offsetof(DrawConstants, rows) == 7 * kVec4);
+static_assert(shared::kTextures == kTextureRoles);
+static_assert(shared::kMetalRoughness == static_cast<shared::uint>(TextureRole::kMetalRoughness) &&
+              shared::kEmission == static_cast<shared::uint>(TextureRole::kEmission));
 static_assert(sizeof(DrawConstants) <= kLeastPushConstants);
 static_assert(sizeof(shared::DeformConstants) == 6 * sizeof(shared::uint));
 static_assert(sizeof(shared::NormalConstants) == 2 * sizeof(shared::uint));

@@ -1,7 +1,9 @@
 #include "scenes/materials.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "scenes/gltf_accessors.hpp"
 
@@ -19,9 +21,27 @@ const tinygltf::Material* material_of(const tinygltf::Model& model,
   return row_or_null(model.materials, primitive.material);
 }
 
-const tinygltf::Texture* base_texture(const tinygltf::Model& model,
-                                      const tinygltf::Material& material) {
-  return row_or_null(model.textures, material.pbrMetallicRoughness.baseColorTexture.index);
+/// What glTF's textureInfo objects have in common.
+struct TextureReference {
+  int texture = -1;
+  int set = 0;
+  const tinygltf::ExtensionMap* extensions = nullptr;
+};
+
+using TextureReferences = std::array<TextureReference, kTextureRoles>;
+
+/// Of each role.
+TextureReferences references_of(const tinygltf::Material& material) {
+  TextureReferences references;
+  const auto take = [&](TextureRole role, const auto& info) {
+    references[static_cast<std::size_t>(role)] = {info.index, info.texCoord, &info.extensions};
+  };
+  take(TextureRole::kBaseColor, material.pbrMetallicRoughness.baseColorTexture);
+  take(TextureRole::kMetalRoughness, material.pbrMetallicRoughness.metallicRoughnessTexture);
+  take(TextureRole::kNormal, material.normalTexture);
+  take(TextureRole::kOcclusion, material.occlusionTexture);
+  take(TextureRole::kEmission, material.emissiveTexture);
+  return references;
 }
 
 /// Also of what is no number.
@@ -57,22 +77,94 @@ glm::dvec2 pair_or(const tinygltf::Value& object, const char* name, const glm::d
                  : otherwise;
 }
 
+/// Where a texture has its coordinates: a set of them, moved as KHR_texture_transform says.
+struct Coordinates {
+  int set = 0;
+  glm::dvec2 scale{1.0};
+  glm::dvec2 offset{0.0};
+  double angle = 0.0;  // rad
+
+  bool operator==(const Coordinates&) const = default;
+};
+
+Coordinates coordinates_of(const TextureReference& reference) {
+  Coordinates read;
+  tinygltf::Value transform;
+  const auto extension = reference.extensions->find("KHR_texture_transform");
+  if (extension != reference.extensions->end()) {
+    transform = extension->second;
+  }
+  read.set = static_cast<int>(number_or(transform, "texCoord", reference.set));
+  read.scale = pair_or(transform, "scale", read.scale);
+  read.offset = pair_or(transform, "offset", read.offset);
+  read.angle = number_or(transform, "rotation", read.angle);
+  return read;
+}
+
+/// Of a material's textures: those of the first of them.
+std::optional<Coordinates> shared_coordinates(const TextureReferences& references) {
+  for (const TextureReference& reference : references) {
+    if (reference.texture >= 0) {
+      return coordinates_of(reference);
+    }
+  }
+  return std::nullopt;
+}
+
+std::shared_ptr<const EncodedImage> undrawn(int texture, const char* fault) {
+  return std::make_shared<const EncodedImage>(
+      EncodedImage{"textures[" + std::to_string(texture) + "]", {}, fault});
+}
+
+MaterialTexture read_texture(const tinygltf::Model& model, const TextureReference& reference,
+                             const SceneImages& images, const Coordinates& shared) {
+  const tinygltf::Texture* texture = row_or_null(model.textures, reference.texture);
+  MaterialTexture read;
+  if (texture == nullptr || images.empty()) {
+    return read;
+  }
+  if (coordinates_of(reference) != shared) {
+    read.image = undrawn(reference.texture,
+                         "its coordinates differ from those of the material's first texture");
+  } else if (texture->source < 0) {
+    read.image = undrawn(reference.texture, "its image is of an extension's kind");
+  } else if (row_or_null(images, texture->source) != nullptr) {
+    read.image = images[static_cast<std::size_t>(texture->source)];
+  }
+  if (const tinygltf::Sampler* sampler = row_or_null(model.samplers, texture->sampler)) {
+    read.wrap_u = wrap_of(sampler->wrapS);
+    read.wrap_v = wrap_of(sampler->wrapT);
+  }
+  return read;
+}
+
+AlphaMode alpha_mode_of(const tinygltf::Material& material) {
+  if (material.alphaMode == "BLEND") {
+    return AlphaMode::kBlend;
+  }
+  return material.alphaMode == "MASK" ? AlphaMode::kMask : AlphaMode::kOpaque;
+}
+
 }  // namespace
 
 SceneImages read_images(const tinygltf::Model& model) {
   SceneImages images(model.images.size());
   for (const tinygltf::Material& material : model.materials) {
-    const tinygltf::Texture* texture = base_texture(model, material);
-    const tinygltf::Image* image =
-        texture == nullptr ? nullptr : row_or_null(model.images, texture->source);
-    if (image == nullptr) {
-      continue;
-    }
-    const auto row = static_cast<std::size_t>(texture->source);
-    if (!images[row]) {
-      std::string name = !image->uri.empty() ? image->uri : image->name;
-      images[row] = std::make_shared<const EncodedImage>(EncodedImage{
-          name.empty() ? "images[" + std::to_string(row) + "]" : std::move(name), image->image});
+    for (const TextureReference& reference : references_of(material)) {
+      const tinygltf::Texture* texture = row_or_null(model.textures, reference.texture);
+      const tinygltf::Image* image =
+          texture == nullptr ? nullptr : row_or_null(model.images, texture->source);
+      if (image == nullptr) {
+        continue;
+      }
+      const auto row = static_cast<std::size_t>(texture->source);
+      if (!images[row]) {
+        std::string name = !image->uri.empty() ? image->uri : image->name;
+        images[row] = std::make_shared<const EncodedImage>(
+            EncodedImage{name.empty() ? "images[" + std::to_string(row) + "]" : std::move(name),
+                         image->image,
+                         {}});
+      }
     }
   }
   return images;
@@ -91,22 +183,22 @@ DrawMaterial read_material(const tinygltf::Model& model, const tinygltf::Primiti
   }
   read.metallic = share(said.metallicFactor);
   read.roughness = share(said.roughnessFactor);
-  read.alpha_mode = material->alphaMode == "BLEND" ? AlphaMode::kBlend : AlphaMode::kOpaque;
+  for (int i = 0; i < 3 && material->emissiveFactor.size() == 3; ++i) {
+    read.emission[i] = share(material->emissiveFactor[static_cast<std::size_t>(i)]);
+  }
+  read.alpha_mode = alpha_mode_of(*material);
+  read.double_sided = material->doubleSided;
+  read.alpha_cutoff = static_cast<float>(material->alphaCutoff);
+  read.normal_scale = static_cast<float>(material->normalTexture.scale);
+  read.occlusion_strength = share(material->occlusionTexture.strength);
   const auto scattering = material->extensions.find("KHR_materials_diffuse_transmission");
   if (scattering != material->extensions.end()) {
     read.scattering = share(number_or(scattering->second, "diffuseTransmissionFactor", 0.0));
   }
-  const tinygltf::Texture* texture = base_texture(model, *material);
-  if (texture != nullptr && texture->source < 0) {
-    // Of an extension's kind of image.
-    const int row = said.baseColorTexture.index;
-    read.texture = std::make_shared<const EncodedImage>(
-        EncodedImage{"textures[" + std::to_string(row) + "]", {}});
-  } else if (texture != nullptr && row_or_null(look.images, texture->source) != nullptr) {
-    read.texture = look.images[static_cast<std::size_t>(texture->source)];
-    if (const tinygltf::Sampler* sampler = row_or_null(model.samplers, texture->sampler)) {
-      read.wrap_u = wrap_of(sampler->wrapS);
-      read.wrap_v = wrap_of(sampler->wrapT);
+  const TextureReferences references = references_of(*material);
+  if (const auto shared = shared_coordinates(references)) {
+    for (std::size_t role = 0; role < kTextureRoles; ++role) {
+      read.textures[role] = read_texture(model, references[role], look.images, *shared);
     }
   }
   return read;
@@ -115,18 +207,14 @@ DrawMaterial read_material(const tinygltf::Model& model, const tinygltf::Primiti
 std::vector<glm::vec2> read_texcoords(const tinygltf::Model& model,
                                       const tinygltf::Primitive& primitive) {
   const tinygltf::Material* material = material_of(model, primitive);
-  if (material == nullptr || base_texture(model, *material) == nullptr) {
+  if (material == nullptr) {
     return {};
   }
-  const tinygltf::TextureInfo& info = material->pbrMetallicRoughness.baseColorTexture;
-  tinygltf::Value transform;
-  const auto extension = info.extensions.find("KHR_texture_transform");
-  if (extension != info.extensions.end()) {
-    transform = extension->second;
+  const std::optional<Coordinates> coordinates = shared_coordinates(references_of(*material));
+  if (!coordinates) {
+    return {};
   }
-  const double set = number_or(transform, "texCoord", static_cast<double>(info.texCoord));
-  const auto attribute =
-      primitive.attributes.find("TEXCOORD_" + std::to_string(static_cast<int>(set)));
+  const auto attribute = primitive.attributes.find("TEXCOORD_" + std::to_string(coordinates->set));
   if (attribute == primitive.attributes.end()) {
     return {};
   }
@@ -135,11 +223,10 @@ std::vector<glm::vec2> read_texcoords(const tinygltf::Model& model,
     return {};
   }
   // uv' = translation * rotation * scale * uv (KHR_texture_transform).
-  const glm::dvec2 scale = pair_or(transform, "scale", glm::dvec2(1.0));
-  const glm::dvec2 offset = pair_or(transform, "offset", glm::dvec2(0.0));
-  const double angle = number_or(transform, "rotation", 0.0);
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
+  const glm::dvec2& scale = coordinates->scale;
+  const glm::dvec2& offset = coordinates->offset;
+  const double c = std::cos(coordinates->angle);
+  const double s = std::sin(coordinates->angle);
   const std::vector<double> numbers = read_numbers(model, attribute->second);
   std::vector<glm::vec2> texcoords(numbers.size() / 2);
   for (std::size_t i = 0; i < texcoords.size(); ++i) {

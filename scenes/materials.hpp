@@ -10,8 +10,8 @@
 
 namespace torsion::engine {
 
-/// The bytes of a file's images; null for those that are of no base colour. No bytes: they
-/// are not there.
+/// The bytes of a file's images; null for those that no material has. No bytes: they are not
+/// there.
 using SceneImages = std::vector<std::shared_ptr<const EncodedImage>>;
 
 SceneImages read_images(const tinygltf::Model& model);
@@ -22,13 +22,14 @@ struct MeshLook {
   DrawMaterial plain;  // of primitives without a material
 };
 
-/// What glTF's material says, as far as it is drawn: base colour and its texture, metal, roughness,
-/// alpha mode, KHR_materials_diffuse_transmission.
+/// What glTF's material says, as far as it is drawn: base colour, metal, roughness, emission, all
+/// five textures, alpha mode, KHR_materials_diffuse_transmission. Textures whose coordinates differ
+/// from the first one's are not drawn.
 DrawMaterial read_material(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                            const MeshLook& look);
 
-/// Where each vertex is on the texture of its base colour, KHR_texture_transform applied; nothing
-/// where the primitive has no such texture, or no such coordinates.
+/// Where each vertex is on its material's textures, KHR_texture_transform applied; nothing where
+/// the material has no texture, or the primitive no such coordinates.
 std::vector<glm::vec2> read_texcoords(const tinygltf::Model& model,
                                       const tinygltf::Primitive& primitive);
 

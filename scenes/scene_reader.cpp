@@ -86,7 +86,7 @@ void append_shape(const PartDescription& part, const DrawMaterial& material, Own
   MeshTriangles drawn = drawn_mesh(
       owner.rigid ? tessellate(part.shape, flat ? kFlatTool : kRoundTool) : part.surface);
   drawn.materials = {material};
-  drawn.materials.front().texture = nullptr;  // its place on the shape is not known
+  drawn.materials.front().textures = {};  // their places on the shape are not known
   drawn.triangle_materials.assign(drawn.triangles.size(), 0);
   append_draw_mesh(drawn, owner.draw);
 }

@@ -33,24 +33,27 @@ int last_row(const std::vector<Row>& rows) {
 
 }  // namespace
 
-int MaterialWriter::texture_of(const DrawMaterial& material) {
-  const auto found = std::ranges::find(images_, material.texture.get());
-  tinygltf::Texture texture;
-  texture.source = static_cast<int>(found - images_.begin());
+int MaterialWriter::add_texture(const MaterialTexture& texture) {
+  if (!texture.image || texture.image->bytes.empty()) {
+    return -1;
+  }
+  const auto found = std::ranges::find(images_, texture.image.get());
+  tinygltf::Texture written;
+  written.source = static_cast<int>(found - images_.begin());
   if (found == images_.end()) {
-    images_.push_back(material.texture.get());
+    images_.push_back(texture.image.get());
     tinygltf::Image image;
-    image.name = material.texture->name;
-    image.mimeType = mime_type(material.texture->bytes);
-    image.bufferView = append_view(model_, 0, std::as_bytes(std::span(material.texture->bytes)));
+    image.name = texture.image->name;
+    image.mimeType = mime_type(texture.image->bytes);
+    image.bufferView = append_view(model_, 0, std::as_bytes(std::span(texture.image->bytes)));
     model_.images.push_back(image);
   }
   tinygltf::Sampler sampler;
-  sampler.wrapS = gltf_wrap(material.wrap_u);
-  sampler.wrapT = gltf_wrap(material.wrap_v);
+  sampler.wrapS = gltf_wrap(texture.wrap_u);
+  sampler.wrapT = gltf_wrap(texture.wrap_v);
   model_.samplers.push_back(sampler);
-  texture.sampler = last_row(model_.samplers);
-  model_.textures.push_back(texture);
+  written.sampler = last_row(model_.samplers);
+  model_.textures.push_back(written);
   return last_row(model_.textures);
 }
 
@@ -63,8 +66,16 @@ int MaterialWriter::add(const DrawMaterial& material, const std::string& name) {
   }
   pbr.metallicFactor = static_cast<double>(material.metallic);
   pbr.roughnessFactor = static_cast<double>(material.roughness);
+  written.emissiveFactor.clear();
+  for (int i = 0; i < 3; ++i) {
+    written.emissiveFactor.push_back(static_cast<double>(material.emission[i]));
+  }
+  written.doubleSided = material.double_sided;
   if (material.alpha_mode == AlphaMode::kBlend) {
     written.alphaMode = "BLEND";
+  } else if (material.alpha_mode == AlphaMode::kMask) {
+    written.alphaMode = "MASK";
+    written.alphaCutoff = static_cast<double>(material.alpha_cutoff);
   }
   if (material.scattering > 0.0F) {
     constexpr const char* kExtension = "KHR_materials_diffuse_transmission";
@@ -74,9 +85,13 @@ int MaterialWriter::add(const DrawMaterial& material, const std::string& name) {
       model_.extensionsUsed.emplace_back(kExtension);
     }
   }
-  if (material.texture && !material.texture->bytes.empty()) {
-    pbr.baseColorTexture.index = texture_of(material);
-  }
+  pbr.baseColorTexture.index = add_texture(material.texture(TextureRole::kBaseColor));
+  pbr.metallicRoughnessTexture.index = add_texture(material.texture(TextureRole::kMetalRoughness));
+  written.normalTexture.index = add_texture(material.texture(TextureRole::kNormal));
+  written.normalTexture.scale = static_cast<double>(material.normal_scale);
+  written.occlusionTexture.index = add_texture(material.texture(TextureRole::kOcclusion));
+  written.occlusionTexture.strength = static_cast<double>(material.occlusion_strength);
+  written.emissiveTexture.index = add_texture(material.texture(TextureRole::kEmission));
   model_.materials.push_back(written);
   return last_row(model_.materials);
 }

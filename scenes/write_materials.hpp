@@ -18,7 +18,8 @@ class MaterialWriter {
   int add(const DrawMaterial& material, const std::string& name);
 
  private:
-  int texture_of(const DrawMaterial& material);
+  /// @return row of the model's textures; -1 where there is none that can be drawn
+  int add_texture(const MaterialTexture& texture);
 
   tinygltf::Model& model_;
   std::vector<const EncodedImage*> images_;  // rows of the model's images

@@ -4,10 +4,11 @@
 #include "frame.glsl"
 #include "light.glsl"
 #include "openness.glsl"
+#include "textures.glsl"
 #include "reflection.glsl"
+#include "material.glsl"
 
 layout(set = 0, binding = 2) uniform sampler2D color_maps;
-layout(set = 0, binding = 6) uniform sampler2D base_color;
 
 layout(location = 0) in vec3 world_position;  // with kQuick: linear rgb of the light from all around
 layout(location = 1) in vec3 world_normal;    // with kQuick: x is the cosine toward the key light; y and z are what
@@ -47,10 +48,11 @@ float material_lines() {
 }
 
 void main() {
-  vec3 base = draw.color.rgb * painted;
-  if ((draw.rows.w & kTextured) != 0) {
-    base *= texture(base_color, texcoord).rgb;
+  Material material = material_at(texcoord, painted);
+  if (kCutOut && material.alpha < draw.surface.w) {
+    discard;
   }
+  vec3 base = material.base;
   if (draw.rows.z != kHeatNone) {
     float at = clamp((heat - frame.heat_scale.x) * frame.heat_scale.y, 0.0, 1.0);
     if (frame.heat_scale.w > 0.0) {
@@ -58,33 +60,44 @@ void main() {
       at = 0.5 + 0.5 * sign(part) * sqrt(abs(part));
     }
     base = texture(color_maps, vec2(at * (255.0 / 256.0) + 0.5 / 256.0, frame.heat_scale.z)).rgb;
+    material.emission = vec3(0.0);
   }
   base *= 1.0 - 0.25 * rest_position.w;  // what is fixed is a little darker
-  if (draw.grid.w > 0.0) {
+  float mark = draw.grid.w > 0.0 ? material_lines() : 0.0;
+  if (mark > 0.0) {
     // Dark lines, or light ones where the colour is too dark for them.
     float luminance = dot(base, vec3(0.2126, 0.7152, 0.0722));
     vec3 line = mix(mix(base, vec3(1.0), 0.35), base * 0.12, smoothstep(0.03, 0.07, luminance));
-    base = mix(base, line, material_lines());
+    base = mix(base, line, mark);
   }
 
-  vec3 reflectance = normal_reflectance(base);
-  vec3 scattered = base * (1.0 - draw.surface.x);
+  vec3 reflectance = normal_reflectance(base, material.metal);
+  vec3 scattered = base * (1.0 - material.metal);
+  bool is_glass = (draw.rows.w & kGlass) != 0;
   if (kQuick) {
     float share = world_normal.x > 0.0 ? key_light_share(in_shadow_map) : 0.0;
-    vec3 light = world_position + frame.key_light.rgb * diffuse_key(world_normal.x, share);
-    color = vec4(below_white(scattered * light + reflectance * world_normal.y + world_normal.z), 1.0);
+    vec3 light = material.open * world_position + frame.key_light.rgb * diffuse_key(world_normal.x, share);
+    vec3 seen = scattered * light + material.emission;
+    vec3 shine = reflectance * world_normal.y + world_normal.z;
+    color = is_glass ? glass(seen, shine, glass_cover(material.alpha, 1.0, mark))
+                     : vec4(below_white(seen + shine), 1.0);
     return;
   }
-  vec3 normal = normalize(world_normal);
+  vec3 outward = gl_FrontFacing ? world_normal : -world_normal;  // what is double-sided
+  vec3 normal = mapped_normal(normalize(outward), world_position, texcoord);
   vec3 to_eye = normalize(frame.eye.xyz - world_position);
   float facing = dot(normal, frame.to_key_light.xyz);
   float share = facing > 0.0 ? key_light_share(in_shadow_map) : 0.0;
-  float open = openness(rest_position.xyz, world_position.y, normal);
+  float open = material.open * openness(rest_position.xyz, world_position.y, normal);
   vec3 light = ambient_light(normal, to_eye, open) + frame.key_light.rgb * diffuse_key(facing, share);
-  vec2 of_mirror = mirrored_share(max(dot(normal, to_eye), 0.0));
-  vec3 shine = open * mirrored(reflect(-to_eye, normal)) * (reflectance * of_mirror.x + of_mirror.y);
+  float seen_by = max(dot(normal, to_eye), 0.0);
+  vec2 of_mirror = mirrored_share(seen_by, material.roughness);
+  vec3 shine = open * mirrored(reflect(-to_eye, normal), material.roughness) *
+               (reflectance * of_mirror.x + of_mirror.y);
   if (share > 0.0) {
-    shine += share * frame.key_light.rgb * key_highlight(reflectance, normal, to_eye, facing);
+    shine += share * frame.key_light.rgb * key_highlight(reflectance, material.roughness, normal, to_eye, facing);
   }
-  color = vec4(below_white(scattered * light + shine), 1.0);
+  vec3 seen = scattered * light + material.emission;
+  color = is_glass ? glass(seen, shine, glass_cover(material.alpha, seen_by, mark))
+                   : vec4(below_white(seen + shine), 1.0);
 }

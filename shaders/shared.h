@@ -28,10 +28,18 @@ TORSION_CONSTANT(kNoRegion, 0);
 TORSION_CONSTANT(kOneRegion, 1);
 TORSION_CONSTANT(kManyRegions, 2);
 
-// What a draw is, bits of DrawConstants::rows.w.
-TORSION_CONSTANT(kTextured, 1);  // its base colour is a texture's, times `color`
-TORSION_CONSTANT(kGlass, 2);     // tools: one sees through it
-TORSION_CONSTANT(kMarks, 4);     // tools: lines that turn with it
+// What a draw is, bits of DrawConstants::rows.w. The first are those of TextureRole, and of the array of textures: it
+// has one for that.
+TORSION_CONSTANT(kTextures, 5);
+TORSION_CONSTANT(kBaseColor, 0);
+TORSION_CONSTANT(kMetalRoughness, 1);
+TORSION_CONSTANT(kNormal, 2);
+TORSION_CONSTANT(kOcclusion, 3);
+TORSION_CONSTANT(kEmission, 4);
+TORSION_CONSTANT(kGlass, 32);           // one sees through it
+TORSION_CONSTANT(kMarks, 64);           // tools: lines that turn with it
+TORSION_CONSTANT(kMasked, 128);         // what has less alpha than the cutoff is not there
+TORSION_CONSTANT(kOcclusionShift, 8);   // from that bit on: the strength of the occlusion, 0 to 255
 
 // Reflections of the studio (render/studio_light.hpp): a square tile of the map for each of these
 // steps of roughness, one over another; the tile of roughness r is round(r * (tiles - 1)).
@@ -86,8 +94,9 @@ struct DrawConstants {
   vec4 color;               // linear rgb, alpha
   vec4 grid;                // body: xyz a crossing of the material lines, m, at rest; w their distance, m, 0: none
                             // tool: xyz the middle of its box, m, tool
-  vec4 surface;             // x: metal, y: roughness, z: scattering, 0 to 1; w unused
-  uvec4 rows;               // x: first contact spot, y: number of them, z: kHeat..., w: kTextured | kGlass | kMarks
+  vec4 surface;             // x: metal, y: roughness, z: scattering, w: alpha's cutoff, 0 to 1
+  vec4 emission;            // linear rgb; w: scale of the texture's normals
+  uvec4 rows;               // x: first contact spot, y: number of them, z: kHeat..., w: bits, see above
 };
 
 // Push constants of the overlay.

@@ -3,9 +3,9 @@
 
 #include "frame.glsl"
 #include "light.glsl"
+#include "textures.glsl"
 #include "reflection.glsl"
-
-layout(set = 0, binding = 6) uniform sampler2D base_color;
+#include "material.glsl"
 
 layout(location = 0) in vec3 world_position;
 layout(location = 1) in vec3 world_normal;
@@ -35,21 +35,15 @@ vec3 meridians() {
   return vec3(line, line * bold);
 }
 
-// The share of what is behind that glass hides: more at grazing angles, as glass does (Schlick's fit of Fresnel's law,
-// with a wider rim), so that the outline stays clear while the contact shows through the middle.
-float glass_cover(vec3 normal, vec3 to_eye, float mark) {
-  float rim = pow(1.0 - max(dot(normal, to_eye), 0.0), 2.5);
-  float cover = mix(draw.color.a, 0.92, rim);
-  return mix(cover, max(cover, 0.75), mark);
-}
-
 void main() {
-  vec3 normal = normalize(world_normal);
-  vec3 to_eye = normalize(frame.eye.xyz - world_position);
-  vec3 base = draw.color.rgb * painted;
-  if ((draw.rows.w & kTextured) != 0) {
-    base *= texture(base_color, texcoord).rgb;
+  Material material = material_at(texcoord, painted);
+  if (kCutOut && material.alpha < draw.surface.w) {
+    discard;
   }
+  vec3 outward = gl_FrontFacing ? world_normal : -world_normal;  // what is double-sided
+  vec3 normal = mapped_normal(normalize(outward), world_position, texcoord);
+  vec3 to_eye = normalize(frame.eye.xyz - world_position);
+  vec3 base = material.base;
   vec3 mark = (draw.rows.w & kMarks) != 0 ? meridians() : vec3(0.0);
   base = mix(base, base * 0.25, mark.x);
   base = mix(base, vec3(0.80, 0.10, 0.03), mark.y);
@@ -57,20 +51,17 @@ void main() {
 
   float facing = dot(normal, frame.to_key_light.xyz);
   float share = facing > 0.0 ? key_light_share(in_shadow_map) : 0.0;
-  vec3 reflectance = normal_reflectance(base);
-  vec3 light = ambient_light(normal, to_eye, 1.0) + frame.key_light.rgb * diffuse_key(facing, share);
-  vec2 of_mirror = mirrored_share(max(dot(normal, to_eye), 0.0));
-  vec3 shine = mirrored(reflect(-to_eye, normal)) * (reflectance * of_mirror.x + of_mirror.y);
+  vec3 reflectance = normal_reflectance(base, material.metal);
+  vec3 light =
+      ambient_light(normal, to_eye, material.open) + frame.key_light.rgb * diffuse_key(facing, share);
+  float seen_by = max(dot(normal, to_eye), 0.0);
+  vec2 of_mirror = mirrored_share(seen_by, material.roughness);
+  vec3 shine = material.open * mirrored(reflect(-to_eye, normal), material.roughness) *
+               (reflectance * of_mirror.x + of_mirror.y);
   if (share > 0.0) {
-    shine += share * frame.key_light.rgb * key_highlight(reflectance, normal, to_eye, facing);
+    shine += share * frame.key_light.rgb * key_highlight(reflectance, material.roughness, normal, to_eye, facing);
   }
-  vec3 seen = base * (1.0 - draw.surface.x) * light;
-  if ((draw.rows.w & kGlass) == 0) {
-    color = vec4(below_white(seen + shine), 1.0);
-    return;
-  }
-  // What is mirrored lies over all that shows through: it is divided by the cover that blending multiplies with.
-  float strongest = max(shine.r, max(shine.g, shine.b));
-  float cover = clamp(max(glass_cover(normal, to_eye, mark.x), strongest), 0.0, 1.0);
-  color = vec4(below_white(seen + shine / max(cover, 0.05)), cover);
+  vec3 seen = base * (1.0 - material.metal) * light + material.emission;
+  color = (draw.rows.w & kGlass) != 0 ? glass(seen, shine, glass_cover(material.alpha, seen_by, mark.x))
+                                      : vec4(below_white(seen + shine), 1.0);
 }

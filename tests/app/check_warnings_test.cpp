@@ -174,7 +174,7 @@ TEST(CheckWarningTest, ATextureThatCannotBeDrawnIsSaid) {
   const auto missing = warnings_with({{"uri", "nowhere.png"}}, first);
   EXPECT_TRUE(any_says(missing, "its texture \"nowhere.png\": its file is missing or empty"));
   const auto of_extension = warnings_with({{"uri", "nowhere.png"}}, nlohmann::json::object());
-  EXPECT_TRUE(any_says(of_extension, "its texture \"textures[0]\": its file is missing"));
+  EXPECT_TRUE(any_says(of_extension, "its texture \"textures[0]\": its image is of an extension"));
   const auto good = warnings_with(
       {{"uri",
         "data:image/"

@@ -1,60 +1,17 @@
 // What materials do to pixels.
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include "render/image_io.hpp"
 #include "tests/render/gpu_fixture.hpp"
+#include "tests/render/material_pictures.hpp"
 #include "tests/render/render_scenes.hpp"
 
 namespace torsion::engine {
 namespace {
 
-struct Color {
-  int r, g, b;
-};
-
-class MaterialTest : public GpuTest {
- protected:
-  static std::shared_ptr<const EncodedImage> encoded(const Image& image) {
-    const auto path = std::filesystem::temp_directory_path() /
-                      ("torsion_material_" + std::to_string(::getpid()) + ".png");
-    must(write_png(image, path));
-    std::ifstream stream(path, std::ios::binary);
-    EncodedImage read{"test", {std::istreambuf_iterator<char>(stream), {}}};
-    std::filesystem::remove(path);
-    return std::make_shared<const EncodedImage>(std::move(read));
-  }
-
-  Image draw(const FrameWorld& frame, const Camera& camera, ToolLook look = ToolLook::kAuthored) {
-    Renderer renderer = open(options(), frame);
-    DrawOptions draw;
-    draw.grid = false;
-    draw.tools = look;
-    const Snapshot snapshot = make_snapshot(frame.tools.size(), 0);
-    return must(renderer.read_pixels(must(renderer.draw(frame, snapshot, camera, draw, nullptr))));
-  }
-
-  static Color at(const Image& image, double x, double y) {
-    const auto column = static_cast<std::size_t>(x * image.width);
-    const auto row = static_cast<std::size_t>(y * image.height);
-    const std::uint8_t* pixel = &image.rgba[4 * (row * image.width + column)];
-    return {pixel[0], pixel[1], pixel[2]};
-  }
-
-  static int sum(const Color& color) { return color.r + color.g + color.b; }
-
-  /// A slab that fills the picture, seen from above, +x to the right.
-  static FrameWorld slab() {
-    return make_frame_world({{box_mesh({0.1F, 0.01F, 0.1F}, 2), {}, {}}}, {});
-  }
-  static Camera above() { return camera_at({0.0, 0.3, 1e-4}, glm::dvec3(0.0), 0.3); }
-};
+class MaterialTest : public MaterialPictures {};
 
 TEST_F(MaterialTest, ATextureIsOnItsPlaceAndTimesTheColor) {
   FrameWorld frame = slab();
@@ -67,12 +24,9 @@ TEST_F(MaterialTest, ATextureIsOnItsPlaceAndTimesTheColor) {
       image.rgba.push_back(static_cast<std::uint8_t>(c));
     }
   }
-  frame.materials[0].texture = encoded(image);
+  frame.materials[0].texture(TextureRole::kBaseColor).image = encoded(image);
   frame.materials[0].color = {1.0F, 1.0F, 0.0F, 1.0F};
-  for (std::uint32_t i = 0; i < frame.body_vertices.size(); ++i) {
-    const glm::vec4 p = frame.body_vertices.at<VertexRest>(i).position;
-    frame.body_vertices.at<VertexPaint>(i).uv = {0.5F + 10.0F * p.x, 0.5F + 10.0F * p.z};
-  }
+  spread_texture(frame);
   const Image seen = draw(frame, above());
   const Color red = at(seen, 0.25, 0.25);
   const Color green = at(seen, 0.75, 0.25);
@@ -109,8 +63,8 @@ TEST_F(MaterialTest, AVertexColorIsTimesTheMaterialsAndBetweenItsNeighbours) {
 TEST_F(MaterialTest, ATextureThatCannotBeReadLeavesTheColor) {
   FrameWorld frame = slab();
   const Image plain = draw(frame, above());
-  frame.materials[0].texture =
-      std::make_shared<const EncodedImage>(EncodedImage{"broken", {0x89, 'P', 'N', 'G'}});
+  frame.materials[0].texture(TextureRole::kBaseColor).image =
+      std::make_shared<const EncodedImage>(EncodedImage{"broken", {0x89, 'P', 'N', 'G'}, {}});
   EXPECT_EQ(draw(frame, above()), plain);
 }
 
@@ -153,16 +107,9 @@ TEST_F(MaterialTest, AMetalHasTheColorInWhatItMirrorsAndNoOther) {
 }
 
 TEST_F(MaterialTest, AnOpaqueToolCastsADeeperShadowThanGlass) {
-  // The shadow falls beside the body on the floor, where the tool is not in the picture: from the
-  // ball's middle against the light, whose direction is (-0.45, 0.85, 0.40).
-  const glm::dvec3 ball(0.12, 0.1, 0.0);
-  const glm::dvec3 shadow = ball - glm::dvec3(-0.45, 0.85, 0.40) * (ball.y / 0.85);
-  const Camera camera = camera_at(shadow + glm::dvec3(0.05, 0.4, 0.001), shadow, 0.05);
-  FrameWorld frame = make_frame_world(
-      {{box_mesh(glm::vec3(0.05F), 2), {{0.0, 0.05, 0.0}, glm::dquat(1.0, 0.0, 0.0, 0.0)}, {}}},
-      {{sphere_mesh(0.02F, 8), {ball, glm::dquat(1.0, 0.0, 0.0, 0.0)}, {}}});
+  FrameWorld frame = shadow_scene();
   const auto brightness = [&](ToolLook look) {
-    return sum(at(draw(frame, camera, look), 0.5, 0.5));
+    return sum(at(draw(frame, shadow_camera(), look), 0.5, 0.5));
   };
   const int glass = brightness(ToolLook::kGlass);
   const int opaque = brightness(ToolLook::kOpaque);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scenes/write_gltf.hpp"
 #include "tests/scenes/gltf_builder.hpp"
 
 namespace torsion::engine::test {
@@ -32,6 +33,15 @@ GltfBuilder textured_scene() {
   return builder;
 }
 
+/// Of the body's first material.
+std::shared_ptr<const EncodedImage> image_of(const LoadedScene& loaded, TextureRole role) {
+  return loaded.scene->bodies[0].draw.materials[0].texture(role).image;
+}
+
+std::shared_ptr<const EncodedImage> base_image(const LoadedScene& loaded) {
+  return image_of(loaded, TextureRole::kBaseColor);
+}
+
 TEST(MaterialsTest, AllThatIsDrawnIsRead) {
   const LoadedScene loaded = load_text(textured_scene().text());
   ASSERT_TRUE(loaded.scene.has_value()) << to_text(loaded.problems);
@@ -42,15 +52,113 @@ TEST(MaterialsTest, AllThatIsDrawnIsRead) {
   EXPECT_EQ(material.roughness, 0.75F);
   EXPECT_EQ(material.scattering, 0.4F);
   EXPECT_EQ(material.alpha_mode, AlphaMode::kBlend);
-  EXPECT_EQ(material.wrap_u, TextureWrap::kClamp);
-  EXPECT_EQ(material.wrap_v, TextureWrap::kMirror);
-  ASSERT_TRUE(material.texture);
-  EXPECT_EQ(material.texture->bytes,
+  const MaterialTexture& base = material.texture(TextureRole::kBaseColor);
+  EXPECT_EQ(base.wrap_u, TextureWrap::kClamp);
+  EXPECT_EQ(base.wrap_v, TextureWrap::kMirror);
+  ASSERT_TRUE(base.image);
+  EXPECT_EQ(base.image->bytes,
             (std::vector<unsigned char>{0x89, 'P', 'N', 'G', 0x0D, 0x0A, 0x1A, 0x0A}));
   ASSERT_EQ(draw.texcoords.size(), draw.positions.size());
   EXPECT_EQ(draw.texcoords[1], glm::vec2(1.0F, 0.0F));
   EXPECT_EQ(draw.texcoords[4], glm::vec2(0.5F, 0.0F));
   EXPECT_EQ(loaded.scene->tools[0].draw.materials[0].alpha_mode, AlphaMode::kUnsaid);
+}
+
+/// The textured scene with all five textures, of two images.
+GltfBuilder fully_textured_scene() {
+  GltfBuilder builder = textured_scene();
+  builder.document["images"].push_back(
+      {{"uri", "data:image/jpeg;base64,/9j/"}, {"name", "second"}});
+  builder.document["textures"].push_back({{"source", 1}});
+  json& material = builder.document["materials"][0];
+  material["alphaMode"] = "MASK";
+  material["alphaCutoff"] = 0.25;
+  material["doubleSided"] = true;
+  material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = {{"index", 1}};
+  material["normalTexture"] = {{"index", 1}, {"scale", 0.5}};
+  material["occlusionTexture"] = {{"index", 1}, {"strength", 0.75}};
+  material["emissiveTexture"] = {{"index", 0}};
+  material["emissiveFactor"] = {0.25, 0.5, 1.0};
+  return builder;
+}
+
+TEST(MaterialsTest, AllFiveTexturesAndWhatGoesWithThemAreRead) {
+  const LoadedScene loaded = load_text(fully_textured_scene().text());
+  ASSERT_TRUE(loaded.scene.has_value()) << to_text(loaded.problems);
+  const DrawMaterial& material = loaded.scene->bodies[0].draw.materials[0];
+  EXPECT_EQ(material.alpha_mode, AlphaMode::kMask);
+  EXPECT_EQ(material.alpha_cutoff, 0.25F);
+  EXPECT_TRUE(material.double_sided);
+  EXPECT_EQ(material.normal_scale, 0.5F);
+  EXPECT_EQ(material.occlusion_strength, 0.75F);
+  EXPECT_EQ(material.emission, glm::vec3(0.25F, 0.5F, 1.0F));
+  for (const TextureRole role :
+       {TextureRole::kMetalRoughness, TextureRole::kNormal, TextureRole::kOcclusion}) {
+    ASSERT_TRUE(image_of(loaded, role));
+    EXPECT_EQ(image_of(loaded, role)->bytes.front(), 0xFF);
+    EXPECT_EQ(image_of(loaded, role), image_of(loaded, TextureRole::kNormal));
+  }
+  EXPECT_EQ(image_of(loaded, TextureRole::kEmission), base_image(loaded));
+  EXPECT_EQ(loaded.scene->bodies[0].draw.texcoords.size(),
+            loaded.scene->bodies[0].draw.positions.size());
+}
+
+TEST(MaterialsTest, AllOfItIsWritten) {
+  const LoadedScene loaded = load_text(fully_textured_scene().text());
+  ASSERT_TRUE(loaded.scene.has_value()) << to_text(loaded.problems);
+  const DrawMesh& draw = loaded.scene->bodies[0].draw;
+  WrittenMesh mesh;
+  mesh.positions = draw.positions;
+  mesh.normals = draw.normals;
+  mesh.triangles = draw.triangles;
+  mesh.texcoords = draw.texcoords;
+  mesh.materials = draw.materials;
+  const Result<std::string> bytes = gltf_bytes({mesh}, false);
+  ASSERT_TRUE(bytes) << bytes.error().text;
+  const json document = json::parse(bytes.value());
+  EXPECT_EQ(document["images"].size(), 2U);
+  const json& material = document["materials"][0];
+  EXPECT_EQ(material["alphaMode"], "MASK");
+  EXPECT_EQ(material["alphaCutoff"], 0.25);
+  EXPECT_EQ(material["doubleSided"], true);
+  EXPECT_EQ(material["normalTexture"]["scale"], 0.5);
+  EXPECT_EQ(material["occlusionTexture"]["strength"], 0.75);
+  EXPECT_EQ(material["emissiveFactor"], json({0.25, 0.5, 1.0}));
+  const auto image_of_texture = [&](const json& reference) {
+    return document["textures"][reference["index"].get<std::size_t>()]["source"].get<int>();
+  };
+  const int base = image_of_texture(material["pbrMetallicRoughness"]["baseColorTexture"]);
+  EXPECT_EQ(image_of_texture(material["emissiveTexture"]), base);
+  EXPECT_EQ(image_of_texture(material["pbrMetallicRoughness"]["metallicRoughnessTexture"]),
+            1 - base);
+  EXPECT_EQ(image_of_texture(material["normalTexture"]), 1 - base);
+  EXPECT_EQ(image_of_texture(material["occlusionTexture"]), 1 - base);
+}
+
+TEST(MaterialsTest, ATextureWithOtherCoordinatesThanTheFirstIsNotDrawnAndSaysWhy) {
+  GltfBuilder builder = fully_textured_scene();
+  builder.document["materials"][0]["normalTexture"]["texCoord"] = 1;
+  builder.document["materials"][0]["emissiveTexture"]["extensions"] = {
+      {"KHR_texture_transform", {{"scale", {2.0, 2.0}}}}};
+  const LoadedScene loaded = load_text(builder.text());
+  ASSERT_TRUE(loaded.scene.has_value()) << to_text(loaded.problems);
+  for (const TextureRole role : {TextureRole::kNormal, TextureRole::kEmission}) {
+    ASSERT_TRUE(image_of(loaded, role));
+    EXPECT_TRUE(image_of(loaded, role)->bytes.empty());
+    EXPECT_NE(image_of(loaded, role)->fault.find("coordinates"), std::string::npos);
+  }
+  EXPECT_TRUE(image_of(loaded, TextureRole::kOcclusion)->fault.empty());
+}
+
+TEST(MaterialsTest, ANormalTextureAloneHasItsCoordinates) {
+  GltfBuilder builder = fully_textured_scene();
+  json& material = builder.document["materials"][0];
+  material = {{"normalTexture", {{"index", 1}}}};
+  const LoadedScene loaded = load_text(builder.text());
+  ASSERT_TRUE(loaded.scene.has_value()) << to_text(loaded.problems);
+  EXPECT_FALSE(base_image(loaded));
+  EXPECT_EQ(loaded.scene->bodies[0].draw.texcoords.size(),
+            loaded.scene->bodies[0].draw.positions.size());
 }
 
 TEST(MaterialsTest, ATransformOfTheTextureMovesItsCoordinates) {
@@ -126,12 +234,12 @@ TEST(MaterialsTest, AnExactShapeIsDrawnAsItIsFeltUnlessToldOtherwise) {
   ASSERT_TRUE(shape.scene.has_value()) << to_text(shape.problems);
   EXPECT_NEAR(farthest(shape), 0.05, 1e-6);
   EXPECT_EQ(shape.scene->bodies[0].draw.materials[0].metallic, 0.25F);
-  EXPECT_FALSE(shape.scene->bodies[0].draw.materials[0].texture);
+  EXPECT_FALSE(base_image(shape));
   builder.node("cube")["extras"]["torsion_draw"] = "mesh";
   const LoadedScene mesh = load_text(builder.text());
   ASSERT_TRUE(mesh.scene.has_value());
   EXPECT_NEAR(farthest(mesh), 0.05 * std::sqrt(3.0), 1e-6);
-  EXPECT_TRUE(mesh.scene->bodies[0].draw.materials[0].texture);
+  EXPECT_TRUE(base_image(mesh));
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ struct RenderOptions {
   double seconds = -1.0;  // s; negative: to the end of the longest animation
   double frames_per_second = 30.0;
   std::string size = "1280x720";
-  std::string heat = "twist";
+  std::string heat;  // empty: as the scene says
   bool no_overlay = false;
   bool no_arrows = false;
   bool no_grid = false;
@@ -143,6 +143,16 @@ PictureScales scales_of_run(Session& session, const RenderOptions& options, doub
   return find_scales(session, steps_in(session, end) + 1, kScaleStride, progress);
 }
 
+/// What colours show: as the option or else the scene says, else the twist.
+HeatMap heat_map_of(const std::string& option, const SceneDescription& scene) {
+  const std::map<std::string, HeatMap> maps = {{"none", HeatMap::kNone},
+                                               {"material", HeatMap::kNone},
+                                               {"twist", HeatMap::kTwist},
+                                               {"pressure", HeatMap::kPressure}};
+  const auto found = maps.find(option.empty() ? scene.view.colors : option);
+  return found == maps.end() ? HeatMap::kTwist : found->second;
+}
+
 int render(const RenderOptions& options) {
   Result<Session> opened = open_session(options.scene.scene, options.scene.prepare_options(),
                                         options.quiet, options.scene.settings);
@@ -150,8 +160,10 @@ int render(const RenderOptions& options) {
     return fail(opened.error().text);
   }
   Session& session = opened.value();
+  PictureRun::Options picture = options.picture;
+  picture.draw.heat_map = heat_map_of(options.heat, session.scene);
   // What can fail without a step taken comes first.
-  Result<PictureRun> run = PictureRun::create(session, options.picture);
+  Result<PictureRun> run = PictureRun::create(session, picture);
   if (!run) {
     return fail(run.error().text);
   }
@@ -204,9 +216,6 @@ int read_and_render(RenderOptions& options) {
     fmt::print(stderr, "--out {}: a .png needs --at, and --at needs a .png\n", options.out);
     return kUsage;
   }
-  const std::map<std::string, HeatMap> heat_maps = {
-      {"none", HeatMap::kNone}, {"twist", HeatMap::kTwist}, {"pressure", HeatMap::kPressure}};
-  options.picture.draw.heat_map = heat_maps.at(options.heat);
   options.picture.draw.arrows = !options.no_arrows;
   options.picture.draw.grid = !options.no_grid;
   options.picture.overlay = !options.no_overlay;
@@ -231,7 +240,9 @@ void add_render(CLI::App& app, Command& command) {
       ->check(CLI::Range(0.0, 1e6));
   subcommand->add_option("--size", options->size, "WIDTHxHEIGHT in pixels, 1280x720 unless said");
   subcommand->add_option("--camera", options->picture.camera, "A camera node of the file");
-  subcommand->add_option("--heat", options->heat, "What colours show: twist, pressure or none")
+  subcommand
+      ->add_option("--heat", options->heat,
+                   "What colours show: twist, pressure or none; else as the scene says, or twist")
       ->check(CLI::IsMember({"twist", "pressure", "none"}));
   subcommand->add_flag("--no-overlay", options->no_overlay, "No text, scale or legend");
   subcommand->add_flag("--no-arrows", options->no_arrows, "No arrows for force and torque");

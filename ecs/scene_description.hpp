@@ -29,7 +29,7 @@ struct PartDescription {
 struct DrawMesh {
   std::vector<glm::vec3> positions;  // m
   std::vector<glm::vec3> normals;    // unit; one for each position
-  std::vector<glm::vec2> texcoords;  // of the base colour's texture; one for each position, or none
+  std::vector<glm::vec2> texcoords;  // of the textures; one for each position, or none
   std::vector<glm::vec3> colors;     // linear rgb, times the material's; likewise
   std::vector<glm::uvec3> triangles;
   std::vector<bool> fixed;  // bodies only: vertices of the fixed region; one for each position
@@ -70,14 +70,14 @@ struct CameraDescription {
 
 /// How a window shows a scene at first.
 struct SceneView {
-  std::string title;                // empty: the file's name
-  std::string caption;              // what to look at; may be empty
-  bool loop = true;                 // begins again after its animation
-  double speed = 1.0;               // of real time, up to 1
-  std::string colors = "material";  // material, twist or pressure
-  bool torque_parts = false;        // contact couples apart from what the forces' arms make
-  bool lines = true;                // that are fixed to the bodies and to the tools
-  bool stick_slip = false;          // marks where the contact sticks and where it slips
+  std::string title;          // empty: the file's name
+  std::string caption;        // what to look at; may be empty
+  bool loop = true;           // begins again after its animation
+  double speed = 1.0;         // of real time, up to 1
+  std::string colors;         // material, twist or pressure; empty: nobody said
+  bool torque_parts = false;  // contact couples apart from what the forces' arms make
+  bool lines = true;          // that are fixed to the bodies and to the tools
+  bool stick_slip = false;    // marks where the contact sticks and where it slips
 };
 
 struct SceneDescription {

@@ -188,7 +188,7 @@ SceneView read_view(const NodeKeys& keys) {
   view.caption = keys.text("torsion_caption").value_or("");
   view.loop = keys.flag("torsion_loop").value_or(view.loop);
   view.speed = keys.number("torsion_speed").value_or(view.speed);
-  view.colors = keys.text("torsion_colors").value_or(view.colors);
+  view.colors = keys.text("torsion_colors").value_or("");
   view.stick_slip = keys.flag("torsion_stick_slip").value_or(view.stick_slip);
   view.lines = keys.flag("torsion_lines").value_or(view.lines);
   view.torque_parts = keys.text("torsion_torque") == "parts";

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/scenes/gltf_builder.hpp"
+
 namespace torsion::engine {
 namespace {
 
@@ -351,6 +353,34 @@ TEST(RenderTest, DrawsOneMomentAFolderAndAVideo) {
   const Ran video = render({"--fps", "10", "--seconds", "1", "--out", folder / "v.mp4"});
   EXPECT_EQ(video.exit_code, 0) << video.err;
   EXPECT_EQ(read_text(folder / "v.mp4").substr(4, 4), "ftyp");
+}
+
+TEST(RenderTest, ColorsAreWhatTheWordsSayElseTheSceneElseTheTwist) {
+  const Folder folder;
+  test::GltfBuilder builder = test::good_scene();
+  const auto picture = [&](const std::string& of_scene, const std::vector<std::string>& words) {
+    builder.document["scenes"][0]["extras"] = nlohmann::json::object();
+    if (!of_scene.empty()) {
+      builder.document["scenes"][0]["extras"]["torsion_colors"] = of_scene;
+    }
+    test::write_text(folder / "scene.gltf", builder.text());
+    std::vector<std::string> all = {"render",  folder / "scene.gltf",
+                                    "--at",    "0",
+                                    "--size",  "160x120",
+                                    "--quiet", "--no-overlay",
+                                    "--out",   folder / "picture.png"};
+    all.insert(all.end(), words.begin(), words.end());
+    const Ran ran = run_torsion(all);
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    return read_text(folder / "picture.png");
+  };
+  const std::string twist = picture("", {"--heat", "twist"});
+  const std::string material = picture("", {"--heat", "none"});
+  EXPECT_NE(twist, material);
+  EXPECT_EQ(picture("", {}), twist);
+  EXPECT_EQ(picture("material", {}), material);
+  EXPECT_EQ(picture("twist", {}), twist);
+  EXPECT_EQ(picture("material", {"--heat", "twist"}), twist);
 }
 #endif
 

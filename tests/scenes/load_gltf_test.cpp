@@ -92,7 +92,7 @@ TEST(LoadGltfTest, KeysOfTheSceneSayHowAWindowShowsIt) {
   const SceneView usual = scene_of(load_text(builder.text())).view;
   EXPECT_TRUE(usual.loop);
   EXPECT_EQ(usual.speed, 1.0);
-  EXPECT_EQ(usual.colors, "material");
+  EXPECT_EQ(usual.colors, "");
   builder.document["scenes"][0]["extras"] = {
       {"torsion_title", "A title"}, {"torsion_caption", "Look here."}, {"torsion_loop", 0},
       {"torsion_speed", 0.2},       {"torsion_colors", "twist"},       {"torsion_stick_slip", true},

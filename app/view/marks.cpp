@@ -1,5 +1,6 @@
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -14,6 +15,7 @@ namespace {
 constexpr ImU32 kRegion = IM_COL32(20, 20, 20, 220);
 constexpr ImU32 kAnchor = IM_COL32(120, 40, 160, 255);
 constexpr ImU32 kHand = IM_COL32(39, 111, 196, 255);
+constexpr ImU32 kFaintHand = IM_COL32(39, 111, 196, 150);
 constexpr ImU32 kFixedPoint = IM_COL32(60, 60, 70, 255);
 constexpr std::uint32_t kMostFixed = 400;  // dots
 
@@ -29,10 +31,10 @@ struct Pencil {
                            color, 6);
     }
   }
-  void number(const glm::dvec3& place, std::uint64_t value) const {
+  /// Below a place.
+  void label(const glm::dvec3& place, const std::string& words) const {
     const glm::dvec3 at = seen_at(camera, place, picture);
     if (at.z > camera.near_plane) {
-      const std::string words = fmt::format("{}", value);
       const ImVec2 size = ImGui::CalcTextSize(words.c_str());
       const ImVec2 low(std::round(static_cast<float>(at.x) - 0.5F * size.x),
                        std::round(static_cast<float>(at.y)));
@@ -41,12 +43,12 @@ struct Pencil {
       list.AddText(low, kRegion, words.c_str());
     }
   }
-  void line(const glm::dvec3& from, const glm::dvec3& to, ImU32 color) const {
+  void line(const glm::dvec3& from, const glm::dvec3& to, ImU32 color, float width = 1.5F) const {
     const glm::dvec3 a = seen_at(camera, from, picture);
     const glm::dvec3 b = seen_at(camera, to, picture);
     if (a.z > camera.near_plane && b.z > camera.near_plane) {
       list.AddLine(ImVec2(static_cast<float>(a.x), static_cast<float>(a.y)),
-                   ImVec2(static_cast<float>(b.x), static_cast<float>(b.y)), color, 1.5F);
+                   ImVec2(static_cast<float>(b.x), static_cast<float>(b.y)), color, width);
     }
   }
 };
@@ -77,7 +79,8 @@ void draw_region(const Pencil& pencil, const LiveFrame& frame, std::uint32_t reg
               kRegion);
   pencil.line(center, on_ring(regions.at<RegionMotion>(region).turn), kRegion);
   if (regions.size() > 1) {
-    pencil.number(on_ring(-0.5 * std::numbers::pi), regions.at<RegionIdentity>(region).order + 1);
+    pencil.label(on_ring(-0.5 * std::numbers::pi),
+                 std::to_string(regions.at<RegionIdentity>(region).order + 1));
   }
 }
 
@@ -127,6 +130,27 @@ void draw_hand(const Pencil& pencil, const LiveFrame& frame, std::uint32_t tool,
   pencil.dot(to, 4.0F, kHand);
 }
 
+/// A ring to turn the tool by, bold where the mouse is on it; then how far it was turned.
+void draw_ring(const Pencil& pencil, const RingMark& mark) {
+  constexpr int kSides = 72;
+  constexpr double kStep = 2.0 * std::numbers::pi / kSides;
+  const bool bold = mark.under_mouse || mark.turned;
+  const ImU32 color = bold ? kHand : kFaintHand;
+  for (int i = 0; i < kSides; ++i) {
+    pencil.line(mark.ring.at(i * kStep), mark.ring.at((i + 1) * kStep), color, bold ? 4.0F : 2.5F);
+  }
+  if (bold) {
+    pencil.dot(mark.ring.at(mark.angle), 6.0F, kHand);
+  }
+  if (mark.turned) {
+    const double from = mark.angle - *mark.turned;
+    pencil.line(mark.ring.center, mark.ring.at(from), kHand);
+    pencil.line(mark.ring.center, mark.ring.at(mark.angle), kHand);
+    pencil.label(mark.ring.at(mark.angle),
+                 fmt::format("{:.1f}\u00B0", *mark.turned * 180.0 / std::numbers::pi));
+  }
+}
+
 }  // namespace
 
 void draw_marks(const ViewState& state, LiveSession& session, const Camera& camera,
@@ -150,6 +174,9 @@ void draw_marks(const ViewState& state, LiveSession& session, const Camera& came
   }
   if (state.handle) {
     draw_hand(pencil, frame, state.tool, *state.handle);
+  }
+  if (state.ring) {
+    draw_ring(pencil, *state.ring);
   }
   for (std::uint32_t region = 0; state.show_regions && region < frame.snapshot.regions.size();
        ++region) {

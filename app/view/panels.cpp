@@ -108,14 +108,15 @@ void mouse_line(const ViewState& state, const LiveSession& session) {
     if (state.grabbed) {
       text(state.free_drag ? "You hold the tool: move = across   Shift = push along the view"
                            : "You hold the tool: move = press and lift   Shift = slide");
-      text(session.on_device(state.tool) ? "The device turns it"
-                                         : "Alt or wheel = turn it about the contact's normal");
+      text(session.on_device(state.tool)
+               ? "The device turns it"
+               : "Ring, wheel or Alt = turn it about the contact's normal");
     } else {
       text(session.carries(state.tool)
                ? "The device turns the tool; carry it with the left mouse button."
-           : session.on_device(state.tool)
-               ? "The device holds the tool."
-               : "Take the tool with the left mouse button and press it on the body.");
+           : session.on_device(state.tool) ? "The device holds the tool."
+                                           : "Take the tool with the left mouse button and press "
+                                             "it on the body; its ring turns it.");
       dim("Elsewhere: left = orbit, right = pan, wheel = zoom");
     }
   }

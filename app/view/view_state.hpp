@@ -11,6 +11,7 @@
 #include "app/view/history.hpp"
 #include "app/view/orbit_camera.hpp"
 #include "app/view/region_history.hpp"
+#include "app/view/turn_ring.hpp"
 #include "render/draw_options.hpp"
 
 namespace torsion::engine {
@@ -30,6 +31,14 @@ struct ToolSpeeds {
   double spin = 0.0;   // rad/s
 
   [[nodiscard]] bool any() const { return slide != 0.0 || spin != 0.0; }
+};
+
+/// A ring that a tool can be turned by.
+struct RingMark {
+  TurnRing ring;
+  bool under_mouse = false;
+  double angle = 0.0;            // rad: of the place under the mouse
+  std::optional<double> turned;  // rad: since the mouse took it; none: it has not
 };
 
 /// What a person has set in the window, and what the window shows of the session. The panels read
@@ -69,8 +78,10 @@ struct ViewState {
   ToolMove move;                   // as typed
   bool moving = false;             // one is under way
   ToolSpeeds speeds;
-  bool let_go = false;         // of the tool of the plots, which stays where it is
-  std::optional<Pose> handle;  // where the tool of the plots is held; none: nobody holds it
+  bool let_go = false;           // of the tool of the plots, which stays where it is
+  std::optional<Pose> handle;    // where the tool of the plots is held; none: nobody holds it
+  std::optional<RingMark> ring;  // of the tool that the mouse is near
+  std::uint32_t ring_tool = 0;   // that one
 
   bool loop = true;                   // the scene begins again after its animation
   std::vector<GalleryEntry> gallery;  // scenes to choose from

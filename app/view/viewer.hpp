@@ -79,6 +79,7 @@ class Viewer {
   struct Grab {
     ToolDrag drag;
     bool on_tool = false;
+    bool on_ring = false;  // and the tool is turned by it
     bool orbiting = false;
     bool panning = false;
     bool spent = false;      // the button is still down from a drag that a hidden window ended
@@ -86,6 +87,8 @@ class Viewer {
     glm::dvec3 pivot{0.0};   // m, world: of the tool's contact when it was taken
     glm::dvec3 axis{0.0};    // world, unit: its normal
     double turn_left = 0.0;  // rad: of the wheel, still to be made
+    RingMark ring;
+    glm::dvec2 ring_mouse{0.0};  // pixels of the window, last seen
   };
 
   /// A typed motion under way.
@@ -129,7 +132,10 @@ class Viewer {
   Result<ViewerOutcome> finish();
   void take_keys(const WindowInput& input);
   void take_mouse(const WindowInput& input, double seconds);
+  void look_for_ring(const glm::dvec2& mouse, const glm::dvec2& picture);
   void start_drag(const glm::dvec2& mouse, const glm::dvec2& picture);
+  void take_tool(std::uint32_t tool, double depth);
+  void turn_ring(const WindowInput& input);
   void drag_tool(const WindowInput& input, double seconds);
   void begin_move();
   void let_go();
@@ -157,6 +163,13 @@ class Viewer {
     glm::dvec3 tangent{1.0, 0.0, 0.0};  // world, unit
   };
   [[nodiscard]] ContactAxes axes_under(std::uint32_t tool) const;
+  /// A tool whose box is under the mouse, and how far ahead, m.
+  struct UnderMouse {
+    std::uint32_t tool = 0;
+    double depth = 0.0;
+  };
+  [[nodiscard]] std::optional<UnderMouse> tool_under(const glm::dvec2& mouse,
+                                                     const glm::dvec2& picture) const;
   [[nodiscard]] std::string file_name(const std::string& extension);
 
   ViewerOptions options_;

@@ -110,11 +110,14 @@ Viewer::ContactAxes Viewer::axes_under(std::uint32_t tool) const {
   return axes;
 }
 
-void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
+std::optional<Viewer::UnderMouse> Viewer::tool_under(const glm::dvec2& mouse,
+                                                     const glm::dvec2& picture) const {
   const Camera from = camera();
   const PixelRay ray = ray_through(from, mouse, picture);
+  const glm::dvec3 ahead = from.pose.rotation * glm::dvec3(0.0, 0.0, -1.0);
   const World& world = session_->shown().simulation.world;
   const auto& tools = session_->frame().snapshot.tools;
+  std::optional<UnderMouse> found;
   double nearest = 1e300;
   for (std::uint32_t tool = 0; tool < tools.size(); ++tool) {
     if (session_->on_device(tool) && !session_->carries(tool)) {
@@ -124,32 +127,84 @@ void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
         meets_box(ray, tools.at<ToolPose>(tool).now, world.model.tools.at<Bounds>(tool));
     if (met && *met < nearest) {
       nearest = *met;
-      const glm::dvec3 ahead = from.pose.rotation * glm::dvec3(0.0, 0.0, -1.0);
-      grab_.drag = {tool, *met * glm::dot(ray.direction, ahead), grab_.mouse};
-      grab_.on_tool = true;
+      found = UnderMouse{tool, *met * glm::dot(ray.direction, ahead)};
     }
+  }
+  return found;
+}
+
+/// The ring of the tool under the mouse, or else of the tool of the plots where that is held or the
+/// mouse is on its ring.
+void Viewer::look_for_ring(const glm::dvec2& mouse, const glm::dvec2& picture) {
+  constexpr double kReach = 9.0;  // pixels
+  state_.ring.reset();
+  const auto under = tool_under(mouse, picture);
+  const std::uint32_t tool = under ? under->tool : state_.tool;
+  if (session_->on_device(tool)) {
+    return;
+  }
+  const ContactAxes axes = axes_under(tool);
+  RingMark mark;
+  mark.ring = ring_around(session_->frame().snapshot.tools.at<ToolPose>(tool).now,
+                          session_->shown().simulation.world.model.tools.at<Bounds>(tool),
+                          axes.pivot, axes.normal, axes.tangent);
+  const auto angle = angle_on(mark.ring, camera(), mouse, picture, kReach);
+  mark.under_mouse = angle.has_value();
+  mark.angle = angle.value_or(0.0);
+  if (under || angle || session_->held(tool)) {
+    state_.ring = mark;
+    state_.ring_tool = tool;
+  }
+}
+
+void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
+  if (state_.ring && state_.ring->under_mouse) {
+    take_tool(state_.ring_tool, 0.0);
+    grab_.on_ring = true;
+    grab_.ring = *state_.ring;
+    grab_.ring.turned = 0.0;
+    grab_.ring_mouse = mouse;
+  } else if (const auto under = tool_under(mouse, picture)) {
+    take_tool(under->tool, under->depth);
   }
   grab_.orbiting = !grab_.on_tool;
-  if (grab_.on_tool) {
-    const std::uint32_t tool = grab_.drag.tool;
-    const bool carries = session_->carries(tool);
-    if (carries) {
-      handles_[tool] = session_->device()->outcome.handle;
-    } else if (!session_->held(tool)) {
-      handles_[tool] = session_->taking_handle(tool);
-    }
-    state_.tool = tool;
-    const ContactAxes axes = axes_under(tool);
-    grab_.pivot = axes.pivot;
-    grab_.axis = axes.normal;
-    grab_.turn_left = 0.0;
-    move_.reset();
-    stop_driving();
-    state_.let_go = false;
-    if (!carries) {
-      session_->hold(tool, handles_[tool]);
-    }
+}
+
+/// @param depth  m: of the place taken, before the camera
+void Viewer::take_tool(std::uint32_t tool, double depth) {
+  grab_.drag = {tool, depth, grab_.mouse};
+  grab_.on_tool = true;
+  grab_.on_ring = false;
+  const bool carries = session_->carries(tool);
+  if (carries) {
+    handles_[tool] = session_->device()->outcome.handle;
+  } else if (!session_->held(tool)) {
+    handles_[tool] = session_->taking_handle(tool);
   }
+  state_.tool = tool;
+  const ContactAxes axes = axes_under(tool);
+  grab_.pivot = axes.pivot;
+  grab_.axis = axes.normal;
+  grab_.turn_left = 0.0;
+  move_.reset();
+  stop_driving();
+  state_.let_go = false;
+  if (!carries) {
+    session_->hold(tool, handles_[tool]);
+  }
+}
+
+/// Turns the tool as the mouse turns its ring.
+void Viewer::turn_ring(const WindowInput& input) {
+  const glm::dvec2 mouse(input.mouse_x, input.mouse_y);
+  RingMark& mark = grab_.ring;
+  const double turned = turned_by(mark.ring, mark.angle, camera(), grab_.ring_mouse, mouse,
+                                  {input.width, input.height});
+  grab_.ring_mouse = mouse;
+  mark.angle += turned;
+  *mark.turned += turned;
+  turn(handles_[grab_.drag.tool], grab_.pivot, grab_.axis, turned);
+  state_.ring = mark;
 }
 
 /// Of every tool that the mouse has: an animated one goes on as its animation does, any other stays
@@ -186,8 +241,12 @@ void Viewer::drag_tool(const WindowInput& input, double seconds) {
                                             : (input.shift ? DragKind::kAlong : DragKind::kAcross);
   // The handle itself stays on the axis as it slides.
   const glm::dvec3 before = handle.position;
-  drag(grab_.drag, kind, grab_.mouse, camera(), input.height, grab_.pivot, grab_.axis, handle);
-  grab_.pivot += kind == DragKind::kTurn ? glm::dvec3(0.0) : handle.position - before;
+  if (grab_.on_ring) {
+    turn_ring(input);
+  } else {
+    drag(grab_.drag, kind, grab_.mouse, camera(), input.height, grab_.pivot, grab_.axis, handle);
+    grab_.pivot += kind == DragKind::kTurn ? glm::dvec3(0.0) : handle.position - before;
+  }
   if (session_->on_device(tool)) {
     if (session_->carries(tool) && kind != DragKind::kTurn) {
       session_->carry(tool, handle.position - before);  // it is turned by hand
@@ -298,7 +357,9 @@ void Viewer::take_mouse(const WindowInput& input, double seconds) {
     grab_.spent = true;
   }
   const bool free = !grab_.on_tool && !grab_.orbiting && !grab_.panning;
+  state_.ring.reset();
   if (free && !Gui::has_mouse()) {
+    look_for_ring(mouse, {input.width, input.height});
     if (input.buttons[0] && !grab_.spent) {
       start_drag(mouse, {input.width, input.height});
     }

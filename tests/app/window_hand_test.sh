@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A hand at the window: presses along the normal, turns by the wheel, and moves the tool by numbers; inside an Xvfb
-# display.
+# A hand at the window: presses along the normal, turns by the wheel and by the ring, and moves the tool by numbers; inside
+# an Xvfb display.
 # usage: xvfb-run -a window_hand_test.sh TORSION SCENE FOLDER: leaves in FOLDER the recording, its trace, and screenshots
 # that the P key took.
 set -euo pipefail
@@ -22,6 +22,13 @@ xdotool click 4 click 4 click 4
 sleep 0.5
 act
 keep pressed
+act mouseup 1
+# The near side of the ring around the tool, to the right and at once.
+sleep 2
+act mousemove 800 288
+act mousedown 1
+act mousemove 860 284
+keep ringed
 act mouseup 1
 # The field of the turn. While it has the keys nothing else hears of them, so there are no pictures to wait for.
 xdotool mousemove 60 306

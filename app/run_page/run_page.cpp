@@ -12,9 +12,9 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "app/base64.hpp"
 #include "app/html_text.hpp"
 #include "app/round_up.hpp"
+#include "app/run_page/page_materials.hpp"
 #include "device/scripted_motion.hpp"
 #include "render/auto_camera.hpp"
 #include "render/box.hpp"
@@ -47,16 +47,13 @@ TORSION_EMBED(torsion_three_orbit, TORSION_THREE_ORBIT)
 namespace torsion::engine {
 namespace {
 
-using nlohmann::json;
-
 std::string_view text_between(const char* begin, const char* end) {
   return {begin, static_cast<std::size_t>(end - begin)};
 }
 
 template <class Row>
 std::string packed(const std::vector<Row>& rows) {
-  const auto bytes = std::as_bytes(std::span(rows));
-  return base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  return packed_bytes(std::as_bytes(std::span(rows)));
 }
 
 /// `value` as a part of `unit`, which is 32767.
@@ -66,17 +63,17 @@ std::int16_t short_of(float value, double unit) {
       std::lround(std::clamp(static_cast<double>(value) / unit, -1.0, 1.0) * kMost));
 }
 
-json vector_json(const glm::dvec3& v) {
+nlohmann::json vector_json(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
-json pose_json(const Pose& pose) {
+nlohmann::json pose_json(const Pose& pose) {
   const glm::dquat& q = pose.rotation;
   return {pose.position.x, pose.position.y, pose.position.z, q.x, q.y, q.z, q.w};
 }
 
 /// @param limit  rad: the end of the twist's scale
-json body_json(const AnimatedMesh& body, double limit) {
+nlohmann::json body_json(const AnimatedMesh& body, double limit, PageMaterials& materials) {
   constexpr double kNormalUnit = 2.0;  // normals differ by up to that
   float largest = 1e-12F;
   for (const MorphTarget& target : body.targets) {
@@ -96,7 +93,7 @@ json body_json(const AnimatedMesh& body, double limit) {
       twists.push_back(short_of(target.twist_angles[i], limit));
     }
   }
-  json poses = json::array();
+  nlohmann::json poses = nlohmann::json::array();
   for (const Pose& pose : body.poses) {
     poses.push_back(pose_json(pose));
   }
@@ -109,16 +106,17 @@ json body_json(const AnimatedMesh& body, double limit) {
           {"shifts", packed(shifts)},
           {"shift_unit", static_cast<double>(largest) / 32767.0},
           {"normal_shifts", packed(normals)},
+          {"look", materials.look_of(body.rest)},
           {"grid", grid_spacing(box_of(body.rest.positions).largest_side())},
           {"twists", packed(twists)}};
 }
 
-json tool_json(const AnimatedMesh& tool, std::size_t row, const DeformedRun& run) {
-  const glm::vec4& color = tool.rest.materials.front().color;
-  json poses = json::array();
-  json forces = json::array();
-  json torques = json::array();
-  json centers = json::array();
+nlohmann::json tool_json(const AnimatedMesh& tool, std::size_t row, const DeformedRun& run,
+                         PageMaterials& materials) {
+  nlohmann::json poses = nlohmann::json::array();
+  nlohmann::json forces = nlohmann::json::array();
+  nlohmann::json torques = nlohmann::json::array();
+  nlohmann::json centers = nlohmann::json::array();
   for (std::size_t moment = 0; moment < run.times().size(); ++moment) {
     const DeformedRun::Felt& felt = run.felt()[moment][row];
     poses.push_back(pose_json(tool.poses[moment]));
@@ -127,7 +125,7 @@ json tool_json(const AnimatedMesh& tool, std::size_t row, const DeformedRun& run
     centers.push_back(vector_json(felt.center));
   }
   return {{"name", tool.rest.name},
-          {"color", {color.x, color.y, color.z}},
+          {"look", materials.look_of(tool.rest)},
           {"positions", packed(tool.rest.positions)},
           {"normals", packed(tool.rest.normals)},
           {"triangles", packed(tool.rest.triangles)},
@@ -138,7 +136,7 @@ json tool_json(const AnimatedMesh& tool, std::size_t row, const DeformedRun& run
 }
 
 /// Where one looks from at first, and to.
-json camera_json(const Session& session) {
+nlohmann::json camera_json(const Session& session) {
   constexpr double kAspect = 1.5;
   const SceneDescription& scene = session.scene;
   const World& world = session.simulation.world;
@@ -169,21 +167,22 @@ double twist_limit(const DeformedRun& run) {
   return round_up(std::max(static_cast<double>(largest) / kDegree, 1.0)) * kDegree;
 }
 
-json run_json(const Session& session, const DeformedRun& run) {
+nlohmann::json run_json(const Session& session, const DeformedRun& run) {
   constexpr int kColors = 129;
-  json palette = json::array();
+  nlohmann::json palette = nlohmann::json::array();
   for (int i = 0; i < kColors; ++i) {
     palette.push_back(vector_json(heat_color(HeatMap::kTwist, i / (kColors - 1.0))));
   }
   const ArrowLimits& limits = run.limits();
   const double limit = twist_limit(run);
-  json bodies = json::array();
-  json tools = json::array();
+  nlohmann::json bodies = nlohmann::json::array();
+  nlohmann::json tools = nlohmann::json::array();
+  PageMaterials materials;
   for (const AnimatedMesh& mesh : run.meshes()) {
     if (mesh.targets.empty()) {
-      tools.push_back(tool_json(mesh, tools.size(), run));
+      tools.push_back(tool_json(mesh, tools.size(), run, materials));
     } else {
-      bodies.push_back(body_json(mesh, limit));
+      bodies.push_back(body_json(mesh, limit, materials));
     }
   }
   return {{"times", run.times()},
@@ -193,6 +192,11 @@ json run_json(const Session& session, const DeformedRun& run) {
           {"twist_limit", limit * 180.0 / std::numbers::pi},
           {"bodies", bodies},
           {"tools", tools},
+          {"materials", materials.materials()},
+          {"images", materials.images()},
+          {"studio", studio_sides()},
+          {"colors", session.scene.view.colors == "material" ? "material" : "twist"},
+          {"lines", session.scene.view.lines},
           {"camera", camera_json(session)}};
 }
 
@@ -216,7 +220,7 @@ std::string filled(std::string_view page,
 }
 
 /// JSON inside of a script: nothing in it may end that.
-std::string in_script(const json& value) {
+std::string in_script(const nlohmann::json& value) {
   std::string text;
   for (const char letter : value.dump()) {
     if (letter == '<') {

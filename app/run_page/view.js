@@ -41,9 +41,97 @@
     object.quaternion.set(pose[3], pose[4], pose[5], pose[6]);
   }
 
+  // The studio that surfaces mirror, a picture for each side of a cube.
+  const studio = new THREE.CubeTexture(run.studio.map((side) => {
+    const rgb = bytes(side);
+    const width = Math.round(Math.sqrt(rgb.length / 3));
+    const canvas = document.createElement("canvas");
+    canvas.width = canvas.height = width;
+    const context = canvas.getContext("2d");
+    const pixels = context.createImageData(width, width);
+    for (let i = 0; i < width * width; ++i) {
+      pixels.data.set([rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2], 255], 4 * i);
+    }
+    context.putImageData(pixels, 0, 0);
+    return canvas;
+  }));
+  studio.encoding = THREE.sRGBEncoding;
+  studio.needsUpdate = true;
+
+  const images = run.images.map((address) => {
+    const image = new Image();
+    image.src = address;
+    return image;
+  });
+  const wraps = { clamp: THREE.ClampToEdgeWrapping, mirror: THREE.MirroredRepeatWrapping, repeat: THREE.RepeatWrapping };
+
+  // One of a material's textures, in the order of TextureRole; null without.
+  function textureOf(look, role, encoded) {
+    const wanted = look.textures[role];
+    if (wanted.image < 0) return null;
+    const image = images[wanted.image];
+    const texture = new THREE.Texture(image);
+    texture.wrapS = wraps[wanted.wrap[0]];
+    texture.wrapT = wraps[wanted.wrap[1]];
+    texture.flipY = false;
+    texture.encoding = encoded ? THREE.sRGBEncoding : THREE.LinearEncoding;
+    const ready = () => { texture.needsUpdate = true; };
+    if (image.complete) ready(); else image.addEventListener("load", ready);
+    return texture;
+  }
+
+  // A material as its file has it. What nobody said is opaque of bodies, glass of tools.
+  function authored(look, isTool) {
+    const glass = look.alpha === "blend" || (look.alpha === "unsaid" && isTool);
+    const material = new THREE.MeshStandardMaterial({
+      color: new THREE.Color(look.color[0], look.color[1], look.color[2]),
+      metalness: look.metal,
+      roughness: look.roughness,
+      emissive: new THREE.Color(look.emission[0], look.emission[1], look.emission[2]),
+      envMap: studio,
+      envMapIntensity: 0.6,
+      side: look.double_sided ? THREE.DoubleSide : THREE.FrontSide,
+      map: textureOf(look, 0, true),
+      metalnessMap: textureOf(look, 1, false),
+      roughnessMap: textureOf(look, 1, false),
+      normalMap: textureOf(look, 2, false),
+      aoMap: textureOf(look, 3, false),
+      aoMapIntensity: look.occlusion_strength,
+      emissiveMap: textureOf(look, 4, true),
+      transparent: glass,
+      opacity: !glass ? 1 : look.alpha === "blend" ? look.color[3] : 0.4,
+      depthWrite: !glass,
+      alphaTest: look.alpha === "mask" ? look.cutoff : 0,
+    });
+    if (look.alpha === "mask") material.opacity = look.color[3];
+    // Green is against v (glTF), and the picture is not turned over.
+    material.normalScale.set(look.normal_scale, -look.normal_scale);
+    return material;
+  }
+
+  // What is cut out of a mesh of one material is cut out of its shadow.
+  function castShadow(mesh, looks) {
+    mesh.castShadow = true;
+    if (looks.length === 1 && looks[0].alpha === "mask") {
+      mesh.customDepthMaterial = new THREE.MeshDepthMaterial({
+        depthPacking: THREE.RGBADepthPacking, map: textureOf(looks[0], 0, true), alphaTest: looks[0].cutoff,
+      });
+    }
+  }
+
+  // A mesh's triangles, one group for each run of one material, and what is on them.
+  function addLook(geometry, look) {
+    look.runs.forEach((each, i) => geometry.addGroup(3 * each[0], 3 * each[1], i));
+    if (look.texcoords) {
+      geometry.setAttribute("uv", new THREE.BufferAttribute(floats(look.texcoords), 2));
+      geometry.setAttribute("uv2", geometry.attributes.uv);
+    }
+    return look.runs.map((each) => run.materials[each[2]]);
+  }
+
   // Lines that are fixed to the material, a thick one every fifth.
-  function lined(spacing) {
-    const material = new THREE.MeshStandardMaterial({ vertexColors: THREE.VertexColors, roughness: 0.65, metalness: 0 });
+  function lined(material, spacing) {
+    if (!run.lines) return material;
     material.extensions = { derivatives: true };
     material.onBeforeCompile = (shader) => {
       shader.uniforms.spacing = { value: spacing };
@@ -78,14 +166,24 @@ float line(float at, float width, float gap, float pixels) {
     geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(rest.length), 3));
     geometry.setIndex(new THREE.BufferAttribute(indices(body.triangles), 1));
     geometry.setAttribute("rest", new THREE.BufferAttribute(rest, 3));
-    const mesh = new THREE.Mesh(geometry, lined(body.grid));
-    mesh.castShadow = true;
+    const looks = addLook(geometry, body.look);
+    const twisted = lined(new THREE.MeshStandardMaterial({
+      vertexColors: THREE.VertexColors, roughness: 0.65, metalness: 0,
+    }), body.grid);
+    const dressed = looks.map((look) => {
+      const material = lined(authored(look, false), body.grid);
+      material.vertexColors = THREE.VertexColors;
+      return material;
+    });
+    const mesh = new THREE.Mesh(geometry, dressed);
+    castShadow(mesh, looks);
     mesh.receiveShadow = true;
     place(mesh, body.pose);
     scene.add(mesh);
     mesh.updateMatrixWorld();
     box.expandByObject(mesh);
-    return { mesh, poses: body.poses, rest, shifts: shorts(body.shifts), unit: body.shift_unit, twists: shorts(body.twists),
+    const paint = body.look.paint ? floats(body.look.paint) : new Float32Array(rest.length).fill(1);
+    return { mesh, twisted: looks.map(() => twisted), dressed, paint, poses: body.poses, rest, shifts: shorts(body.shifts), unit: body.shift_unit, twists: shorts(body.twists),
       normals: floats(body.normals), normalShifts: shorts(body.normal_shifts) };
   });
 
@@ -162,11 +260,14 @@ float line(float at, float width, float gap, float pixels) {
     geometry.setAttribute("position", new THREE.BufferAttribute(floats(tool.positions), 3));
     geometry.setAttribute("normal", new THREE.BufferAttribute(floats(tool.normals), 3));
     geometry.setIndex(new THREE.BufferAttribute(indices(tool.triangles), 1));
-    const mesh = new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({
-      color: new THREE.Color(tool.color[0], tool.color[1], tool.color[2]), transparent: true, opacity: 0.4,
-      roughness: 0.3, depthWrite: false,
+    if (tool.look.paint) geometry.setAttribute("color", new THREE.BufferAttribute(floats(tool.look.paint), 3));
+    const looks = addLook(geometry, tool.look);
+    const mesh = new THREE.Mesh(geometry, looks.map((look) => {
+      const material = authored(look, true);
+      if (tool.look.paint) material.vertexColors = THREE.VertexColors;
+      return material;
     }));
-    mesh.castShadow = true;
+    castShadow(mesh, looks);
     scene.add(mesh);
     const own = new THREE.Box3().setFromBufferAttribute(geometry.attributes.position);
     const radius = Math.min(Math.max(0.62 * Math.min(...own.getSize(new THREE.Vector3()).toArray()), 0.25 * side),
@@ -222,7 +323,7 @@ float line(float at, float width, float gap, float pixels) {
         attributes.normal.array[i] = body.normals[i] + (c + share * (d - c)) / 16383;
       }
       const vertices = count / 3;
-      for (let i = 0; i < vertices; ++i) {
+      for (let i = 0; i < vertices && colors === "twist"; ++i) {
         const a = body.twists[row * vertices + i];
         const b = body.twists[after * vertices + i];
         const color = colorOf((a + share * (b - a)) / 32767);
@@ -283,6 +384,22 @@ float line(float at, float width, float gap, float pixels) {
   }
   element("low").textContent = (-run.twist_limit).toPrecision(3);
   element("high").textContent = run.twist_limit.toPrecision(3);
+
+  // Of bodies: the twist, or their materials under the studio's light.
+  let colors = run.colors;
+  function dress() {
+    element("scale").style.display = colors === "twist" ? "" : "none";
+    for (const body of bodies) {
+      body.mesh.material = colors === "twist" ? body.twisted : body.dressed;
+      if (colors === "material") body.mesh.geometry.attributes.color.array.set(body.paint);
+    }
+  }
+  element("colors").value = colors;
+  element("colors").addEventListener("change", () => {
+    colors = element("colors").value;
+    dress();
+  });
+  dress();
 
   let playing = true;
   let time = 0;

@@ -1,7 +1,10 @@
 // The page that plays a run, in headless Chromium without a network.
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -73,6 +76,56 @@ TEST(RunPageTest, PlaysInABrowserWithoutANetwork) {
   ASSERT_EQ(pressed.value().width, 640U);
   // The ball has come down, and the arrow of its force is there.
   EXPECT_GT(test::changed(before.value(), pressed.value(), 200, 100, 440, 340), 0.01);
+}
+
+/// The mean colour of a square in the middle of the cube's front, as its page shows it.
+std::array<double, 3> cube_color(const Folder& folder, const std::string& page) {
+  EXPECT_EQ(chromium(folder, "--screenshot=" + (folder / "shot.png"), page + "#0", folder / "out"),
+            0);
+  const Result<Image> shot = read_png(folder / "shot.png");
+  std::array<double, 3> sums{};
+  if (!shot) {
+    return sums;
+  }
+  constexpr std::uint32_t kSide = 16;
+  for (std::uint32_t row = 0; row < kSide; ++row) {
+    for (std::uint32_t column = 0; column < kSide; ++column) {
+      const std::size_t pixel = std::size_t{210 + row} * shot.value().width + 312 + column;
+      for (std::size_t lane = 0; lane < 3; ++lane) {
+        sums[lane] += shot.value().rgba[4 * pixel + lane] / double{kSide * kSide};
+      }
+    }
+  }
+  return sums;
+}
+
+TEST(RunPageTest, ShowsMaterialsWithTheirTexturesWhereTheSceneDoes) {
+  const Folder folder;
+  test::GltfBuilder builder = test::good_scene();
+  nlohmann::json& primitive = builder.document["meshes"][0]["primitives"][0];
+  primitive["attributes"]["TEXCOORD_0"] = builder.add_floats(std::vector<float>(16, 0.5F), "VEC2");
+  primitive["material"] = 0;
+  // Blue times white with a little red: only the texture is blue.
+  const Image blue{1, 1, {30, 30, 250, 255}};
+  ASSERT_TRUE(write_png(blue, folder / "blue.png"));
+  builder.document["images"] = {{{"uri", "blue.png"}}};
+  builder.document["textures"] = {{{"source", 0}}};
+  builder.document["materials"] = {
+      {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0.0}}}}};
+  const auto shown = [&](const std::string& colors) {
+    builder.document["scenes"][0]["extras"] = {{"torsion_colors", colors},
+                                               {"torsion_lines", false}};
+    test::write_text(folder / "scene.gltf", builder.text());
+    const test::Ran ran = run_torsion({"export", folder / "scene.gltf", "--animate", "--fps", "4",
+                                       "--seconds", "0.25", "--out", folder / "run.html"});
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    return cube_color(folder, folder / "run.html");
+  };
+  const auto material = shown("material");
+  EXPECT_GT(material[2], 2.0 * material[0]);
+  // Without a twist the palette's middle is grey.
+  const auto twist = shown("twist");
+  EXPECT_NEAR(twist[2], twist[0], 25.0);
 }
 
 TEST(RunPageTest, IsOfARunNotOfAMoment) {

@@ -96,10 +96,10 @@ vk::raii::Pipeline make_graphics_pipeline(const Gpu& gpu, vk::PipelineLayout lay
   const std::array<std::uint32_t, 3> values = {
       recipe.quick ? VK_TRUE : VK_FALSE, recipe.cut_out ? VK_TRUE : VK_FALSE, recipe.read_textures};
   constexpr std::uint32_t kSize = sizeof(std::uint32_t);
-  constexpr std::array<vk::SpecializationMapEntry, 3> entries = {
+  constexpr std::array<vk::SpecializationMapEntry, 3> kEntries = {
       {{0, 0, kSize}, {1, kSize, kSize}, {2, 2 * kSize, kSize}}};
-  const vk::SpecializationInfo constants{.mapEntryCount = entries.size(),
-                                         .pMapEntries = entries.data(),
+  const vk::SpecializationInfo constants{.mapEntryCount = kEntries.size(),
+                                         .pMapEntries = kEntries.data(),
                                          .dataSize = sizeof values,
                                          .pData = values.data()};
   std::vector<vk::PipelineShaderStageCreateInfo> stages = {

@@ -21,8 +21,8 @@ struct TurnRing {
   [[nodiscard]] glm::dvec3 at(double angle) const;
 };
 
-/// A ring outside of most of a tool: as wide as its middle side and 0.6 of it more, past the arc of its torque, at its middle's
-/// height on the axis.
+/// A ring outside of most of a tool: as wide as its middle side and 0.6 of it more, past the arc of
+/// its torque, at its middle's height on the axis.
 /// @param pose, bounds  of the tool: its frame in the world, and itself in that frame
 /// @param pivot, axis, tangent  m and unit, world
 TurnRing ring_around(const Pose& pose, const Bounds& bounds, const glm::dvec3& pivot,

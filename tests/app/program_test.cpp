@@ -364,11 +364,9 @@ TEST(RenderTest, ColorsAreWhatTheWordsSayElseTheSceneElseTheTwist) {
       builder.document["scenes"][0]["extras"]["torsion_colors"] = of_scene;
     }
     test::write_text(folder / "scene.gltf", builder.text());
-    std::vector<std::string> all = {"render",  folder / "scene.gltf",
-                                    "--at",    "0",
-                                    "--size",  "160x120",
-                                    "--quiet", "--no-overlay",
-                                    "--out",   folder / "picture.png"};
+    std::vector<std::string> all = {
+        "render",  folder / "scene.gltf", "--at",         "0",    "--size", "160x120",
+        "--quiet", "--no-overlay",        "--body-model", "none", "--out",  folder / "picture.png"};
     all.insert(all.end(), words.begin(), words.end());
     const Ran ran = run_torsion(all);
     EXPECT_EQ(ran.exit_code, 0) << ran.err;

@@ -20,10 +20,11 @@ namespace {
 // hand's shaking does not show.
 constexpr double kForceShare = 0.17;     // of E* r^2
 constexpr double kStiffnessShare = 0.5;  // of E* r
-// The friction's torque at that depth, 3 pi / 16 mu F a with a = r / 2 and mu = 0.75, is
-// 0.04 E* r^3.
-constexpr double kTorqueShare = 0.04;    // of E* r^3
-constexpr double kTurnStiffShare = 0.1;  // of E* r^3: 0.4 rad at the largest torque
+// The friction's torque at that depth, 3 pi / 16 mu F a with a = r / 2, is 0.05 mu E* r^3. The hand
+// has half as much more, so that it turns what it presses with all its force.
+constexpr double kTorqueShare = 0.075;    // of mu E* r^3
+constexpr double kTurnStiffShare = 0.1;   // of E* r^3: 0.6 rad at the largest torque of mu = 0.75
+constexpr double kLargestFriction = 3.0;  // of a body that a hand is to overcome
 
 /// m: of a ball with the tool's bounds, whose diagonal is 1.75 of its diameter
 double tool_radius(const Model& model, std::uint32_t tool) {
@@ -42,9 +43,12 @@ bool goes_on(const InputEntry& last, const InputEntry& next) {
 
 VirtualCoupling mouse_coupling(const SceneDescription& scene, double radius, double strength) {
   double modulus = 0.0;
+  double friction = 0.0;
   for (const BodyDescription& body : scene.bodies) {
     modulus = std::max(modulus, body.elasticity.contact_modulus());
+    friction = std::max(friction, body.friction.static_friction);
   }
+  friction = std::min(friction, kLargestFriction);
   const double er = modulus * radius;
   const double deepest = kForceShare * er * radius;
   const double share = deepest > 0.0 ? std::min(strength / deepest, 1.0) : 1.0;
@@ -55,7 +59,7 @@ VirtualCoupling mouse_coupling(const SceneDescription& scene, double radius, dou
           torque_share * kTurnStiffShare * er * radius * radius,
           0.0,
           share * deepest,
-          torque_share * kTorqueShare * er * radius * radius};
+          torque_share * kTorqueShare * friction * er * radius * radius};
 }
 
 LiveSession::LiveSession(Session session, PrepareOptions options, std::filesystem::path record)

@@ -148,7 +148,7 @@ inline constexpr double kGentleForce = 20.0;
 
 /// A coupling between a mouse, which feels nothing, and a tool: limited in force, and so that the
 /// tool does not go deeper than the models hold; as soft as gives the largest force a third of the
-/// tool's radius from where it is.
+/// tool's radius from where it is. Its torque overcomes the friction at that force.
 /// @param radius    m: of the tool
 /// @param strength  N: the largest force wanted
 VirtualCoupling mouse_coupling(const SceneDescription& scene, double radius, double strength);

@@ -269,6 +269,26 @@ TEST(LiveSessionTest, AMouseHoldsNoDeeperThanTheModelsGo) {
   EXPECT_GT(depth, 0.2 * 0.05);
 }
 
+TEST(LiveSessionTest, AMouseTurnsWhatItPressesWithAllItsForceWhateverTheFriction) {
+  Session session = test::ball_session();
+  constexpr double kRadius = 0.05;  // m
+  for (const double friction : {0.05, 0.75, 1.2, 3.0}) {
+    session.scene.bodies[0].friction = {friction, friction};
+    for (const double modulus : {1e4, 3e6}) {
+      Elasticity& elasticity = session.scene.bodies[0].elasticity;
+      elasticity.youngs_modulus = modulus;
+      const VirtualCoupling coupling = mouse_coupling(session.scene, kRadius, kGentleForce);
+      // The torque of a sphere's contact that slips as a whole, 3 pi / 16 mu F a, with Hertz's a.
+      const double force = coupling.largest_force;
+      const double contact_radius =
+          std::cbrt(0.75 * force * kRadius / elasticity.contact_modulus());
+      const double slips = 3.0 * std::numbers::pi / 16.0 * friction * force * contact_radius;
+      EXPECT_GT(coupling.largest_torque, 1.4 * slips) << friction;
+      EXPECT_LT(coupling.largest_torque, 1.6 * slips) << friction;
+    }
+  }
+}
+
 TEST(LiveSessionTest, AMouseIsGentleOnAHardBody) {
   Session session = test::ball_session();
   for (const double modulus : {1e4, 3e6, 1e9}) {

@@ -50,7 +50,7 @@ struct Recipe {
   bool write_color = true;
   bool write_depth = true;
   bool test_depth = true;
-  bool blend = false;
+  bool blend = false;  // 3 of the shaders' constants: glass
   bool depth_bias = false;
   // Constants of the shaders.
   bool quick = false;    // 0: the overlay's whole pixels, less work a pixel
@@ -93,11 +93,12 @@ vk::raii::Pipeline make_graphics_pipeline(const Gpu& gpu, vk::PipelineLayout lay
                                           const Recipe& recipe) {
   const vk::raii::ShaderModule vertex = make_module(gpu, recipe.vertex);
   vk::raii::ShaderModule fragment = nullptr;
-  const std::array<std::uint32_t, 3> values = {
-      recipe.quick ? VK_TRUE : VK_FALSE, recipe.cut_out ? VK_TRUE : VK_FALSE, recipe.read_textures};
+  const std::array<std::uint32_t, 4> values = {
+      recipe.quick ? VK_TRUE : VK_FALSE, recipe.cut_out ? VK_TRUE : VK_FALSE, recipe.read_textures,
+      recipe.blend ? VK_TRUE : VK_FALSE};
   constexpr std::uint32_t kSize = sizeof(std::uint32_t);
-  constexpr std::array<vk::SpecializationMapEntry, 3> kEntries = {
-      {{0, 0, kSize}, {1, kSize, kSize}, {2, 2 * kSize, kSize}}};
+  constexpr std::array<vk::SpecializationMapEntry, 4> kEntries = {
+      {{0, 0, kSize}, {1, kSize, kSize}, {2, 2 * kSize, kSize}, {3, 3 * kSize, kSize}}};
   const vk::SpecializationInfo constants{.mapEntryCount = kEntries.size(),
                                          .pMapEntries = kEntries.data(),
                                          .dataSize = sizeof values,

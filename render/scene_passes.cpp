@@ -58,13 +58,11 @@ void draw_triangles(const Commands& commands, const DrawRange& drawn, Range tria
                        static_cast<std::int32_t>(drawn.vertices.first), 0);
 }
 
-/// The bits of a material, and of how it covers.
-std::uint32_t draw_bits(const FrameInputs& inputs, std::uint32_t material, Cover cover) {
-  const std::uint32_t bits =
-      inputs.textures.bits(material) | (cover == Cover::kGlass ? shared::kGlass : 0U);
+/// The bits of a material.
+std::uint32_t draw_bits(const FrameInputs& inputs, std::uint32_t material) {
   const float strength = inputs.frame.materials[material].occlusion_strength;
-  return bits | static_cast<std::uint32_t>(std::lround(255.0F * strength))
-                    << shared::kOcclusionShift;
+  return inputs.textures.bits(material) | static_cast<std::uint32_t>(std::lround(255.0F * strength))
+                                              << shared::kOcclusionShift;
 }
 
 /// Which groups of triangles one pipeline draws.
@@ -99,7 +97,7 @@ void draw_each(const Commands& commands, const FrameInputs& inputs, const Things
       constants.surface = {material.metallic, material.roughness, material.scattering,
                            material.alpha_cutoff};
       constants.emission = glm::vec4(material.emission, material.normal_scale);
-      constants.rows.w = draw_bits(inputs, group.material, selection.cover);
+      constants.rows.w = draw_bits(inputs, group.material);
       f(row, material, constants);
       if (selection.textured) {
         push_textures(commands, inputs, group.material);

@@ -73,14 +73,13 @@ void main() {
 
   vec3 reflectance = normal_reflectance(base, material.metal);
   vec3 scattered = base * (1.0 - material.metal);
-  bool is_glass = (draw.rows.w & kGlass) != 0;
   if (kQuick) {
     float share = world_normal.x > 0.0 ? key_light_share(in_shadow_map) : 0.0;
     vec3 light = material.open * world_position + frame.key_light.rgb * diffuse_key(world_normal.x, share);
     vec3 seen = scattered * light + material.emission;
     vec3 shine = reflectance * world_normal.y + world_normal.z;
-    color = is_glass ? glass(seen, shine, glass_cover(material.alpha, 1.0, mark))
-                     : vec4(below_white(seen + shine), 1.0);
+    color = kGlass ? glass(seen, shine, glass_cover(material.alpha, 1.0, mark))
+                   : vec4(below_white(seen + shine), 1.0);
     return;
   }
   vec3 outward = gl_FrontFacing ? world_normal : -world_normal;  // what is double-sided
@@ -98,6 +97,6 @@ void main() {
     shine += share * frame.key_light.rgb * key_highlight(reflectance, material.roughness, normal, to_eye, facing);
   }
   vec3 seen = scattered * light + material.emission;
-  color = is_glass ? glass(seen, shine, glass_cover(material.alpha, seen_by, mark))
-                   : vec4(below_white(seen + shine), 1.0);
+  color = kGlass ? glass(seen, shine, glass_cover(material.alpha, seen_by, mark))
+                 : vec4(below_white(seen + shine), 1.0);
 }

@@ -4,6 +4,9 @@
 // tests depth late: on a processor that costs all that is hidden.
 layout(constant_id = 1) const bool kCutOut = false;
 
+// One sees through it.
+layout(constant_id = 3) const bool kGlass = false;
+
 struct Material {
   vec3 base;        // linear rgb
   float alpha;

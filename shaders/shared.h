@@ -36,9 +36,7 @@ TORSION_CONSTANT(kMetalRoughness, 1);
 TORSION_CONSTANT(kNormal, 2);
 TORSION_CONSTANT(kOcclusion, 3);
 TORSION_CONSTANT(kEmission, 4);
-TORSION_CONSTANT(kGlass, 32);           // one sees through it
-TORSION_CONSTANT(kMarks, 64);           // tools: lines that turn with it
-TORSION_CONSTANT(kMasked, 128);         // what has less alpha than the cutoff is not there
+TORSION_CONSTANT(kMarks, 32);           // tools: lines that turn with it
 TORSION_CONSTANT(kOcclusionShift, 8);   // from that bit on: the strength of the occlusion, 0 to 255
 
 // Reflections of the studio (render/studio_light.hpp): a square tile of the map for each of these

@@ -62,6 +62,6 @@ void main() {
     shine += share * frame.key_light.rgb * key_highlight(reflectance, material.roughness, normal, to_eye, facing);
   }
   vec3 seen = base * (1.0 - material.metal) * light + material.emission;
-  color = (draw.rows.w & kGlass) != 0 ? glass(seen, shine, glass_cover(material.alpha, seen_by, mark.x))
-                                      : vec4(below_white(seen + shine), 1.0);
+  color = kGlass ? glass(seen, shine, glass_cover(material.alpha, seen_by, mark.x))
+                 : vec4(below_white(seen + shine), 1.0);
 }

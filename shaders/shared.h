@@ -28,8 +28,8 @@ TORSION_CONSTANT(kNoRegion, 0);
 TORSION_CONSTANT(kOneRegion, 1);
 TORSION_CONSTANT(kManyRegions, 2);
 
-// What a draw is, bits of DrawConstants::rows.w. The first are those of TextureRole, and of the array of textures: it
-// has one for that.
+// What a draw is, bits of DrawConstants::rows.w. Bit i of the first kTextures: its material has a texture of the role i
+// (TextureRole), which the shaders' array has at i.
 TORSION_CONSTANT(kTextures, 5);
 TORSION_CONSTANT(kBaseColor, 0);
 TORSION_CONSTANT(kMetalRoughness, 1);

@@ -1,7 +1,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <memory>
 
 #include <fmt/format.h>
@@ -10,6 +9,7 @@
 #include "app/output_file.hpp"
 #include "app/picture_run.hpp"
 #include "app/progress.hpp"
+#include "app/scene_colors.hpp"
 #include "render/image_io.hpp"
 #include "render/video.hpp"
 
@@ -143,16 +143,6 @@ PictureScales scales_of_run(Session& session, const RenderOptions& options, doub
   return find_scales(session, steps_in(session, end) + 1, kScaleStride, progress);
 }
 
-/// What colours show: as the option or else the scene says, else the twist.
-HeatMap heat_map_of(const std::string& option, const SceneDescription& scene) {
-  const std::map<std::string, HeatMap> maps = {{"none", HeatMap::kNone},
-                                               {"material", HeatMap::kNone},
-                                               {"twist", HeatMap::kTwist},
-                                               {"pressure", HeatMap::kPressure}};
-  const auto found = maps.find(option.empty() ? scene.view.colors : option);
-  return found == maps.end() ? HeatMap::kTwist : found->second;
-}
-
 int render(const RenderOptions& options) {
   Result<Session> opened = open_session(options.scene.scene, options.scene.prepare_options(),
                                         options.quiet, options.scene.settings);
@@ -161,7 +151,9 @@ int render(const RenderOptions& options) {
   }
   Session& session = opened.value();
   PictureRun::Options picture = options.picture;
-  picture.draw.heat_map = heat_map_of(options.heat, session.scene);
+  const std::string colors = options.heat.empty() ? session.scene.view.colors : options.heat;
+  picture.draw.heat_map =
+      colors == "none" ? HeatMap::kNone : heat_map_of(colors).value_or(HeatMap::kTwist);
   // What can fail without a step taken comes first.
   Result<PictureRun> run = PictureRun::create(session, picture);
   if (!run) {

@@ -8,12 +8,6 @@
 namespace torsion::engine {
 namespace {
 
-/// What an image's first byte says; glTF has PNG and JPEG (glTF 2.0, section 3.8.3).
-const char* mime_type(const std::vector<unsigned char>& bytes) {
-  constexpr unsigned char kPngStart = 0x89;
-  return !bytes.empty() && bytes[0] == kPngStart ? "image/png" : "image/jpeg";
-}
-
 int gltf_wrap(TextureWrap wrap) {
   switch (wrap) {
     case TextureWrap::kClamp:
@@ -32,6 +26,11 @@ int last_row(const std::vector<Row>& rows) {
 }
 
 }  // namespace
+
+const char* mime_type(const std::vector<unsigned char>& bytes) {
+  constexpr unsigned char kPngStart = 0x89;
+  return !bytes.empty() && bytes[0] == kPngStart ? "image/png" : "image/jpeg";
+}
 
 int MaterialWriter::add_texture(const MaterialTexture& texture) {
   if (!texture.image || texture.image->bytes.empty()) {

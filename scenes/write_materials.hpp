@@ -9,6 +9,9 @@
 
 namespace torsion::engine {
 
+/// What an image's first byte says; glTF has PNG and JPEG (glTF 2.0, section 3.8.3).
+const char* mime_type(const std::vector<unsigned char>& bytes);
+
 /// Writes materials into a model, each image once. The model's first buffer takes the images.
 class MaterialWriter {
  public:

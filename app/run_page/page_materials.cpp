@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
-#include <string_view>
 
 #include <glm/geometric.hpp>
 
 #include "app/base64.hpp"
 #include "render/srgb.hpp"
 #include "render/studio_light.hpp"
+#include "scenes/write_materials.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -42,9 +41,7 @@ const char* alpha_name(AlphaMode mode) {
 }
 
 std::string data_address(const EncodedImage& image) {
-  constexpr unsigned char kPngStart = 0x89;
-  const std::string kind = image.bytes.front() == kPngStart ? "image/png" : "image/jpeg";
-  return "data:" + kind + ";base64," + packed_bytes(std::as_bytes(std::span(image.bytes)));
+  return std::string("data:") + mime_type(image.bytes) + ";base64," + base64_of(image.bytes);
 }
 
 /// Images that can be shown, each once.
@@ -62,16 +59,7 @@ std::vector<const EncodedImage*> images_of(const std::vector<DrawMaterial>& mate
   return images;
 }
 
-template <class Row>
-std::string packed_rows(const std::vector<Row>& rows) {
-  return packed_bytes(std::as_bytes(std::span(rows)));
-}
-
 }  // namespace
-
-std::string packed_bytes(std::span<const std::byte> bytes) {
-  return base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-}
 
 std::uint32_t PageMaterials::row_of(const DrawMaterial& material) {
   const auto found = std::ranges::find(rows_, material);
@@ -89,9 +77,8 @@ nlohmann::json PageMaterials::look_of(const WrittenMesh& mesh) {
     runs.push_back(
         {run.triangles.first, run.triangles.count, row_of(mesh.materials[run.material])});
   }
-  return {{"runs", runs},
-          {"texcoords", packed_rows(mesh.texcoords)},
-          {"paint", packed_rows(mesh.colors)}};
+  return {
+      {"runs", runs}, {"texcoords", base64_of(mesh.texcoords)}, {"paint", base64_of(mesh.colors)}};
 }
 
 nlohmann::json PageMaterials::materials() const {
@@ -149,7 +136,7 @@ nlohmann::json studio_sides() {
         }
       }
     }
-    sides.push_back(packed_rows(rgb));
+    sides.push_back(base64_of(rgb));
   }
   return sides;
 }

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <span>
-#include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -29,9 +26,6 @@ class PageMaterials {
 
   std::vector<DrawMaterial> rows_;
 };
-
-/// Rows of anything, as text that the page's script reads.
-std::string packed_bytes(std::span<const std::byte> bytes);
 
 /// The light that surfaces mirror, as the six sides of a cube in WebGL's order, sRGB bytes: x from
 /// the other side, as three.js looks them up.

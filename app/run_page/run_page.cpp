@@ -12,6 +12,7 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
+#include "app/base64.hpp"
 #include "app/html_text.hpp"
 #include "app/round_up.hpp"
 #include "app/run_page/page_materials.hpp"
@@ -49,11 +50,6 @@ namespace {
 
 std::string_view text_between(const char* begin, const char* end) {
   return {begin, static_cast<std::size_t>(end - begin)};
-}
-
-template <class Row>
-std::string packed(const std::vector<Row>& rows) {
-  return packed_bytes(std::as_bytes(std::span(rows)));
 }
 
 /// `value` as a part of `unit`, which is 32767.
@@ -100,15 +96,15 @@ nlohmann::json body_json(const AnimatedMesh& body, double limit, PageMaterials& 
   return {{"name", body.rest.name},
           {"pose", pose_json(body.rest.pose)},
           {"poses", poses},
-          {"positions", packed(body.rest.positions)},
-          {"normals", packed(body.rest.normals)},
-          {"triangles", packed(body.rest.triangles)},
-          {"shifts", packed(shifts)},
+          {"positions", base64_of(body.rest.positions)},
+          {"normals", base64_of(body.rest.normals)},
+          {"triangles", base64_of(body.rest.triangles)},
+          {"shifts", base64_of(shifts)},
           {"shift_unit", static_cast<double>(largest) / 32767.0},
-          {"normal_shifts", packed(normals)},
+          {"normal_shifts", base64_of(normals)},
           {"look", materials.look_of(body.rest)},
           {"grid", grid_spacing(box_of(body.rest.positions).largest_side())},
-          {"twists", packed(twists)}};
+          {"twists", base64_of(twists)}};
 }
 
 nlohmann::json tool_json(const AnimatedMesh& tool, std::size_t row, const DeformedRun& run,
@@ -126,9 +122,9 @@ nlohmann::json tool_json(const AnimatedMesh& tool, std::size_t row, const Deform
   }
   return {{"name", tool.rest.name},
           {"look", materials.look_of(tool.rest)},
-          {"positions", packed(tool.rest.positions)},
-          {"normals", packed(tool.rest.normals)},
-          {"triangles", packed(tool.rest.triangles)},
+          {"positions", base64_of(tool.rest.positions)},
+          {"normals", base64_of(tool.rest.normals)},
+          {"triangles", base64_of(tool.rest.triangles)},
           {"poses", poses},
           {"forces", forces},
           {"torques", torques},

@@ -83,6 +83,7 @@
   // A material as its file has it. What nobody said is opaque of bodies, glass of tools.
   function authored(look, isTool) {
     const glass = look.alpha === "blend" || (look.alpha === "unsaid" && isTool);
+    const metalRoughness = textureOf(look, 1, false);
     const material = new THREE.MeshStandardMaterial({
       color: new THREE.Color(look.color[0], look.color[1], look.color[2]),
       metalness: look.metal,
@@ -92,8 +93,8 @@
       envMapIntensity: 0.6,
       side: look.double_sided ? THREE.DoubleSide : THREE.FrontSide,
       map: textureOf(look, 0, true),
-      metalnessMap: textureOf(look, 1, false),
-      roughnessMap: textureOf(look, 1, false),
+      metalnessMap: metalRoughness,
+      roughnessMap: metalRoughness,
       normalMap: textureOf(look, 2, false),
       aoMap: textureOf(look, 3, false),
       aoMapIntensity: look.occlusion_strength,

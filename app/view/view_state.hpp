@@ -35,6 +35,7 @@ struct ToolSpeeds {
 
 /// A ring that a tool can be turned by.
 struct RingMark {
+  std::uint32_t tool = 0;
   TurnRing ring;
   bool under_mouse = false;
   double angle = 0.0;            // rad: of the place under the mouse
@@ -81,7 +82,6 @@ struct ViewState {
   bool let_go = false;           // of the tool of the plots, which stays where it is
   std::optional<Pose> handle;    // where the tool of the plots is held; none: nobody holds it
   std::optional<RingMark> ring;  // of the tool that the mouse is near
-  std::uint32_t ring_tool = 0;   // that one
 
   bool loop = true;                   // the scene begins again after its animation
   std::vector<GalleryEntry> gallery;  // scenes to choose from

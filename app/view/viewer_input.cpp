@@ -137,7 +137,6 @@ std::optional<Viewer::UnderMouse> Viewer::tool_under(const glm::dvec2& mouse,
 /// mouse is on its ring.
 void Viewer::look_for_ring(const glm::dvec2& mouse, const glm::dvec2& picture) {
   constexpr double kReach = 9.0;  // pixels
-  state_.ring.reset();
   const auto under = tool_under(mouse, picture);
   const std::uint32_t tool = under ? under->tool : state_.tool;
   if (session_->on_device(tool)) {
@@ -145,6 +144,7 @@ void Viewer::look_for_ring(const glm::dvec2& mouse, const glm::dvec2& picture) {
   }
   const ContactAxes axes = axes_under(tool);
   RingMark mark;
+  mark.tool = tool;
   mark.ring = ring_around(session_->frame().snapshot.tools.at<ToolPose>(tool).now,
                           session_->shown().simulation.world.model.tools.at<Bounds>(tool),
                           axes.pivot, axes.normal, axes.tangent);
@@ -153,13 +153,12 @@ void Viewer::look_for_ring(const glm::dvec2& mouse, const glm::dvec2& picture) {
   mark.angle = angle.value_or(0.0);
   if (under || angle || session_->held(tool)) {
     state_.ring = mark;
-    state_.ring_tool = tool;
   }
 }
 
 void Viewer::start_drag(const glm::dvec2& mouse, const glm::dvec2& picture) {
   if (state_.ring && state_.ring->under_mouse) {
-    take_tool(state_.ring_tool, 0.0);
+    take_tool(state_.ring->tool, 0.0);
     grab_.on_ring = true;
     grab_.ring = *state_.ring;
     grab_.ring.turned = 0.0;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <thread>
 
+#include "app/scene_colors.hpp"
 #include "app/view/panel_layout.hpp"
 #include "app/view/viewer.hpp"
 #include "device/scripted_motion.hpp"
@@ -42,9 +43,7 @@ Camera Viewer::camera() const {
 void Viewer::look_at_scene() {
   place_camera();
   const SceneView& view = session_->scene().view;
-  state_.draw.heat_map = view.colors == "twist"      ? HeatMap::kTwist
-                         : view.colors == "pressure" ? HeatMap::kPressure
-                                                     : HeatMap::kNone;
+  state_.draw.heat_map = heat_map_of(view.colors).value_or(HeatMap::kNone);
   state_.show_cells = view.stick_slip;
   state_.slowness = static_cast<std::uint32_t>(std::lround(1.0 / view.speed));
   state_.loop = view.loop;

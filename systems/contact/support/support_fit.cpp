@@ -30,6 +30,10 @@ constexpr double kLeastFacing = 0.4;     // cosine between a port's normal and t
 constexpr double kMoved = 0.04;          // of its reach: a contact moved farther is fitted again
 constexpr double kGrown = 1.12;          // likewise the contact's radius
 constexpr double kTurned = 0.9997;       // likewise the cosine of the normal
+/// A smaller contact moves the body between its ports as one of this radius would, over the reach.
+/// What couples do to a contact goes with its radius to the third power, forces with the first: of
+/// contacts far smaller still, rounding would be all of the one.
+constexpr double kPoint = 1e-4;
 /// Added to the diagonal against oscillating fits where ports are few, over the sum of the weights,
 /// by degree. Constants and slopes are left free.
 constexpr std::array<double, 5> kStiffer{0.0, 0.0, 1e-6, 1e-5, 1e-4};
@@ -187,7 +191,7 @@ bool still_fits(const SupportFit& support_fit, const ContactEllipse& contact) {
   return support_fit.reach > 0.0 &&
          glm::distance(support_fit.center, contact.center) < kMoved * support_fit.reach &&
          contact.radius < kGrown * support_fit.radius &&
-         support_fit.radius < kGrown * contact.radius &&
+         support_fit.radius < kGrown * std::max(contact.radius, kPoint * support_fit.reach) &&
          glm::dot(support_fit.normal, contact.normal) > kTurned;
 }
 
@@ -205,20 +209,27 @@ void fit_support(const PortCompliance& body, const ContactEllipse& contact,
                  SupportFit& support_fit) {
   support_fit.origin = contact.center;
   support_fit.center = contact.center;
-  support_fit.radius = contact.radius;
   support_fit.normal = contact.normal;
   const glm::dvec3 other =
       std::abs(contact.normal.x) < 0.6 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
   support_fit.tangent_x = glm::normalize(glm::cross(contact.normal, other));
   support_fit.tangent_y = glm::cross(contact.normal, support_fit.tangent_x);
-  const double longer = std::max(glm::length(contact.axis_1), glm::length(contact.axis_2));
+  const double enough = distance_to_enough(body, contact);
+  ContactEllipse loaded = contact;
+  if (loaded.radius < kPoint * enough) {
+    loaded.radius = kPoint * enough;
+    loaded.axis_1 = loaded.radius * support_fit.tangent_x;
+    loaded.axis_2 = loaded.radius * support_fit.tangent_y;
+  }
+  support_fit.radius = loaded.radius;
+  const double longer = std::max(glm::length(loaded.axis_1), glm::length(loaded.axis_2));
   support_fit.extent = longer;
-  support_fit.reach = std::max(distance_to_enough(body, contact), kBeyond * longer);
+  support_fit.reach = std::max(enough, kBeyond * longer);
   std::array<double, kSupportPorts> weights{};
   const double size = std::max(kBeyond * longer / support_fit.reach, 0.05);
-  find_ports(body, contact, size, support_fit, weights);
+  find_ports(body, loaded, size, support_fit, weights);
   fit_terms(body, weights, size, support_fit);
-  const std::array<SupportMoments, 6> moments = moments_of_wrenches(support_fit, contact);
+  const std::array<SupportMoments, 6> moments = moments_of_wrenches(support_fit, loaded);
   for (std::size_t c = 0; c < 6; ++c) {
     forces_at_ports(support_fit, moments[c], support_fit.unit_forces[c]);
   }

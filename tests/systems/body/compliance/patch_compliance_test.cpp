@@ -6,10 +6,12 @@
 #include <random>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "systems/body/compliance/supported_regions.hpp"
 #include "systems/contact/support/contact_load.hpp"
 #include "systems/contact/support/support_fit.hpp"
 #include "tests/support/contact_scenes.hpp"
@@ -234,6 +236,36 @@ TEST(SupportResponseTest, IsWhatThePortsMakeOfMoments) {
   }
   EXPECT_GT(largest, 0.0);
   EXPECT_LT(error, 1e-11 * largest);
+}
+
+// A contact that has just begun may be a nanometre wide. Far smaller than the distances between
+// ports it moves the body as a small one does, by forces and by couples, not by rounding.
+TEST(PointContactTest, MovesTheBodyAsASmallOneDoes) {
+  Hand hand = hand_over(kGrounds[1], 12, 2);
+  hand.move(glm::dvec3(0.0, -1e-3, 0.0), kUp, 0.0, 50);
+  State& state = hand.simulation().world.state;
+  const Model& model = hand.world().model;
+  const CompliantBody body{model, state, 0, ports_of(model, 0)};
+  const SupportedRegion supported;
+  const auto own_of = [&](double radius) {
+    ContactEllipse contact = contact_ellipse(model, state, 0);
+    contact.axis_1 *= radius / contact.radius;
+    contact.axis_2 *= radius / contact.radius;
+    contact.radius = radius;
+    fit_region_support(body, supported, contact);
+    return Matrix6(Eigen::Map<const Matrix6>(support_fit_of(body, supported).own.data()));
+  };
+  const Matrix6 small = own_of(1e-5);
+  ASSERT_GT((small.topLeftCorner<3, 3>().norm()), 0.0);
+  for (const double radius : {1e-7, 1e-9, 1e-11, 1e-13, 0.0}) {
+    // The displacement under a disc is even in its radius: 1e-5 m over ports 1 mm apart are 1e-4.
+    const Matrix6 apart = own_of(radius) - small;
+    for (const auto& [row, column] : {std::pair{0, 0}, {3, 0}, {3, 3}}) {
+      EXPECT_LT((apart.block<3, 3>(row, column).norm()),
+                1e-3 * (small.block<3, 3>(row, column).norm()))
+          << radius << " " << row << " " << column;
+    }
+  }
 }
 
 }  // namespace

@@ -1,247 +1,32 @@
 #include "systems/mdr/round_contact.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
-#include <glm/geometric.hpp>
+#include <glm/common.hpp>
 
 #include "systems/contact/support/body_law.hpp"
 #include "systems/half_space/elliptic_contact.hpp"
 #include "systems/half_space/layer.hpp"
-#include "systems/math/frames.hpp"
-#include "systems/math/linear_algebra.hpp"
 #include "systems/math/smooth_step.hpp"
 
 namespace torsion::engine {
 namespace {
 
-constexpr int kMoments = 15;  // of x^p y^q with p + q <= 4
-
-/// Index of x^p y^q in the list of moments: by degree, then by q.
-constexpr std::size_t moment(int p, int q) {
-  const int degree = p + q;
-  return static_cast<std::size_t>(degree * (degree + 1) / 2 + q);
-}
-
-/// Moments of the cells' places, in half grid sizes, and of their depths. Those for the paraboloid
-/// have the weight weight_of; those of the area the share in contact; those of the middle that
-/// share times the square of the depth.
-struct PlaceMoments {
-  std::array<double, kMoments> of_place{};
-  std::array<double, 6> of_depth{};
-  std::array<double, 6> of_area{};
-  glm::dvec2 of_middle{0.0};
-  double squares = 0.0;
-};
-
-double largest_depth(std::span<const CellGeometry> cells) {
-  double most = 0.0;
-  for (const CellGeometry& cell : cells) {
-    most = cell.coverage > 0.0 ? std::max(most, cell.depth) : most;
-  }
-  return most;
-}
-
-/// Weight of a cell in contact, whose depth is `relative` of the largest. Rim cells, whose middles
-/// may not touch, count little; but in a contact narrower than two cells they alone show how it
-/// falls off across. Without them it would seem flat.
-double weight_of(double relative) {
-  constexpr double kRim = 0.01;
-  const double deep = std::max(relative, 0.0);
-  const double square = (2.0 - relative) * (2.0 - relative);
-  return deep * deep + kRim / (square * square);
-}
-
-PlaceMoments add_cells(std::uint32_t side, std::span<const CellGeometry> cells, double largest) {
-  PlaceMoments sums;
-  const double step = 2.0 / static_cast<double>(side);
-  std::uint32_t cell = 0;
-  for (std::uint32_t j = 0; j < side; ++j) {
-    const double y = (static_cast<double>(j) + 0.5) * step - 1.0;
-    // Moments of one row in x, to be multiplied by powers of y.
-    std::array<double, 5> row{};
-    std::array<double, 3> row_depth{};
-    std::array<double, 3> row_area{};
-    for (std::uint32_t i = 0; i < side; ++i, ++cell) {
-      double area = cells[cell].coverage;
-      if (area <= 0.0) {
-        continue;
-      }
-      const double depth = cells[cell].depth;
-      const double x = (static_cast<double>(i) + 0.5) * step - 1.0;
-      const double deep = std::max(depth, 0.0) / largest;
-      sums.squares += area * deep * deep;
-      sums.of_middle += area * deep * deep * glm::dvec2(x, y);
-      double power = area * weight_of(depth / largest);
-      for (std::size_t p = 0; p < row.size(); ++p) {
-        row[p] += power;
-        if (p < row_depth.size()) {
-          row_depth[p] += power * depth;
-          row_area[p] += area;
-        }
-        power *= x;
-        area *= x;
-      }
-    }
-    double power = 1.0;
-    for (int q = 0; q <= 4; ++q) {
-      for (int p = 0; p + q <= 4; ++p) {
-        sums.of_place[moment(p, q)] += power * row[static_cast<std::size_t>(p)];
-        if (p + q <= 2) {
-          sums.of_depth[moment(p, q)] += power * row_depth[static_cast<std::size_t>(p)];
-          sums.of_area[moment(p, q)] += power * row_area[static_cast<std::size_t>(p)];
-        }
-      }
-      power *= y;
-    }
-  }
-  return sums;
-}
-
-/// Coefficients of 1, x, y, x^2, x y, y^2.
-Vector6 solve(const PlaceMoments& sums) {
-  constexpr std::array<std::array<int, 2>, 6> kPowers{
-      {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};
-  Matrix6 matrix;
-  Vector6 right;
-  for (int a = 0; a < 6; ++a) {
-    const auto& pa = kPowers[static_cast<std::size_t>(a)];
-    right(a) = sums.of_depth[static_cast<std::size_t>(moment(pa[0], pa[1]))];
-    for (int b = 0; b < 6; ++b) {
-      const auto& pb = kPowers[static_cast<std::size_t>(b)];
-      matrix(a, b) = sums.of_place[moment(pa[0] + pb[0], pa[1] + pb[1])];
-    }
-  }
-  // Few cells, or cells in a line, leave some coefficients undetermined: those stay near zero.
-  matrix.diagonal().array() += 1e-12 * matrix(0, 0);
-  return solve_ldlt(matrix, right);
-}
-
-/// Depth over a place.
-struct Paraboloid {
-  double height = 0.0;        // m
-  Eigen::Vector2d gradient;   // 1
-  Eigen::Matrix2d curvature;  // 1/m
-
-  [[nodiscard]] double at(const Eigen::Vector2d& place) const {
-    return height + gradient.dot(place) - 0.5 * place.dot(curvature * place);
-  }
-};
-
-/// The covered area's middle, m, and the variances of its place, m^2.
-struct Area {
-  Eigen::Vector2d center;
-  Eigen::Matrix2d spread;
-};
-
-Area area_of(const PlaceMoments& sums, std::uint32_t side, const glm::dvec2& scale) {
-  const auto mean = [&sums](int p, int q) {
-    return sums.of_area[moment(p, q)] / sums.of_area[0];
-  };
-  // A cell's own second moment is a twelfth of its side's square.
-  const double own = 1.0 / (3.0 * static_cast<double>(side) * static_cast<double>(side));
-  const double mixed = mean(1, 1) * scale.x * scale.y;
-  Area area;
-  area.center = {mean(1, 0) * scale.x, mean(0, 1) * scale.y};
-  area.spread << (mean(2, 0) + own) * scale.x * scale.x, mixed, mixed,
-      (mean(0, 2) + own) * scale.y * scale.y;
-  area.spread -= area.center * area.center.transpose();
-  return area;
-}
-
-/// What the cells show along a principal axis of the paraboloid.
-struct PrincipalAxis {
-  Eigen::Vector2d direction;
-  double known = 0.0;   // apex_share
-  double top = 0.0;     // m: its apex, where known
-  double extent = 0.0;  // m
-};
-
-/// How well the cells show the apex along a principal axis, 0 to 1. The depth of a whole paraboloid
-/// falls by 2 bend spread = the depth of its apex from there to its rim. That of a flat contact,
-/// which ends at an edge, does not fall, and gradient / bend would be arbitrary.
-/// @param bend    1/m, curvature
-/// @param spread  m^2, variance of the place over the area
-double apex_share(double bend, double spread, double depth) {
-  constexpr double kShown = 0.7;  // of the fall; a ball cut in the middle has 0.3 across the cut
-  constexpr double kUnknown = 0.2;
-  return smooth_step((2.0 * bend * spread / depth - kUnknown) / (kShown - kUnknown));
-}
-
-// How far the force of a tilted flat punch moves, over what the squares of the depth give. Flat and
-// round: (2/3) a^2 over a^2 / 2 (Johnson, 1985, 3.5). For a cylinder between two edges the squares
-// give 5/3 of Winkler's foundation; `patch` gives 1.3 of it where the contact is 10 times as long
-// as wide, 1.4 where 5 times.
-constexpr double kFlatStamp = 4.0 / 3.0;
-constexpr double kCylinder = 0.8;
-
-/// The apex of a paraboloid two cells wide is a quarter deeper than the nearest centres.
-constexpr double kBetweenCells = 1.25;
-
-}  // namespace
-
-ContactShape fit_contact_shape(const RegionFrame& frame, std::uint32_t side,
-                               std::span<const CellGeometry> cells) {
-  ContactShape shape;
-  const double largest = largest_depth(cells);
-  if (largest <= 0.0) {
-    return shape;
-  }
-  const PlaceMoments sums = add_cells(side, cells, largest);
-  const Vector6 c = solve(sums);
-  const glm::dvec2 scale = frame.half_size;
-  // depth = c0 + g . x - x' K x / 2
-  Paraboloid fit;
-  fit.height = c(0);
-  fit.gradient = {c(1) / scale.x, c(2) / scale.y};
-  fit.curvature << -2.0 * c(3) / (scale.x * scale.x), -c(4) / (scale.x * scale.y),
-      -c(4) / (scale.x * scale.y), -2.0 * c(5) / (scale.y * scale.y);
-  const glm::dvec2 weighted = sums.of_middle / sums.squares * scale;
-  const Eigen::Vector2d middle(weighted.x, weighted.y);
-  const Area area = area_of(sums, side, scale);
-  const double depth = std::max(fit.at(middle), 1e-300);
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal;
-  principal.computeDirect(fit.curvature);
-  std::array<PrincipalAxis, 2> axes;
-  for (int k = 0; k < 2; ++k) {
-    PrincipalAxis& axis = axes[static_cast<std::size_t>(k)];
-    axis.direction = principal.eigenvectors().col(k);
-    const double spread = axis.direction.dot(area.spread * axis.direction);
-    const double bend = std::max(principal.eigenvalues()(k), 0.0);
-    axis.known = apex_share(bend, spread, depth);
-    axis.extent = 2.0 * std::sqrt(std::max(spread, 0.0));
-    const double center = axis.direction.dot(area.center);
-    axis.top = axis.known > 0.0 ? std::clamp(axis.direction.dot(fit.gradient) / bend,
-                                             center - axis.extent, center + axis.extent)
-                                : 0.0;
-  }
-  Eigen::Vector2d apex = Eigen::Vector2d::Zero();
-  Eigen::Vector2d deepest = Eigen::Vector2d::Zero();
-  for (std::size_t k = 0; k < 2; ++k) {
-    const PrincipalAxis& axis = axes[k];
-    const double center = axis.direction.dot(area.center);
-    const double stamp = std::lerp(kFlatStamp, kCylinder, axes[1 - k].known);
-    const double flat = center + stamp * (axis.direction.dot(middle) - center);
-    apex += axis.direction * std::lerp(flat, axis.top, axis.known);
-    deepest += axis.direction * std::lerp(center, axis.top, axis.known);
-  }
-  shape.extent_1 = axes[0].extent;
-  shape.extent_2 = axes[1].extent;
-  shape.curvature_1 = std::max(principal.eigenvalues()(0), 0.0);
-  shape.curvature_2 = std::max(principal.eigenvalues()(1), 0.0);
-  shape.apex = {apex.x(), apex.y()};
-  // Where the cells show little (a thin contact lies across them) the paraboloid may do anything
-  // outside of them, but its depth is limited to what may lie between two cells.
-  shape.depth = std::min(fit.at(deepest), kBetweenCells * largest);
-  return shape;
-}
-
-namespace {
-
 using std::numbers::pi;
+
+// Root mean square of what a paraboloid leaves of the depth, over that: up to here the contact is
+// one; from there on it is not. A cone or an edge leaves 0.08, the corner of a box 0.13.
+constexpr double kFits = 0.035;
+constexpr double kUnlike = 0.06;
+
+// How far its force may be from that of the overlap's area and mean depth, which of all shapes from
+// a flat punch to a cone is within 10 %. Farther apart are paraboloids with their apex beyond the
+// overlap's edge, of which nothing but the side is seen, and those as curved one way as the other,
+// whose axes may lie anywhere, in an overlap that is longer than wide.
+constexpr double kClose = 0.15;
+constexpr double kApart = 0.35;
 
 /// The part that does not depend on how the contact was found: stiffnesses of an ellipse that
 /// presses with `round_share` of Hertz' pressure.
@@ -281,6 +66,47 @@ RoundContact contact_of_shapes(const SmoothContact& smooth, const Elasticity& el
   return contact;
 }
 
+/// Mixes two ways of knowing a contact.
+/// @param share  of `other`
+RoundContact mix(const RoundContact& one, const RoundContact& other, double share) {
+  RoundContact contact;
+  contact.center = glm::mix(one.center, other.center, share);
+  contact.radius = std::lerp(one.radius, other.radius, share);
+  contact.depth = std::lerp(one.depth, other.depth, share);
+  contact.force = std::lerp(one.force, other.force, share);
+  contact.pressure.flat_share =
+      std::lerp(one.pressure.flat_share, other.pressure.flat_share, share);
+  contact.pressure.elongation =
+      std::lerp(one.pressure.elongation, other.pressure.elongation, share);
+  contact.slide_stiffness = std::lerp(one.slide_stiffness, other.slide_stiffness, share);
+  contact.turn_stiffness = std::lerp(one.turn_stiffness, other.turn_stiffness, share);
+  contact.torque_share = std::lerp(one.torque_share, other.torque_share, share);
+  return contact;
+}
+
+/// From the overlap's area A and mean depth alone, for shapes that no paraboloid fits: edges and
+/// corners. All of the family from a flat punch (peak p = 0) to a paraboloid (p = 1) have a mean of
+/// (1 - p / 2) of their depth and a contact of A / (1 + p), and their force at equal area and mean
+/// depth differs by 10 %.
+RoundContact contact_of_volume(const ContactShape& shape, const Overlap& overlap,
+                               const Elasticity& elasticity) {
+  RoundContact contact;
+  contact.center = shape.stamp;
+  // The overlap's has what lies between the middles, too, by the slope there: worth 10 % where it
+  // is two cells wide. Where a face lies along the body it can be all of it, and wrong.
+  constexpr double kMostBetween = 1.1;
+  const double mean = std::min(overlap.mean_depth, kMostBetween * shape.mean_depth);
+  contact.depth = mean / (1.0 - 0.5 * shape.peak);
+  contact.radius = std::sqrt(overlap.area / (pi * (1.0 + shape.peak)));
+  const double axes = std::clamp(shape.axes, 0.01, 1.0);
+  const EllipseShares shares = axes < 1.0 ? ellipse_shares(axes) : EllipseShares{};
+  contact.force = 2.0 * elasticity.contact_modulus() * contact.radius * contact.depth *
+                  shares.force * (1.0 - shape.peak / 3.0);
+  contact.pressure.flat_share = (1.0 - shape.peak) / (1.0 - shape.peak / 3.0);
+  set_stiffnesses(axes, shares, shape.peak, elasticity.poisson_ratio, contact);
+  return contact;
+}
+
 /// From the cells: the contact of a paraboloid. Where the overlap ends before the paraboloid's
 /// contact would, the contact ends there, and the rest of the depth presses like a flat punch: a
 /// half-space resists a flat punch with 2 E* a d, a ball with (4/3) E* a d, and a cylinder between
@@ -293,8 +119,11 @@ RoundContact contact_of_cells(const Model& model, const State& state, std::uint3
       fit_contact_shape(state.regions.at<RegionFrame>(region), model.settings.grid_side,
                         state.cells.rows<CellGeometry>(identity.cells));
   RoundContact contact;
-  if (shape.depth <= 0.0 || overlap.area <= 0.0) {
+  if (shape.mean_depth <= 0.0 || overlap.area <= 0.0) {
     return contact;
+  }
+  if (shape.depth <= 0.0) {
+    return contact_of_volume(shape, overlap, elasticity);
   }
   contact.center = shape.apex;
   contact.depth = shape.depth;
@@ -316,24 +145,11 @@ RoundContact contact_of_cells(const Model& model, const State& state, std::uint3
   contact.force = of_stamp * shares.force * (1.0 - round_share / 3.0);
   contact.pressure.flat_share = (1.0 - round_share) / (1.0 - round_share / 3.0);
   set_stiffnesses(axes, shares, round_share, elasticity.poisson_ratio, contact);
-  return contact;
-}
-
-/// Mixes the two where the shapes determine only part of the contact.
-RoundContact mix(const RoundContact& cells, const RoundContact& shapes, double share) {
-  RoundContact contact;
-  contact.center = glm::mix(cells.center, shapes.center, share);
-  contact.radius = std::lerp(cells.radius, shapes.radius, share);
-  contact.depth = std::lerp(cells.depth, shapes.depth, share);
-  contact.force = std::lerp(cells.force, shapes.force, share);
-  contact.pressure.flat_share =
-      std::lerp(cells.pressure.flat_share, shapes.pressure.flat_share, share);
-  contact.pressure.elongation =
-      std::lerp(cells.pressure.elongation, shapes.pressure.elongation, share);
-  contact.slide_stiffness = std::lerp(cells.slide_stiffness, shapes.slide_stiffness, share);
-  contact.turn_stiffness = std::lerp(cells.turn_stiffness, shapes.turn_stiffness, share);
-  contact.torque_share = std::lerp(cells.torque_share, shapes.torque_share, share);
-  return contact;
+  const RoundContact volume = contact_of_volume(shape, overlap, elasticity);
+  const double apart = std::abs(contact.force / volume.force - 1.0);
+  const double unlike = std::max(smooth_step((shape.misfit - kFits) / (kUnlike - kFits)),
+                                 smooth_step((apart - kClose) / (kApart - kClose)));
+  return unlike > 0.0 ? mix(contact, volume, unlike) : contact;
 }
 
 }  // namespace

@@ -32,6 +32,13 @@ struct ContactShape {
   // spread of the area, so that a square is about as wide as the disc of its area).
   double extent_1 = 0.0;
   double extent_2 = 0.0;
+  double misfit = 0.0;  // root mean square of what the paraboloid leaves of the depth, over that
+  // What does not depend on the paraboloid, but on sums over the overlap alone.
+  glm::dvec2 stamp{0.0};  // m, grid: where a flat punch of this overlap would press
+  double peak = 0.0;      // 0 where the depth is the same everywhere, 1 where it falls off as a
+                          // paraboloid's or faster: 3 (mean of its square / square of its mean - 1)
+  double axes = 1.0;      // smaller over larger spread of the area
+  double mean_depth = 0.0;  // m, over the area, of the cells' middles
 };
 
 /// Least squares over the cells in contact, weighted by their share in it and about the square of

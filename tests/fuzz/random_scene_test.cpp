@@ -43,7 +43,10 @@ INSTANTIATE_TEST_SUITE_P(
         Seed{1148, "MdrWhereASideCutsABall", true}, Seed{1265, "MdrOnALongContactAskew", true},
         Seed{1344, "HardlyAnyForceAfterALongWay"}, Seed{1332, "BodyDraggedFromUnderTheTool"},
         Seed{1035, "RimOfAPlateThatWasNotFollowedUp", true},
-        Seed{1250, "RoundedEdgesBesideSamples"}),
+        Seed{1250, "RoundedEdgesBesideSamples"}, Seed{20005, "MdrWhereABoxTurnsOntoAnEdge", true},
+        Seed{20140, "MdrWhereEdgesMeet"}, Seed{20261, "MdrBetweenCoarseMeshes"},
+        Seed{1085, "MdrOfAFaceOnAFace"}, Seed{20293, "MdrOnALongSliverOfABodyThatSways"},
+        Seed{30374, "MdrOfACylindersRim"}, Seed{30449, "MdrOfABallOfWhichOnlyASideIsSeen", true}),
     [](const testing::TestParamInfo<Seed>& seed) { return std::string(seed.param.what); });
 
 }  // namespace

@@ -4,13 +4,13 @@
 
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "systems/hold/handle_side.hpp"
 #include "tests/device/fake_bus.hpp"
+#include "tests/support/studies.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -131,9 +131,8 @@ double fall_silent(FakeBus& bus, std::size_t row) {
 class FaultCampaignTest : public testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(FaultCampaignTest, ForceStaysWithinItsLimitsAndEndsWithATrustedDevice) {
-  const bool all = std::getenv("TORSION_ALL_CASES") != nullptr;  // NOLINT(concurrency-mt-unsafe)
   Tally tally;
-  tally.sessions = all ? 2000 : 100;  // of each of six devices
+  tally.sessions = test::trials_of(2000, test::kSanitized ? 80 : 20);  // of each of six devices
   Random random{std::mt19937(GetParam() + 1)};
   for (int session = 0; session < tally.sessions; ++session) {
     Person person;

@@ -21,6 +21,13 @@ inline int trials_of(int all, int of = 5) {
   return all_cases() ? all : all / of;
 }
 
+/// True under sanitizers: they look at memory and races, for which some of many like cases do.
+#ifdef TORSION_SANITIZED
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
 inline constexpr const char* kLeftOut = "one of many of its kind: ./dev test --all looks at it";
 
 }  // namespace torsion::engine::test

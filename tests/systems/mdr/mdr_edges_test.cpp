@@ -22,38 +22,44 @@ using test::options_of;
 
 constexpr double kUpperFace = 0.1;  // m: of the body's upper face
 
-/// A cone that stands on its apex, at the origin, of this slope against the plane.
-PartDescription cone(double slope, double radius) {
-  constexpr std::uint32_t kAround = 64;
+/// A pyramid that stands on its apex, at the origin, whose faces have this slope against the plane.
+PartDescription pyramid(std::uint32_t faces, double slope, double radius) {
+  const double height = slope * radius * std::cos(std::numbers::pi / faces);
   PartDescription part = make_part(ShapeKind::kSphere, glm::dvec3(radius), {}, true, 4);
   SurfaceMesh& mesh = part.surface;
   mesh = SurfaceMesh{};
-  mesh.positions = {glm::dvec3(0.0), glm::dvec3(0.0, slope * radius, 0.0)};
-  for (std::uint32_t k = 0; k < kAround; ++k) {
-    const double angle = 2.0 * std::numbers::pi * k / kAround;
-    mesh.positions.emplace_back(radius * std::cos(angle), slope * radius, radius * std::sin(angle));
+  mesh.positions = {glm::dvec3(0.0), glm::dvec3(0.0, height, 0.0)};
+  for (std::uint32_t k = 0; k < faces; ++k) {
+    const double angle = 2.0 * std::numbers::pi * (k + 0.3) / faces;
+    mesh.positions.emplace_back(radius * std::cos(angle), height, radius * std::sin(angle));
   }
-  for (std::uint32_t k = 0; k < kAround; ++k) {
+  for (std::uint32_t k = 0; k < faces; ++k) {
     const std::uint32_t here = 2 + k;
-    const std::uint32_t next = 2 + (k + 1) % kAround;
+    const std::uint32_t next = 2 + (k + 1) % faces;
     mesh.triangles.emplace_back(0, here, next);
     mesh.triangles.emplace_back(1, next, here);
   }
   return part;
 }
 
-TEST(MdrEdgesTest, AConePressesAsSneddons) {
-  // F = 2 E* d^2 / (pi slope) (Popov and Hess, 2015, 2.3). The overlap's area and mean depth alone
-  // give 1.3 % less; 12 cells tell the area of a disc to 3 %, to which the force is in proportion.
+/// Normal force of a pyramid pressed into a half-space, over E* d^2 / slope.
+double pyramid_force(std::uint32_t faces, double slope) {
+  SceneDescription scene = make_ball_scene({.model = ContactModel::kMdr});
+  scene.tools[0] = test::make_tool({pyramid(faces, slope, 0.03)});
+  Hand hand(scene);
+  const double depth = 0.2 * slope * 0.03;
+  hand.step_to({{glm::dvec3(0.001, kUpperFace + 1e-3 * depth, 0.002), glm::dquat(1, 0, 0, 0)}});
+  hand.move({0.0, -1.001 * depth, 0.0}, {0.0, 1.0, 0.0}, 0.0, 100);
+  return hand.wrench().force.y * slope / (kBallModulus * depth * depth);
+}
+
+// From the overlap's area and mean depth, which 12 cells tell to 3 %.
+TEST(MdrEdgesTest, ConesAndPyramidsPressAsTheExactOnes) {
   for (const double slope : {0.05, 0.15, 0.4}) {
-    SceneDescription scene = make_ball_scene({.model = ContactModel::kMdr});
-    scene.tools[0] = test::make_tool({cone(slope, 0.03)});
-    Hand hand(scene);
-    const double depth = 0.3 * slope * 0.03;
-    hand.step_to({{glm::dvec3(0.001, kUpperFace + 1e-3 * depth, 0.002), glm::dquat(1, 0, 0, 0)}});
-    hand.move({0.0, -1.001 * depth, 0.0}, {0.0, 1.0, 0.0}, 0.0, 100);
-    const double exact = 2.0 * kBallModulus * depth * depth / (std::numbers::pi * slope);
-    EXPECT_NEAR(hand.wrench().force.y / exact, 1.0, 0.05) << slope;
+    // Sneddon (Popov and Hess, 2015, 2.3): 2 / pi, of which that is 1.3 % less.
+    EXPECT_NEAR(pyramid_force(64, slope) * std::numbers::pi / 2.0, 1.0, 0.05) << slope;
+    // Bilodeau (J. Appl. Mech. 59 (1992) 519): 0.7453, of which it is 4.8 % less.
+    EXPECT_NEAR(pyramid_force(4, slope) / 0.7453, 1.0, 0.08) << slope;
   }
 }
 

@@ -84,6 +84,19 @@ RoundContact mix(const RoundContact& one, const RoundContact& other, double shar
   return contact;
 }
 
+/// Force, pressure and stiffnesses of a contact of known radius and depth, between a flat punch's
+/// and a paraboloid's.
+/// @param ratio        b / a, taken as at least 1 : 100
+/// @param round_share  of the depth that falls off as a paraboloid's, 0 to 1
+void press(double ratio, double round_share, const Elasticity& elasticity, RoundContact& contact) {
+  const double axes = std::clamp(ratio, 0.01, 1.0);
+  const EllipseShares shares = axes < 1.0 ? ellipse_shares(axes) : EllipseShares{};
+  const double of_stamp = 2.0 * elasticity.contact_modulus() * contact.radius * contact.depth;
+  contact.force = of_stamp * shares.force * (1.0 - round_share / 3.0);
+  contact.pressure.flat_share = (1.0 - round_share) / (1.0 - round_share / 3.0);
+  set_stiffnesses(axes, shares, round_share, elasticity.poisson_ratio, contact);
+}
+
 /// From the overlap's area A and mean depth alone, for shapes that no paraboloid fits: edges and
 /// corners. All of the family from a flat punch (peak p = 0) to a paraboloid (p = 1) have a mean of
 /// (1 - p / 2) of their depth and a contact of A / (1 + p), and their force at equal area and mean
@@ -98,12 +111,7 @@ RoundContact contact_of_volume(const ContactShape& shape, const Overlap& overlap
   const double mean = std::min(overlap.mean_depth, kMostBetween * shape.mean_depth);
   contact.depth = mean / (1.0 - 0.5 * shape.peak);
   contact.radius = std::sqrt(overlap.area / (pi * (1.0 + shape.peak)));
-  const double axes = std::clamp(shape.axes, 0.01, 1.0);
-  const EllipseShares shares = axes < 1.0 ? ellipse_shares(axes) : EllipseShares{};
-  contact.force = 2.0 * elasticity.contact_modulus() * contact.radius * contact.depth *
-                  shares.force * (1.0 - shape.peak / 3.0);
-  contact.pressure.flat_share = (1.0 - shape.peak) / (1.0 - shape.peak / 3.0);
-  set_stiffnesses(axes, shares, shape.peak, elasticity.poisson_ratio, contact);
+  press(shape.axes, shape.peak, elasticity, contact);
   return contact;
 }
 
@@ -139,12 +147,7 @@ RoundContact contact_of_cells(const Model& model, const State& state, std::uint3
   contact.radius = std::min(std::sqrt(along * across), radius_of_area);
   // How much of each axis' curvature comes from the shapes.
   const double round_share = 0.5 * (shape.curvature_1 / bend_1 + shape.curvature_2 / bend_2);
-  const double axes = std::clamp(across / along, 0.01, 1.0);
-  const EllipseShares shares = axes < 1.0 ? ellipse_shares(axes) : EllipseShares{};
-  const double of_stamp = 2.0 * elasticity.contact_modulus() * contact.radius * shape.depth;
-  contact.force = of_stamp * shares.force * (1.0 - round_share / 3.0);
-  contact.pressure.flat_share = (1.0 - round_share) / (1.0 - round_share / 3.0);
-  set_stiffnesses(axes, shares, round_share, elasticity.poisson_ratio, contact);
+  press(across / along, round_share, elasticity, contact);
   const RoundContact volume = contact_of_volume(shape, overlap, elasticity);
   const double apart = std::abs(contact.force / volume.force - 1.0);
   const double unlike = std::max(smooth_step((shape.misfit - kFits) / (kUnlike - kFits)),

@@ -18,6 +18,14 @@ constexpr std::uint32_t kRoundsOnSoftBody = 3;  // at most: pressing moves it si
 // unsteady hand: with the usual tolerance, played-back recordings deviated by 7 %.
 constexpr double kSettledOnBody = 0.01;  // PatchProblem::settled
 
+/// mu beta: beta = (1 - 2 nu) / (2 (1 - nu)) is Dundurs' constant for a rigid tool (Johnson,
+/// Contact Mechanics, 1985, 5.1).
+double friction_feedback(const Friction& friction, const Elasticity& elasticity) {
+  const double nu = elasticity.poisson_ratio;
+  return std::max(friction.static_friction, friction.dynamic_friction) * (1.0 - 2.0 * nu) /
+         (2.0 * (1.0 - nu));
+}
+
 /// The tool's motion over cells that stay in place, while RegionMotion's pivot moves with the tool.
 RegionMotion motion_over_cells(const State& state, std::uint32_t region, const RegionFrame& frame) {
   RegionMotion motion = state.regions.at<RegionMotion>(region);
@@ -45,6 +53,7 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
   problem.compliance = 2.0 * frame.half_size.x /
                        (static_cast<double>(settings.grid_side) * elasticity.shear_modulus());
   problem.coupled = influences.coupled;
+  problem.feedback = friction_feedback(model.bodies.at<Friction>(identity.body), elasticity);
   const PatchPlaces& places = context.patch.places;
   cell_centers(frame, settings.grid_side, places.x, places.y);
   problem.support = patch_support(model, state, region, context.patch.disc_stiffness,

@@ -39,6 +39,7 @@ struct PatchWork {
   std::vector<double> response_both;                             // m: what both components share
   std::vector<double> limit, along_x, along_y, softened, clips;  // as in TractionColumns
   std::vector<double> change_pressure, change_x, change_y;       // Pa, in this solution
+  std::vector<double> change_depression, depth;                  // m, of a round (rounds.cpp)
   // Rigid motions of the cells that count, and what the preconditioner makes of them, Pa/m and Pa
   std::array<std::vector<double>, 3> rigid_x, rigid_y, rigid_tractions_x, rigid_tractions_y;
   // Of tractions on a body that deflects: where their cells are to go beside its motion, m
@@ -69,6 +70,7 @@ struct PatchProblem {
   PatchSupport support;     // what the body as a whole adds to displacements
   double compliance = 0.0;  // m/Pa: cell length along x over the shear modulus
   bool coupled = false;     // pressure moves the surface sideways: nu < 0.5
+  double feedback = 0.0;    // mu beta: of pressures on themselves by friction (rounds.cpp)
   double reference = 0.0;   // Pa: typical pressure; a largest change below `skip` times it ends
   double skip = 1e-9;       // relative
   double settled = 3e-2;    // of the whole change of a step: a smaller one ends it, too; sums over
@@ -77,7 +79,8 @@ struct PatchProblem {
       0.0;  // Pa: change since the last step that is there already, sum over
   double extrapolated_traction = 0.0;  // the cells, both components
   std::uint32_t iterations = 2;        // at most, of the pressures and then of the tractions
-  std::uint32_t rounds = 1;            // at most, of the two in turn where they are coupled
+  std::uint32_t rounds = 1;            // at most, of the two in turn where they are coupled; more
+                                       // where much friction feeds back
   std::uint32_t iterations_of_rounds = 0xffffffff;  // at most, of all rounds together
 };
 

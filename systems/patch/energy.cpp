@@ -202,7 +202,8 @@ void take_back(const Model& model, State& state, std::uint32_t region, double li
   const double share =
       lifted > 0.0 && energy.held > 0.0 ? std::min(energy.lent / energy.held, kMostLent) : 0.0;
   const double wanted = std::clamp(share * normal.force, taken - change, taken + change);
-  energy.taken = std::min(wanted, normal.force);
+  // What was taken of a larger force goes down with it: friction has its limit by the pressures.
+  energy.taken = std::min(wanted, kMostLent * normal.force);
   energy.lent = std::max(energy.lent - 0.5 * (taken + energy.taken) * lifted, 0.0);
   normal.force -= energy.taken;
 }

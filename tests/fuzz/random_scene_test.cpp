@@ -46,7 +46,9 @@ INSTANTIATE_TEST_SUITE_P(
         Seed{1250, "RoundedEdgesBesideSamples"}, Seed{20005, "MdrWhereABoxTurnsOntoAnEdge", true},
         Seed{20140, "MdrWhereEdgesMeet"}, Seed{20261, "MdrBetweenCoarseMeshes"},
         Seed{1085, "MdrOfAFaceOnAFace"}, Seed{20293, "MdrOnALongSliverOfABodyThatSways"},
-        Seed{30374, "MdrOfACylindersRim"}, Seed{30449, "MdrOfABallOfWhichOnlyASideIsSeen", true}),
+        Seed{20011, "PatchWithMuchFriction", true}, Seed{20163, "PatchWithMuchFrictionOnAStick"},
+        Seed{20119, "PatchWithMoreStaticFriction"}, Seed{30374, "MdrOfACylindersRim"},
+        Seed{30449, "MdrOfABallOfWhichOnlyASideIsSeen", true}),
     [](const testing::TestParamInfo<Seed>& seed) { return std::string(seed.param.what); });
 
 }  // namespace

@@ -99,9 +99,10 @@ void average_depths(double share, const PatchColumns& columns, PatchWork& work) 
 }
 
 /// Solves for the pressures at fixed tractions, then for the tractions at fixed pressures.
-/// @param share  as in average_depths
-PatchOutcome solve_in_turn(const PatchProblem& problem, double share, const PatchColumns& columns,
-                           PatchWork& work) {
+/// @param averaged  whether rounds press to a mean
+/// @param share     as in average_depths
+PatchOutcome solve_in_turn(const PatchProblem& problem, bool averaged, double share,
+                           const PatchColumns& columns, PatchWork& work) {
   const bool coupled = is_coupled(problem);
   if (coupled) {
     std::ranges::copy(columns.pressure, work.change_pressure.begin());
@@ -113,12 +114,14 @@ PatchOutcome solve_in_turn(const PatchProblem& problem, double share, const Patc
     average_depths(share, columns, work);
     pressed.depth = work.depth;
   }
-  if (coupled) {
+  if (averaged) {
     std::ranges::copy(columns.depression, work.change_depression.begin());
   }
   const PatchOutcome normal = solve_pressures(problem, pressed, work);
-  if (coupled) {
+  if (averaged) {
     take_change(columns.depression, work.change_depression);
+  }
+  if (coupled) {
     take_change(columns.pressure, work.change_pressure);
     if (problem.coupled) {
       add_sideways(problem, columns, work.change_pressure, work);
@@ -193,7 +196,7 @@ PatchOutcome solve_patch(const PatchProblem& problem, const PatchColumns& column
     of_round.iterations =
         std::min(rounds.iterations, rounds.iterations_of_all - outcome.iterations);
     share = rounds.averaged ? share_of_tool(rounds.feedback, round, share) : 1.0;
-    const PatchOutcome turn = solve_in_turn(of_round, share, columns, work);
+    const PatchOutcome turn = solve_in_turn(of_round, rounds.averaged, share, columns, work);
     outcome.last_change = turn.last_change;
     outcome.iterations += turn.iterations;
     // A round that presses to a mean may have next to nothing to do before the solution is found.

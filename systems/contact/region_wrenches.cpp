@@ -244,23 +244,34 @@ Wrench computed_wrench(const StepContext& context, std::uint32_t region) {
   return {force, glm::cross(arm, force) + seen.direction(frame.normal * friction.couple)};
 }
 
+/// The way of a contact's middle into the body in this step, over the depth; 0 out of it.
+double way_over_depth(const State& state, std::uint32_t region) {
+  const glm::dvec3 shift =
+      shift_at(motion_over_body(state, region), state.regions.at<Contact>(region).equivalent_point);
+  const double way = -glm::dot(shift, state.regions.at<RegionFrame>(region).normal);
+  return std::max(way, 0.0) / std::max(state.regions.at<Overlap>(region).largest_depth, 1e-300);
+}
+
 /// The share of a new region's force that comes from the tool's motion in this step: all of it if
 /// the tool reached the body within the step. A greater depth was there when the run began, or
 /// samples had missed it. By Hertz, F ~ d^(3/2).
 double share_by_motion(const State& state, std::uint32_t region) {
   constexpr double kMore = 1.2;  // times the way: depths are told by cells
-  const glm::dvec3 shift =
-      shift_at(motion_over_body(state, region), state.regions.at<Contact>(region).equivalent_point);
-  const double way = -glm::dot(shift, state.regions.at<RegionFrame>(region).normal);
-  const double share =
-      kMore * way / std::max(state.regions.at<Overlap>(region).largest_depth, 1e-300);
-  return share < 1.0 ? std::pow(std::max(share, 0.0), 1.5) : 1.0;
+  return std::pow(std::min(kMore * way_over_depth(state, region), 1.0), 1.5);
+}
+
+/// Likewise, of one that goes on from another: what the motion has added to what was there, if that
+/// is most of it. A slower motion's part is little, and a body that gives way takes some of it.
+double share_added(const State& state, std::uint32_t region) {
+  constexpr double kMost = 0.5;
+  const double way = std::min(way_over_depth(state, region), 1.0);
+  return way > kMost ? 1.0 - std::pow(1.0 - way, 1.5) : 0.0;
 }
 
 /// Fades the part of the wrench that an event has changed.
 /// @param extrapolated  share of the last step's change that this step's motion repeats
-/// @param came          of a region that begins: the share of its force that the tool's motion has
-/// made
+/// @param came          of a region that begins or goes on from another: the share of its force
+/// that the tool's motion has made in this step
 /// @param faded         share of the change that is faded out in this step
 void fade_event(RegionWrench& wrench, const Wrench& computed, double extrapolated, double came,
                 double faded) {
@@ -270,7 +281,7 @@ void fade_event(RegionWrench& wrench, const Wrench& computed, double extrapolate
     wrench.event_change = (before - computed) * (1.0 - came);
     wrench.event_share = came < 1.0 ? 1.0 : 0.0;
   } else if (event == RegionEvent::kTakesOver || event >= RegionEvent::kBodyFollows) {
-    wrench.event_change = before - computed;
+    wrench.event_change = before - computed * (1.0 - came);
     wrench.event_share = 1.0;
   } else if (event == RegionEvent::kRegridded && wrench.event_share == 0.0) {
     // What the extrapolation of the last step does not explain is the regrid's change; where the
@@ -362,9 +373,9 @@ void region_wrenches(StepContext& context) {
       carry(wrench, state.bodies.at<BodyPose>(identity.body));
     }
     const Wrench before = wrench.on_tool;
-    fade_event(wrench, computed_wrench(context, region),
-               state.regions.at<PatchState>(region).along_last,
-               begins ? share_by_motion(state, region) : 0.0, dt / kEventFade);
+    fade_event(
+        wrench, computed_wrench(context, region), state.regions.at<PatchState>(region).along_last,
+        begins ? share_by_motion(state, region) : share_added(state, region), dt / kEventFade);
     state.bodies.at<StoredEnergy>(identity.body).work +=
         work_on_body(model, state, identity, (before + wrench.on_tool) * 0.5);
   }

@@ -160,6 +160,8 @@ struct PatchState {
   std::uint32_t moved = 0;       // 1: the grid has moved, displacements must be found again
   std::uint32_t resized = 0;     // 1: and its cells have another size or other axes
   std::uint32_t settling = 0;    // steps to go until it has settled on other axes
+  std::uint32_t cut = 0;         // 1: in the last step the contact came to the grid's edge
+  std::uint32_t grown = 0;       // 1: the grid grew with the depth and is not fitted yet
   std::uint32_t copy_of = 0;  // in the step in which it splits off: 1 + the other's block of cells
 };
 

@@ -1,7 +1,6 @@
 #include "systems/patch/grid.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -12,6 +11,8 @@
 #include "systems/contact/tool_motion.hpp"
 #include "systems/half_space/influence.hpp"
 #include "systems/math/frames.hpp"
+#include "systems/patch/growth.hpp"
+#include "systems/patch/loaded_cells.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -20,61 +21,14 @@ constexpr double kSmallestFill =
     0.74;  // over a new grid's: below it the region is regridded, smaller
 constexpr double kOtherShape = 1.25;         // of a doubling: so far cells may be from their shape
 constexpr std::uint32_t kSettlingSteps = 8;  // on other axes
-constexpr double kMostly = 0.5;  // share of a rim's cell that has to be in contact for it to count
-constexpr double kSure = 1.3;    // over the point load's far field: what certainly touches
-
-/// A box of cells; `end` is one past the last.
-struct CellBox {
-  glm::ivec2 first{0};
-  glm::ivec2 end{0};
-};
-
-/// The cells with pressure. Of rim cells, those that are mostly in contact.
-struct LoadedArea {
-  CellBox box;  // empty when there are none
-  CellMoments moments;
-};
-
-/// Whether a cell carries pressure and counts for the contact's extent.
-/// @param least  share of it that is in contact
-bool is_loaded(const CellTraction& traction, const CellGeometry& geometry, double least) {
-  return traction.pressure > 0.0 && geometry.coverage >= least;
-}
-
-/// @param least  share of a cell that is in contact
-LoadedArea loaded_cells(const Grid& grid, double least) {
-  const auto tractions = grid.state.cells.rows<CellTraction>(grid.identity.cells);
-  const auto side = static_cast<int>(grid.side);
-  LoadedArea loaded{{{side, side}, {0, 0}}, {}};
-  for (int j = 0; j < side; ++j) {
-    const CellTraction* const row = &tractions[static_cast<std::size_t>(j * side)];
-    const CellGeometry* const places = &grid.cells[static_cast<std::size_t>(j * side)];
-    std::uint64_t bits = 0;
-    for (int i = 0; i < side; ++i) {
-      bits |= static_cast<std::uint64_t>(is_loaded(row[i], places[i], least)) << i;
-    }
-    for (std::uint64_t left = bits; left != 0;) {
-      const int first = std::countr_zero(left);
-      const int count = std::countr_one(left >> first);
-      const int end = first + count;
-      loaded.moments.add_run(first, count, j);
-      loaded.box.first = glm::min(loaded.box.first, glm::ivec2(first, j));
-      loaded.box.end = glm::max(loaded.box.end, glm::ivec2(end, j + 1));
-      left = end < 64 ? left >> end << end : 0;
-    }
-  }
-  return loaded;
-}
-
-glm::dvec2 cell_size(const Grid& grid) {
-  return 2.0 * cell_half_size(grid);
-}
-
-bool reaches_edge(const Grid& grid, const CellBox& box) {
-  const auto side = static_cast<int>(grid.side);
-  const auto spare = static_cast<int>(patch_spare(grid.side));
-  return box.first.x < 1 + spare || box.first.y < 1 || box.end.x > side - 1 || box.end.y > side - 1;
-}
+// Depth at a grid's edge, over the largest, from which more lies beyond than regridding around the
+// loaded cells takes in: at the rim of a ball's contact it is a half.
+constexpr double kDeep = 0.7;
+// Times the depth of the last step: the forces of a contact that grows so fast tell too little of
+// the next one to say what of that the grid changes (F ~ depth^(3/2): an extrapolation misses 3/4
+// of the square of this growth, 0.2 %).
+constexpr double kFast = 1.05;
+constexpr double kSure = 1.3;  // over the point load's far field: what certainly touches
 
 /// Includes the contact points outside of the grid that are deeper than the pressure can have
 /// displaced the surface there.
@@ -82,7 +36,9 @@ void include_lobes(const Grid& grid, std::uint32_t region, const RegionPoints& c
                    CellBox& box) {
   const Model& model = grid.model;
   const State& state = grid.state;
-  const double force = state.regions.at<RegionNormal>(region).force;
+  // The points are where the tool is now: of a ball the force will have grown as Hertz' does.
+  const double force =
+      std::pow(deepening(state, region), 1.5) * state.regions.at<RegionNormal>(region).force;
   const double modulus = model.bodies.at<Elasticity>(grid.identity.body).contact_modulus();
   const glm::dvec2 center(
       body_to_grid(grid.frame, state.regions.at<Contact>(region).equivalent_point));
@@ -113,39 +69,6 @@ void include_lobes(const Grid& grid, std::uint32_t region, const RegionPoints& c
   }
 }
 
-/// The box in m, from the grid's origin.
-PlaneBox extent_of(const Grid& grid, const CellBox& box) {
-  const glm::dvec2 half_side(0.5 * static_cast<double>(grid.side));
-  return {cell_size(grid) * (glm::dvec2(box.first) - half_side),
-          cell_size(grid) * (glm::dvec2(box.end) - half_side)};
-}
-
-glm::dmat2 rotation_by(double angle) {
-  return {std::cos(angle), std::sin(angle), -std::sin(angle), std::cos(angle)};
-}
-
-/// The loaded cells' extent along axes that are turned from the grid's. Their rim runs between
-/// cells; askew to the axes, the outermost of many centres is nearer to the rim than half a cell.
-PlaneBox extent_along(const Grid& grid, double least, double angle) {
-  const auto tractions = grid.state.cells.rows<CellTraction>(grid.identity.cells);
-  const glm::dmat2 turn = rotation_by(angle);
-  const glm::dvec2 half = cell_half_size(grid);
-  const glm::dvec2 beside = glm::max(glm::min(half.x * glm::abs(glm::dvec2(turn[0].x, turn[1].x)),
-                                              half.y * glm::abs(glm::dvec2(turn[0].y, turn[1].y))),
-                                     glm::dvec2(0.5 * std::min(half.x, half.y)));
-  PlaneBox extent;
-  std::size_t cell = 0;
-  for (std::uint32_t j = 0; j < grid.side; ++j) {
-    for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
-      if (is_loaded(tractions[cell], grid.cells[cell], least)) {
-        const glm::dvec2 at = cell_center(grid.frame, grid.side, i, j) * turn;
-        extent.include(at - beside, at + beside);
-      }
-    }
-  }
-  return extent;
-}
-
 /// Moves the grid by whole cells if that brings the box well into it.
 /// @return false if it does not: nothing has changed
 bool shift_frame(const Grid& grid, const CellBox& box, CellMove& move) {
@@ -172,8 +95,10 @@ struct GridFit {
   bool has_lobes = false;    // there are some
   bool cut = false;          // the box comes to the grid's edge
   bool too_small = false;    // it leaves much of the grid empty
+  bool grown = false;        // the grid grew with the depth, and another would fit better
   bool other_shape = false;  // cells of another shape would suit it
   bool has_rims = false;     // a long one with straight rims
+  glm::dvec2 growth{1.0};    // of a grid that cuts off much (growth_at_edges)
   ContactAxes axes;
 
   /// Whether the grid follows the contact's axes, so that slipping cells keep their direction of
@@ -255,13 +180,22 @@ GridFit fit_of(const Grid& grid, std::uint32_t region, const RegionPoints& conta
       fit.axes.angle = 0.0;
     }
   }
+  const auto most = static_cast<int>(fill_of_new(grid.side) * grid.side);
+  fit.grown = has_grown(grid.state.regions.at<PatchState>(region)) &&
+              (fit.has_rims || std::max(cells.x, cells.y) < most);
+  if (fit.cut && fit.axes.angle == 0.0 && !fit.has_rims) {
+    fit.growth = growth_at_edges(grid, loaded.cells, kDeep);
+  }
   return fit;
 }
 
 /// Places the grid along the loaded cells' axes and around them.
 void lay_frame(const Grid& grid, const RegionPoints& contact, const GridFit& fit, double depth) {
-  const PlaneBox loaded = fit.axes.angle == 0.0 ? extent_of(grid, fit.box)
-                                                : extent_along(grid, fit.least, fit.axes.angle);
+  PlaneBox loaded = fit.axes.angle == 0.0 ? extent_of(grid, fit.box)
+                                          : extent_along(grid, fit.least, fit.axes.angle);
+  if (fit.growth != glm::dvec2(1.0)) {
+    include_overlap(grid, contact, fit.growth, depth, loaded);
+  }
   turn_axes(grid.frame, fit.axes.angle);
   const GridLayout layout = layout_around(loaded, grid.side);
   shift_origin(grid, layout.shift);
@@ -296,6 +230,10 @@ glm::dvec2 patch_middle(std::uint32_t side) {
   return {half + 0.5 * patch_spare(side), half};
 }
 
+glm::dvec2 middle_in_grid(std::uint32_t side) {
+  return patch_middle(side) / static_cast<double>(side) * 2.0 - 1.0;
+}
+
 std::uint32_t patch_spare(std::uint32_t side) {
   constexpr std::uint32_t kCoarsest = 6;
   return side % 2 == 0 && side >= kCoarsest ? 1 : 0;
@@ -304,12 +242,19 @@ std::uint32_t patch_spare(std::uint32_t side) {
 void regrid_around_loaded(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const Grid grid = grid_of(context, region);
   const GridFit fit = fit_of(grid, region, contact);
-  if (fit.box.end.x == 0 || !(fit.cut || fit.too_small || fit.other_shape || fit.axes.is_askew())) {
+  PatchState& state = context.state.regions.at<PatchState>(region);
+  if (has_grown(state)) {
+    state.grown = 0;
+  }
+  state.cut = fit.cut ? 1 : 0;
+  if (fit.box.end.x == 0 ||
+      !(fit.cut || fit.too_small || fit.grown || fit.other_shape || fit.axes.is_askew())) {
     return;
   }
   const double depth = context.state.regions.at<Overlap>(region).largest_depth;
   CellMove move;
-  if (fit.axes.is_askew() || fit.other_shape || !shift_frame(grid, fit.box, move)) {
+  if (fit.growth != glm::dvec2(1.0) || fit.axes.is_askew() || fit.other_shape || fit.grown ||
+      !shift_frame(grid, fit.box, move)) {
     const RegionFrame before = grid.frame;
     lay_frame(grid, contact, fit, depth);
     move = move_between(before, grid.frame, grid.side);
@@ -317,10 +262,9 @@ void regrid_around_loaded(StepContext& context, std::uint32_t region, const Regi
   const double reach = std::max(grid.frame.half_size.x, grid.frame.half_size.y);
   move_cells(grid, context.patch, move, depth, fit.takes_axes() ? reach : 0.0);
   std::uint32_t& event = context.state.regions.at<RegionWrench>(region).event_now;
-  if (event == 0 && !move.keeps_cells()) {
+  if (event == 0 && !move.keeps_cells() && deepening(context.state, region) < kFast) {
     event = static_cast<std::uint32_t>(RegionEvent::kRegridded);
   }
-  PatchState& state = context.state.regions.at<PatchState>(region);
   state.moved = 1;
   state.resized = move.keeps_cells() ? 0 : 1;
   if (!move.keeps_cells() && fit.takes_axes()) {
@@ -352,6 +296,7 @@ void find_patch_cells(StepContext& context, std::uint32_t region, const RegionPo
   }
   extrapolate_carrier(context.state, region);
   find_cells(grid, contact);
+  grow_with_depth(context, region, contact);
   if (state.resized != 0) {
     look_along_normal(grid, contact);
   }

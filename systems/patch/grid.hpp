@@ -73,6 +73,13 @@ CellMove move_between(const RegionFrame& before, const RegionFrame& now, std::ui
 void move_cells(const Grid& grid, PatchScratch& scratch, const CellMove& move, double depth,
                 double ahead);
 
+/// Pressures of a contact that has grown alike to itself. Of cells that move_cells has moved.
+/// @param middle  of the contact, in the old grid's cells
+/// @param ratio   by which it has grown along the axes
+/// @param more    by which pressures have
+void grow_pressures(const Grid& grid, const PatchScratch& scratch, const CellMove& move,
+                    const glm::dvec2& middle, const glm::dvec2& ratio, double more);
+
 /// Adds the pressures and tractions of another region's cells, by linear interpolation. Where both
 /// regions carry pressure, as cells do that were as near to the one as to the other, the larger
 /// counts.
@@ -94,6 +101,9 @@ void center_patch(const Grid& grid, const RegionPoints& contact, double start_de
 /// alone is mirror-symmetric, but the two staircases of the contact's rim differ: where they are
 /// the same their errors add up, to three times as much in the torque.
 glm::dvec2 patch_middle(std::uint32_t side);
+
+/// The same place from the grid's origin, over its half sides.
+glm::dvec2 middle_in_grid(std::uint32_t side);
 
 /// Columns at the grid's left that stay empty for that, so that as many are on either side of the
 /// middle: 1, or 0 where the grid is too coarse to spare one or odd already.

@@ -39,6 +39,9 @@ constexpr double kMostExtrapolation = 1.0;
 // largest, with eight, and with more, by 0.8 % (patch_steady_rolling_test.cpp).
 constexpr std::uint32_t kIterationsOfRolling = 8;  // at most
 constexpr double kRolls = 2e-3;
+// Share of the depth by which a contact deepens in a step that takes as many: what it grows by is
+// new, too.
+constexpr double kDeepens = 0.05;
 
 /// Component of this step's motion along the last one's, divided by the last one's size: 1 in
 /// steady motion, -1 where it turns back.
@@ -237,7 +240,8 @@ struct IterationLimits {
 };
 
 /// Where this step's solution starts, and how many iterations it may take.
-void begin_solution(Patch& patch, const IterationLimits& iterations) {
+/// @param deepened  m, in this step
+void begin_solution(Patch& patch, double deepened, const IterationLimits& iterations) {
   if (is_anew(patch.own)) {
     extrapolate_cells(patch.rows, {}, patch.columns, patch.problem);
     start_anew(patch, iterations.anew);
@@ -249,7 +253,7 @@ void begin_solution(Patch& patch, const IterationLimits& iterations) {
   release_cells(patch.problem, patch.columns, patch.work, kNoContact);
   if (patch.own.settling > 0) {
     solve_longer(patch, iterations.anew);
-  } else if (rolls(patch)) {
+  } else if (rolls(patch) || deepened > kDeepens * patch.own.depth) {
     patch.problem.iterations = std::max(patch.problem.iterations, iterations.of_rolling);
   }
 }
@@ -275,7 +279,7 @@ void solve_region(StepContext& context, std::uint32_t region, const IterationLim
   const double depth = largest(whole_lanes(patch.columns.depth.size()), patch.columns.depth.data());
   const double deepened = depth - patch.own.depth;
   patch.own.along_last = share_of_last(patch, deepened);
-  begin_solution(patch, iterations);
+  begin_solution(patch, deepened, iterations);
   if (has_support(patch)) {
     find_support(patch);
     take_off_support(patch.rows.surface.known, patch.support.x, patch.support.y, patch.columns);
@@ -305,7 +309,8 @@ void solve_region(StepContext& context, std::uint32_t region, const IterationLim
                .residual = outcome.residual,
                .iterations = outcome.iterations,
                .started = 1,
-               .settling = settling > 0 ? settling - 1 : 0};
+               .settling = settling > 0 ? settling - 1 : 0,
+               .grown = patch.own.grown};
   summarize(patch, sums);
   settle_energy(patch.model, patch.state, region,
                 {patch.problem, patch.columns, patch.support.z, held_by_body, patch.work}, start);

@@ -187,6 +187,24 @@ void move_cells(const Grid& grid, PatchScratch& scratch, const CellMove& move, d
   }
 }
 
+void grow_pressures(const Grid& grid, const PatchScratch& scratch, const CellMove& move,
+                    const glm::dvec2& middle, const glm::dvec2& ratio, double more) {
+  const PatchRows rows = patch_rows(grid.state, grid.identity.cells);
+  const Before before{{},
+                      {},
+                      scratch.tractions_before,
+                      static_cast<int>(grid.side),
+                      static_cast<int>(patch_spare(grid.side))};
+  std::size_t cell = 0;
+  for (std::uint32_t j = 0; j < grid.side; ++j) {
+    for (std::uint32_t i = 0; i < grid.side; ++i, ++cell) {
+      const glm::dvec2 here(static_cast<double>(i), static_cast<double>(j));
+      const glm::dvec2 place = middle + (move.origin + move.by * here - middle) / ratio;
+      rows.tractions[cell].pressure = more * linear_traction(before, on_centers(place)).pressure;
+    }
+  }
+}
+
 void add_cells(const Grid& grid, const CellMove& move, std::span<const CellTraction> others) {
   const Before before{
       {}, {}, others, static_cast<int>(grid.side), static_cast<int>(patch_spare(grid.side))};

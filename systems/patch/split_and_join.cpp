@@ -9,6 +9,7 @@
 #include "systems/patch/cells.hpp"
 #include "systems/patch/energy.hpp"
 #include "systems/patch/grid.hpp"
+#include "systems/patch/loaded_cells.hpp"
 #include "systems/patch/region.hpp"
 
 namespace torsion::engine {
@@ -144,14 +145,6 @@ void include_loaded(const Grid& of, const RegionFrame& frame, PlaneBox& box) {
       }
     }
   }
-}
-
-/// Whether a box lies in the grid with a free row and column on every side.
-bool holds(const Grid& grid, const PlaneBox& box) {
-  const glm::dvec2 cell = 2.0 * cell_half_size(grid);
-  const glm::dvec2 spare(patch_spare(grid.side) * cell.x, 0.0);
-  return glm::all(glm::greaterThan(box.lowest, cell + spare - grid.frame.half_size)) &&
-         glm::all(glm::lessThan(box.highest, grid.frame.half_size - cell));
 }
 
 /// Whether a region has tractions worth keeping.

@@ -47,8 +47,9 @@ INSTANTIATE_TEST_SUITE_P(
         Seed{20140, "MdrWhereEdgesMeet"}, Seed{20261, "MdrBetweenCoarseMeshes"},
         Seed{1085, "MdrOfAFaceOnAFace"}, Seed{20293, "MdrOnALongSliverOfABodyThatSways"},
         Seed{20011, "PatchWithMuchFriction", true}, Seed{20163, "PatchWithMuchFrictionOnAStick"},
-        Seed{20119, "PatchWithMoreStaticFriction"}, Seed{30374, "MdrOfACylindersRim"},
-        Seed{30449, "MdrOfABallOfWhichOnlyASideIsSeen", true}),
+        Seed{20119, "PatchWithMoreStaticFriction"}, Seed{21368, "RimOfACylinderInABall", true},
+        Seed{21332, "RimOfACylinderOnABox"}, Seed{22057, "EdgeOnAFace"},
+        Seed{30374, "MdrOfACylindersRim"}, Seed{30449, "MdrOfABallOfWhichOnlyASideIsSeen", true}),
     [](const testing::TestParamInfo<Seed>& seed) { return std::string(seed.param.what); });
 
 }  // namespace

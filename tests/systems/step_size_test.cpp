@@ -101,8 +101,9 @@ double softness_of(const World& world, double poisson) {
   return stiffness * std::hypot(moved.x, moved.z) / glm::length(force);
 }
 
-/// Pressed alike whatever the cut: how a grid of patch follows a contact that grows decides which
-/// staircase of a rim it ends with, and two of them are as far apart as each is from the circle.
+/// Pressed alike whatever the cut, and first as deep as the path goes: how a grid of patch follows
+/// a contact that grows decides which staircase of a rim it ends with, and two of them are as far
+/// apart as each is from the circle.
 Curve curve(const StepCase& each, int steps) {
   SceneDescription scene = make_ball_scene(each.scene);
   scene.bodies[0].models.body = each.body;
@@ -111,9 +112,11 @@ Curve curve(const StepCase& each, int steps) {
   Hand hand(scene, options);
   Pose over = pose_at(0, steps);
   const glm::dvec3 down(0.0, -1.02 * kBallDepth, 0.0);
+  const glm::dvec3 deeper(0.0, -0.06 * kBallDepth, 0.0);
   over.position -= down;
   hand.step_to({over});
-  hand.move(down, down, 0.0, 100);
+  hand.move(down + deeper, down, 0.0, 100);
+  hand.move(-deeper, down, 0.0, 20);
   hand.move(glm::dvec3(0.0), down, 0.0, 20);
   Curve found;
   for (int step = 1; step <= steps; ++step) {

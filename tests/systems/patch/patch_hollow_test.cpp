@@ -118,8 +118,9 @@ struct Resolution {
 
 // A disc's torque is within 0.5 % at 120 to 150 cells and errs with nearly the square of a cell's
 // size (patch_torsion_test.cpp), by its rim. Rings and pairs of lobes have up to twice as much rim
-// for as many cells: 1 % at 16 a side.
-constexpr Resolution kResolutions[] = {{12, 0.02}, {16, 0.01}, {24, 0.005}};
+// for as many cells: 1 % at 16 a side. At 12, lobes have some four cells of radius each, and where
+// those lie is worth 0.6 to 2.2 % (16 speeds of pressing).
+constexpr Resolution kResolutions[] = {{12, 0.025}, {16, 0.01}, {24, 0.005}};
 
 class PatchHollowTest : public testing::TestWithParam<HollowCase> {};
 

@@ -37,10 +37,12 @@ struct BallCase {
 // grows (mdr_layers_test.cpp). That sliding and spinning share one return map is a model, not
 // exact: 1.2 %. The normal force has the sphere's next term: (a / R)^4 of the one after.
 // patch: the staircase of the rim, 1 % at 12 and at 16 cells across in two iterations, 0.4 % at 24
-// in eight (patch_torsion_test.cpp); a contact that shrinks loses it cell by cell.
+// in eight (patch_torsion_test.cpp); a contact that shrinks loses it cell by cell, and how large
+// its cells are then depends on where it began to grow: 1.7 to 2.9 % with 12 across, over 26
+// depths.
 const BallCase kBallCases[] = {
     {"mdr", {.model = ContactModel::kMdr}, 1e-5, 0.0015, 0.0025, 0.006, 0.012},
-    {"patch12", {.side = 12}, 0.008, 0.012, 0.02, 0.02, 0.015},
+    {"patch12", {.side = 12}, 0.008, 0.012, 0.02, 0.03, 0.015},
     {"patch16", {.side = 16}, 0.005, 0.012, 0.015, 0.018, 0.01},
     {"patch24", {.side = 24, .iterations = 8}, 0.005, 0.005, 0.0065, 0.007, 0.006},
 };
@@ -177,10 +179,12 @@ TEST_P(BallTest, AShrinkingContactSlipsFromItsRim) {
 
 TEST_P(BallTest, DepthAndTwistMayGoTogether) {
   const Leg twisted[] = {{0.2, 0, 0}, {1, 1, 0}, {0.2, -1, 0}};
+  const Leg from_deeper[] = {{0.31, 0, 0}, {1, 1, 0}, {0.2, -1, 0}};
   const Leg pushed[] = {{0.2, 0, 0}, {1, 0, 1}, {0.2, 0, -1}};
   const Leg breathing[] = {{1, 0, 0},   {1, 0.5, 0},   {0.5, 0.5, 0},
                            {1, 0.5, 0}, {0.5, 0.5, 0}, {1, 1, 0}};
   expect_like_fixed_springs(GetParam().scene, twisted, GetParam().growing);
+  expect_like_fixed_springs(GetParam().scene, from_deeper, GetParam().growing);
   expect_like_fixed_springs(GetParam().scene, pushed, GetParam().growing);
   expect_like_fixed_springs(GetParam().scene, breathing, GetParam().growing);
 }

@@ -74,17 +74,20 @@ void follow(PressedBall& ball, double* loads) {
 
 TEST(NearlyIncompressibleTest, MovesAsTheIncompressible) {
   // The coupling goes with (1 - 2 nu) / (2 (1 - nu)) = 2e-4: no load can differ by more than some
-  // of these from those without it.
-  for (const ContactModel model : {ContactModel::kMdr, ContactModel::kPatch}) {
+  // of these from those without it. Where the twist turns back and the slide begins, one iteration
+  // more or less in a step of patch makes that up to 1.5e-3, on the grids that 12 speeds lead to.
+  for (const auto& [model, steps, bound] :
+       {std::tuple{ContactModel::kMdr, 300, 1e-3}, std::tuple{ContactModel::kPatch, 250, 2e-3},
+        std::tuple{ContactModel::kPatch, 300, 2e-3}, std::tuple{ContactModel::kPatch, 320, 2e-3}}) {
     std::vector<double> nearly(400);
     std::vector<double> quite(400);
     for (const auto& [poisson, loads] : {std::pair{0.4999, &nearly}, std::pair{0.5, &quite}}) {
       PressedBall ball({.model = model, .poisson = poisson});
-      ball.press(kBallDepth, 300);
+      ball.press(kBallDepth, steps);
       follow(ball, loads->data());
     }
     for (std::size_t k = 0; k < quite.size(); ++k) {
-      EXPECT_NEAR(nearly[k], quite[k], 1e-3) << k;
+      EXPECT_NEAR(nearly[k], quite[k], bound) << steps << " " << k;
     }
   }
 }

@@ -136,11 +136,14 @@ TEST_P(PatchRegionsTest, TheOrderOfToolsDoesNotMatter) {
   Hand one(scene);
   std::swap(scene.tools[0], scene.tools[1]);
   Hand other(scene);
-  // They touch in the same step, so that nothing but their order comes first.
+  // They touch in the same step, so that nothing but their order comes first. The second one pauses
+  // in every fifth step of its slide: cells at their limit stick then or slip, as rounding has it,
+  // and the iterations of the step after that leave up to 5 % (7 depths of the first touch).
+  constexpr double kLeftOfPauses = 2.5 * kLeftOver;
   const Swapped found = compare(one, other, {1, 0}, [](int k) {
     return std::vector<Pose>{pose_at(k), pose_at(k <= 100 ? k : 100 + (k - 100) * 4 / 5)};
   });
-  EXPECT_LE(found.worst, kLeftOver * found.step);
+  EXPECT_LE(found.worst, kLeftOfPauses * found.step);
 }
 
 // Four heights of the body between them, on a fixed face: nothing of one is left at the other. That

@@ -244,12 +244,10 @@ Wrench computed_wrench(const StepContext& context, std::uint32_t region) {
   return {force, glm::cross(arm, force) + seen.direction(frame.normal * friction.couple)};
 }
 
-/// The way of a contact's middle into the body in this step, over the depth; 0 out of it.
+/// The way into the body in this step, over the depth; 0 out of it.
 double way_over_depth(const State& state, std::uint32_t region) {
-  const glm::dvec3 shift =
-      shift_at(motion_over_body(state, region), state.regions.at<Contact>(region).equivalent_point);
-  const double way = -glm::dot(shift, state.regions.at<RegionFrame>(region).normal);
-  return std::max(way, 0.0) / std::max(state.regions.at<Overlap>(region).largest_depth, 1e-300);
+  return std::max(way_into_body(state, region), 0.0) /
+         std::max(state.regions.at<Overlap>(region).largest_depth, 1e-300);
 }
 
 /// The share of a new region's force that comes from the tool's motion in this step: all of it if

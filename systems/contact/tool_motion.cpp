@@ -211,6 +211,12 @@ MotionOverBody motion_over_body(const State& state, std::uint32_t region) {
           support.about};
 }
 
+double way_into_body(const State& state, std::uint32_t region) {
+  const glm::dvec3 shift =
+      shift_at(motion_over_body(state, region), state.regions.at<Contact>(region).equivalent_point);
+  return -glm::dot(shift, state.regions.at<RegionFrame>(region).normal);
+}
+
 void region_motion(StepContext& context) {
   const Model& model = context.model;
   State& state = context.state;

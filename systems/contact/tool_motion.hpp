@@ -41,6 +41,9 @@ inline glm::dvec3 shift_at(const MotionOverBody& motion, const glm::dvec3& point
          glm::cross(motion.carried_turn, point - motion.carried_about);
 }
 
+/// How far the tool moves into the body at a region's middle in this step, m; negative: out of it.
+double way_into_body(const State& state, std::uint32_t region);
+
 /// How the tool turns over the material under the region, rad.
 inline glm::dvec3 turn_of(const MotionOverBody& motion) {
   return motion.turn - motion.carried_turn;

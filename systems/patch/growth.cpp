@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
+#include <glm/exponential.hpp>
 
 #include "systems/contact/tool_motion.hpp"
 #include "systems/patch/grid.hpp"
@@ -179,10 +179,7 @@ void include_overlap(const Grid& grid, const RegionPoints& contact, const glm::d
 
 double deepening(const State& state, std::uint32_t region) {
   const double depth = state.regions.at<Overlap>(region).largest_depth;
-  const glm::dvec3 shift =
-      shift_at(motion_over_body(state, region), state.regions.at<Contact>(region).equivalent_point);
-  const double deeper = -glm::dot(shift, state.regions.at<RegionFrame>(region).normal);
-  return depth > 0.0 ? std::max(1.0 + deeper / depth, 1.0) : 1.0;
+  return depth > 0.0 ? std::max(1.0 + way_into_body(state, region) / depth, 1.0) : 1.0;
 }
 
 bool has_grown(const PatchState& state) {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "systems/contact/law.hpp"
+#include "systems/contact/rims.hpp"
 #include "systems/contact/tool_surface.hpp"
 #include "systems/geometry/distance_shapes.hpp"
 #include "systems/math/frames.hpp"

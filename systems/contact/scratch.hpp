@@ -71,6 +71,7 @@ struct CellColumns {
   std::span<double> bearing;          // likewise
   // Of a cell what lies under the tool, and how stiff it is for that, where the tool has rims.
   std::span<double> rim_share, rim_bearing;
+  std::span<double> open;  // 0 to 1: how far a cell has no underside of its own (rims.cpp)
 };
 
 /// Those of a region's cells that are not yet on the tool's surface.

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/contact/grid_cells.hpp"
-#include "systems/contact/tool_surface.hpp"
+#include "systems/contact/rims.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/math/lanes.hpp"
 #include "systems/patch/passes.hpp"

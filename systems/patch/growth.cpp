@@ -198,6 +198,10 @@ void grow_with_depth(StepContext& context, std::uint32_t region, const RegionPoi
     return;
   }
   PatchState& state = context.state.regions.at<PatchState>(region);
+  // What is loaded lies within the overlap, and the grid holds all of that, as under a flat punch.
+  if (state.cut == 0 && growth_at_edges(grid, covered_cells(grid), 0.0) == glm::dvec2(1.0)) {
+    return;
+  }
   const LoadedArea area = loaded_cells(grid, kMostly);
   if (area.box.end.x == 0) {
     return;

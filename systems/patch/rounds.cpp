@@ -144,43 +144,6 @@ PatchOutcome solve_in_turn(const PatchProblem& problem, bool averaged, double sh
 
 }  // namespace
 
-void PatchWork::reserve(std::uint32_t side) {
-  const std::size_t count = whole_lanes(std::size_t{side} * side);
-  for (std::vector<double>* each : {&residual_x,
-                                    &residual_y,
-                                    &preconditioned_x,
-                                    &preconditioned_y,
-                                    &direction_x,
-                                    &direction_y,
-                                    &response_x,
-                                    &response_y,
-                                    &response_both,
-                                    &limit,
-                                    &along_x,
-                                    &along_y,
-                                    &softened,
-                                    &clips,
-                                    &change_pressure,
-                                    &change_x,
-                                    &change_y,
-                                    &change_depression,
-                                    &depth,
-                                    &target_x,
-                                    &target_y}) {
-    each->assign(count, 0.0);
-  }
-  for (auto* each : {&rigid_x, &rigid_y, &rigid_tractions_x, &rigid_tractions_y}) {
-    each->fill(std::vector<double>(count, 0.0));
-  }
-  discs.reserve(count);
-  bordered.assign(std::size_t{side + 2} * (side + 2) + kLanes, 0.0);
-  // One more: the unused last value is written, too.
-  for (std::vector<double>* each : {&scales_x, &scales_y, &scales}) {
-    each->assign(2 * (most_pairs(side) + 1), 0.0);
-  }
-  places.assign(most_pairs(side) + 1, 0);
-}
-
 PatchOutcome solve_patch(const PatchProblem& problem, const PatchColumns& columns,
                          PatchWork& work) {
   work.inverses = local_inverses(problem.influences);

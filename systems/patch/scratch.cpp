@@ -2,9 +2,47 @@
 
 #include <array>
 
+#include "systems/half_space/sum_influence.hpp"
 #include "systems/math/wide_lanes.hpp"
 
 namespace torsion::engine {
+
+void PatchWork::reserve(std::uint32_t side) {
+  const std::size_t count = whole_lanes(std::size_t{side} * side);
+  for (std::vector<double>* each : {&residual_x,
+                                    &residual_y,
+                                    &preconditioned_x,
+                                    &preconditioned_y,
+                                    &direction_x,
+                                    &direction_y,
+                                    &response_x,
+                                    &response_y,
+                                    &response_both,
+                                    &limit,
+                                    &along_x,
+                                    &along_y,
+                                    &softened,
+                                    &clips,
+                                    &change_pressure,
+                                    &change_x,
+                                    &change_y,
+                                    &change_depression,
+                                    &depth,
+                                    &target_x,
+                                    &target_y}) {
+    each->assign(count, 0.0);
+  }
+  for (auto* each : {&rigid_x, &rigid_y, &rigid_tractions_x, &rigid_tractions_y}) {
+    each->fill(std::vector<double>(count, 0.0));
+  }
+  discs.reserve(count);
+  bordered.assign(std::size_t{side + 2} * (side + 2) + kLanes, 0.0);
+  // One more: the unused last value is written, too.
+  for (std::vector<double>* each : {&scales_x, &scales_y, &scales}) {
+    each->assign(2 * (most_pairs(side) + 1), 0.0);
+  }
+  places.assign(most_pairs(side) + 1, 0);
+}
 
 void PatchScratch::reserve(const Model& model, const State& state) {
   if (state.patch_cells.empty()) {

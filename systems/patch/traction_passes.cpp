@@ -22,7 +22,6 @@ void ways(std::size_t count, double stiffness, const double* __restrict traction
     const double trial_x = traction_x[k] + stiffness * left_x;
     const double trial_y = traction_y[k] + stiffness * left_y;
     const double limit = limits[k];
-    const bool at_limit = (trial_x * trial_x + trial_y * trial_y > limit * limit) | (limit <= 0.0);
     const double held =
         traction_x[k] * traction_x[k] + traction_y[k] * traction_y[k] - 0.25 * limit * limit;
     const double x = held > 0.0 ? traction_x[k] : trial_x;
@@ -30,7 +29,12 @@ void ways(std::size_t count, double stiffness, const double* __restrict traction
     const double inverse = 1.0 / std::sqrt(larger(x * x + y * y, kLeastSum));
     const double unit_x = x * inverse;
     const double unit_y = y * inverse;
-    const double slip = larger(left_x * unit_x + left_y * unit_y, 0.0);
+    const double outward = left_x * unit_x + left_y * unit_y;
+    const double slip = larger(outward, 0.0);
+    // What is to move against the friction that it has does not slip, however far.
+    const bool at_limit = ((trial_x * trial_x + trial_y * trial_y > limit * limit) &
+                           !((held > 0.0) & (outward < 0.0))) |
+                          (limit <= 0.0);
     // sqrt(limit / (limit + slip stiffness)): 0 where the limit is
     const double soft = std::sqrt(limit / (larger(limit, kLeastSum) + slip * stiffness));
     const double across = (unit_x * left_y - unit_y * left_x) * soft;

@@ -71,9 +71,7 @@ struct Held {
   const char* name;
   ContactModel contact;
   bool as_mesh;
-  double unrest;          // at most
-  int alternating = 0;    // so many plates may be worse,
-  double alternates = 0;  // by so much
+  double unrest;  // at most
 };
 
 class HeldStillTest : public testing::TestWithParam<Held> {};
@@ -81,7 +79,6 @@ class HeldStillTest : public testing::TestWithParam<Held> {};
 // Tilted by a third of a degree and by nine, over the block's middle and with an end beyond its
 // edge. A rim then runs through cells at any place in them.
 TEST_P(HeldStillTest, APlateIsFeltTheSameInEveryStep) {
-  int alternating = 0;
   for (const double tilt : {0.006, 0.04, 0.15}) {
     for (const double turn : {0.3, 0.9, 1.4}) {
       for (const double aside : {0.0, 0.043}) {
@@ -89,14 +86,14 @@ TEST_P(HeldStillTest, APlateIsFeltTheSameInEveryStep) {
                      << "tilt " << tilt << " turn " << turn << " aside " << aside);
         const glm::dquat rotation = glm::angleAxis(turn, kUp) *
                                     glm::angleAxis(tilt, glm::normalize(glm::dvec3(0.6, 0.0, 1.0)));
-        const BoxPose plate{{0.02, 0.004, 0.013}, rotation, {aside, 0.0}, 5e-4};
-        const double found = unrest(GetParam().contact, GetParam().as_mesh, plate);
-        EXPECT_LE(found, std::max(GetParam().unrest, GetParam().alternates));
-        alternating += found > GetParam().unrest ? 1 : 0;
+        for (const double depth : {4.2e-4, 5e-4, 5.15e-4}) {
+          const BoxPose plate{{0.02, 0.004, 0.013}, rotation, {aside, 0.0}, depth};
+          EXPECT_LE(unrest(GetParam().contact, GetParam().as_mesh, plate), GetParam().unrest)
+              << depth;
+        }
       }
     }
   }
-  EXPECT_LE(alternating, GetParam().alternating);
 }
 
 // Boxes that touch with a corner or an edge: a grid that finds itself outgrown at a sharp corner
@@ -122,11 +119,9 @@ TEST_P(HeldStillTest, ACornerIsFeltTheSameInEveryStep) {
 }
 
 // Exact shapes: the same bits but for rounding; in a distance field a cell comes to rest to 1e-6 of
-// its length, which is up to ten times the mean depth here. patch ends its iterations where a
-// change is below 1e-9 of the mean pressure, a few times in each of the 50 steps. Where the rounded
-// edge of a plate of triangles runs through a cell, patch finds that cell under the plate or beside
-// it, as little as its own friction moves it: of 324 plates (these at 18 depths) one in fifteen
-// alternates so, by up to 3 % of its force.
+// its length, which is up to ten times the mean depth here. patch's grid moves with what sticks to
+// the tool, and shares of rim cells with the grid; of 324 plates (these at 18 depths) two alternate
+// so, by 6e-5 of the force: less than a hundredth of what a hand can feel.
 INSTANTIATE_TEST_SUITE_P(Models, HeldStillTest,
                          testing::Values(Held{"paper", ContactModel::kPaper, false, 1e-12},
                                          Held{"paper_mesh", ContactModel::kPaper, true, 1e-5},
@@ -134,9 +129,8 @@ INSTANTIATE_TEST_SUITE_P(Models, HeldStillTest,
                                          Held{"mdr_mesh", ContactModel::kMdr, true, 1e-5},
                                          Held{"winkler", ContactModel::kWinkler, false, 1e-12},
                                          Held{"winkler_mesh", ContactModel::kWinkler, true, 1e-5},
-                                         Held{"patch", ContactModel::kPatch, false, 1e-6},
-                                         Held{"patch_mesh", ContactModel::kPatch, true, 1e-5, 3,
-                                              0.03}),
+                                         Held{"patch", ContactModel::kPatch, false, 1e-4},
+                                         Held{"patch_mesh", ContactModel::kPatch, true, 1e-5}),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace

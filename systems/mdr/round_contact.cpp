@@ -25,7 +25,7 @@ constexpr double kUnlike = 0.06;
 // a flat punch to a cone is within 10 %. Farther apart are paraboloids with their apex beyond the
 // overlap's edge, of which nothing but the side is seen, and those as curved one way as the other,
 // whose axes may lie anywhere, in an overlap that is longer than wide.
-constexpr double kClose = 0.15;
+constexpr double kTogether = 0.15;
 constexpr double kApart = 0.35;
 
 /// The part that does not depend on how the contact was found: stiffnesses of an ellipse that
@@ -151,7 +151,7 @@ RoundContact contact_of_cells(const Model& model, const State& state, std::uint3
   const RoundContact volume = contact_of_volume(shape, overlap, elasticity);
   const double apart = std::abs(contact.force / volume.force - 1.0);
   const double unlike = std::max(smooth_step((shape.misfit - kFits) / (kUnlike - kFits)),
-                                 smooth_step((apart - kClose) / (kApart - kClose)));
+                                 smooth_step((apart - kTogether) / (kApart - kTogether)));
   return unlike > 0.0 ? mix(contact, volume, unlike) : contact;
 }
 

@@ -202,7 +202,6 @@ std::size_t list_rims(const Grid& grid) {
 void extend_undersides(const Grid& grid, std::size_t count) {
   const CellColumns& columns = grid.scratch.cell_columns;
   const LeftCells& left = grid.scratch.left_cells;
-  const double highest = highest_place(grid);
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t cell = left.cells[k];
     left.gradient_square[k] = columns.points.z[cell];
@@ -213,9 +212,9 @@ void extend_undersides(const Grid& grid, std::size_t count) {
       continue;
     }
     const Underside under = carried_on(grid, {cell % grid.side, cell / grid.side});
-    // What has climbed has no place of its own.
-    const bool climbed = columns.points.z[cell] >= highest;
-    left.points.x[k] = climbed ? 1.0 : columns.open[cell] * std::min(under.even, 1.0);
+    // What has no underside at all has no place of its own.
+    left.points.x[k] =
+        columns.open[cell] > kWholly ? 1.0 : columns.open[cell] * std::min(under.even, 1.0);
     left.points.z[k] = under.height;
     left.points.gradient_x[k] = under.slope_x;
     left.points.gradient_y[k] = under.slope_y;
@@ -223,8 +222,11 @@ void extend_undersides(const Grid& grid, std::size_t count) {
   // Only now: until here cells are the neighbours of others.
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t cell = left.cells[k];
+    if (columns.open[cell] <= 0.0) {
+      continue;
+    }
+    columns.open[cell] = left.points.x[k];
     if (columns.open[cell] > 0.0) {
-      columns.open[cell] = left.points.x[k];
       columns.points.z[cell] = left.points.z[k];
       columns.tool_x[cell] = left.points.gradient_x[k];
       columns.tool_y[cell] = left.points.gradient_y[k];

@@ -9,7 +9,8 @@ namespace torsion::engine {
 /// Where the tool's underside ends at a steep side, as a punch's does, cells count with the share
 /// that lies under it; by their centres alone they would come and go as wholes, and a contact that
 /// turns over its cells would lose the friction of one after another. Cells whose centres are
-/// beside the tool are put on its underside, carried on over them with its slopes.
+/// beside the tool are put on its underside, carried on over them with its slopes; those under a
+/// rounded edge in part, the more the steeper it is there.
 /// The side is looked for half a cell's diagonal above the underside, where it is nearer than that
 /// wherever it cuts the cell, and followed down along its plane.
 /// @pre   find_tool_surface has left the cells' places and slopes in ContactScratch::cell_columns

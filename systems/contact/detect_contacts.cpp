@@ -104,9 +104,10 @@ std::uint32_t group_points(std::span<const glm::dvec3> points, std::span<const N
 
 namespace {
 
-constexpr int kDescentSteps = 24;
+constexpr int kDescentSteps = 48;
 constexpr double kSmallestStep =
     1e-3;  // of the sample spacing: finer does not change the depth by a micrometre
+constexpr double kAlongKink = 0.05;  // of the slope beside a kink: below it the point is a minimum
 
 /// One tool over one body while it is searched.
 struct ContactSearch {
@@ -223,36 +224,69 @@ bool stands_alone(const ContactSearch& search, const Candidate& candidate) {
   });
 }
 
-/// Slides a point on the tool's surface towards the body, with step halving.
+/// A point of the tool's surface, and what the body's distance is there.
+struct SurfacePoint {
+  glm::dvec3 position;  // m, tool
+  double distance;      // m, to the body
+  glm::dvec3 gradient;  // of that along the tool's surface, tool
+};
+
+SurfacePoint surface_point(const ContactSearch& search, const glm::dvec3& position) {
+  const Pose& pose = search.tool_in_body;
+  const Distance to_body =
+      signed_distance(search.model, search.body_parts, to_outer(pose, position));
+  const glm::dvec3 normal = signed_distance(search.model, search.tool.parts, position).gradient;
+  const glm::dvec3 uphill = glm::conjugate(pose.rotation) * to_body.gradient;
+  return {position, to_body.value, uphill - normal * glm::dot(uphill, normal)};
+}
+
+/// The shortest vector that ends between the ends of two. Where two gradients meet at a kink, a
+/// function decreases against it on both sides; steepest descent ends there (Wolfe, Math. Program.
+/// Study 3 (1975) 145).
+glm::dvec3 shortest_between(const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 way = b - a;
+  const double square = glm::dot(way, way);
+  const double share = square > 0.0 ? glm::clamp(-glm::dot(a, way) / square, 0.0, 1.0) : 0.0;
+  return a + share * way;
+}
+
+/// Slides a point on the tool's surface towards the body, with step halving. At an edge of the body
+/// it goes on along that.
 /// @return the point, m, body, and its distance to the body
 ContactPoint descend(const ContactSearch& search, const Candidate& start) {
   const SurfaceSample& sample = search.model.samples.at<SurfaceSample>(start.sample);
-  const Pose& pose = search.tool_in_body;
-  glm::dvec3 point = sample.position;  // tool frame
-  Distance to_body = signed_distance(search.model, search.body_parts, to_outer(pose, point));
+  SurfacePoint point = surface_point(search, sample.position);
+  glm::dvec3 uphill = point.gradient;
+  bool bent = false;  // whether it is not the gradient, but goes along a kink
   double step = 0.5 * sample.spacing;
   for (int iteration = 0; iteration < kDescentSteps && step > kSmallestStep * sample.spacing;
        ++iteration) {
-    const glm::dvec3 normal = signed_distance(search.model, search.tool.parts, point).gradient;
-    const glm::dvec3 uphill = glm::conjugate(pose.rotation) * to_body.gradient;
-    const glm::dvec3 along = uphill - normal * glm::dot(uphill, normal);
-    const double slope = glm::length(along);
+    const double slope = glm::length(uphill);
     if (slope < 1e-9) {
       break;
     }
-    glm::dvec3 trial = point - along * (step / slope);
-    const Distance off_surface = signed_distance(search.model, search.tool.parts, trial);
-    trial -= off_surface.gradient * off_surface.value;
-    const Distance trial_distance =
-        signed_distance(search.model, search.body_parts, to_outer(pose, trial));
-    if (trial_distance.value < to_body.value) {
+    glm::dvec3 place = point.position - uphill * (step / slope);
+    const Distance off_surface = signed_distance(search.model, search.tool.parts, place);
+    place -= off_surface.gradient * off_surface.value;
+    const SurfacePoint trial = surface_point(search, place);
+    if (trial.distance < point.distance) {
       point = trial;
-      to_body = trial_distance;
-    } else {
+      uphill = point.gradient;
+      bent = false;
+      continue;
+    }
+    // Downhill from here is uphill from there: a minimum lies between, or a kink to go along.
+    const glm::dvec3 along = shortest_between(uphill, trial.gradient);
+    if (bent || glm::length(along) < kAlongKink * slope) {
       step *= 0.5;
+      uphill = point.gradient;
+      bent = false;
+    } else {
+      uphill = along;
+      bent = true;
     }
   }
-  return {to_outer(pose, point), -to_body.value, 0};
+  return {to_outer(search.tool_in_body, point.position), -point.distance, 0};
 }
 
 void add_point(ContactScratch& scratch, std::uint32_t sample, const ContactPoint& point) {

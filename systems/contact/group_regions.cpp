@@ -256,13 +256,12 @@ void note_splits(const Model& model, State& state, ContactScratch& scratch,
   }
 }
 
-/// Contact points are sought under the body's rest shape. Friction may drag a deflected body along
-/// until all points of the tool are beside that shape: cells that still carry a force are then a
-/// contact without points. Where there are points, they decide which contacts exist.
-bool lives_without_points(const Model& model, const State& state, const ContactPair& pair,
-                          std::uint32_t region) {
-  return pair.points.count == 0 && body_law_of(model, pair.body).moves_as_a_whole &&
-         state.regions.at<RegionNormal>(region).force > 0.0;
+/// Whether a region's cells are to tell if its contact goes on, because the tool has no points at
+/// all: they are few where a tool's samples are far apart, and are sought under the body's rest
+/// shape, beside which friction may drag a deflected body until all of the tool's are. Where there
+/// are points, they decide which contacts exist.
+bool lives_without_points(const State& state, const ContactPair& pair, std::uint32_t region) {
+  return pair.points.count == 0 && state.regions.at<RegionNormal>(region).force > 0.0;
 }
 
 /// Regions that own no cluster go on without points, or end.
@@ -276,7 +275,7 @@ void end_or_go_on(StepContext& context, const ContactPair& pair,
     if (!of_pair(regions[region], pair) || owns_cluster(scratch, region)) {
       continue;
     }
-    if (lives_without_points(model, state, pair, region)) {
+    if (lives_without_points(state, pair, region)) {
       follow_contact(context, region, {pair.points, kNoRow});
     } else {
       end_region(model, state, region, heir_of(model, state, scratch, region, points));

@@ -9,6 +9,7 @@
 
 #include "systems/contact/grid_cells.hpp"
 #include "systems/contact/law.hpp"
+#include "systems/contact/region_grid.hpp"
 #include "systems/contact/scratch.hpp"
 #include "systems/contact/support/body_law.hpp"
 #include "systems/contact/tool_motion.hpp"
@@ -87,7 +88,10 @@ RestOverlap rest_overlap(const StepContext& context, std::uint32_t region) {
   // as far away as two points of one region can be.
   const double threshold = model.bodies.at<BodyModels>(identity.body).region_threshold;
   const double by_samples = overlap.depth > 0.0 ? 0.5 * glm::length(highest - lowest) : 0.0;
-  overlap.radius = std::max(by_samples, state.regions.at<Contact>(region).radius) + threshold;
+  // A long narrow contact is about as stiff as a disc of its length, and its samples may be few.
+  const glm::dvec2 extent = overlap_extent(state, region);
+  const double by_contact = state.regions.at<Contact>(region).radius;
+  overlap.radius = std::max({by_samples, by_contact, extent.x, extent.y}) + threshold;
   return overlap;
 }
 

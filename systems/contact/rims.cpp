@@ -130,13 +130,19 @@ Underside operator*(double factor, const Underside& of) {
           factor * of.even};
 }
 
-/// How well an underside with such slopes can be extended past its rim: 1 up to 27 degrees, 0 from
-/// 45 degrees (as between the faces of a mesh, whose distances are rounded at its edges).
-double evenness(double slope_x, double slope_y) {
+/// How well a cell's underside can be extended that way: 1 up to 27 degrees, 0 from 45 degrees. Of
+/// a face only its slope along the way counts. Between the faces of a mesh, whose distances are
+/// rounded at its edges, the gradient is no normal, and all of its slope does.
+/// @param way  of any length
+double evenness(const CellColumns& columns, std::size_t cell, const glm::dvec2& way) {
   constexpr double kEven = 0.25;  // squares of slopes
   constexpr double kAskew = 1.0;
-  const double slope = slope_x * slope_x + slope_y * slope_y;
-  return 1.0 - smooth_step((slope - kEven) / (kAskew - kEven));
+  const glm::dvec2 slope(columns.tool_x[cell], columns.tool_y[cell]);
+  const double along = glm::dot(slope, way);
+  const double along_square = along * along / std::max(glm::dot(way, way), 1e-300);
+  const double sure = normal_share(columns.gradient_square[cell]);
+  const double square = sure * along_square + (1.0 - sure) * glm::dot(slope, slope);
+  return 1.0 - smooth_step((square - kEven) / (kAskew - kEven));
 }
 
 /// Extends the underside of the neighbours that have one to a cell: of the four beside it, or, as
@@ -158,7 +164,8 @@ Underside carried_on(const Grid& grid, CellPlace to) {
     const double slope_y = sure * columns.tool_y[cell];
     return (1.0 - columns.open[cell]) *
            Underside{columns.points.z[cell] - right * length.x * slope_x - up * length.y * slope_y,
-                     slope_x, slope_y, 1.0, evenness(slope_x, slope_y)};
+                     slope_x, slope_y, 1.0,
+                     evenness(columns, cell, {right * length.x, up * length.y})};
   };
   Underside sum = (from(-1, 0) + from(1, 0)) + (from(0, -1) + from(0, 1));
   if (sum.weight < 1.0) {
@@ -293,7 +300,7 @@ void cut_at_sides(const Grid& grid, std::size_t count, double above) {
     const glm::dvec3 side(sides.gradient_x[k], sides.gradient_y[k], sides.gradient_z[k]);
     const double part = part_at_rim(grid, cell);
     const double steep = smooth_step((kUnderside - std::abs(side.z)) / (kUnderside - kSide)) *
-                         evenness(columns.tool_x[cell], columns.tool_y[cell]);
+                         evenness(columns, cell, glm::dvec2(side));
     // Nothing of what has no underside lies under the tool, but for what a side leaves of it.
     const double otherwise = columns.open[cell] > 0.0 ? 0.0 : 1.0 - steep;
     RimCell rim{otherwise, otherwise};

@@ -208,6 +208,21 @@ void take_back(const Model& model, State& state, std::uint32_t region, double li
   normal.force -= energy.taken;
 }
 
+/// The energy lowers the normal force below what the pressures make; Coulomb's law is to hold of
+/// what is left, but for the drag.
+void limit_friction(const Model& model, State& state, std::uint32_t region, PatchEnergy& energy) {
+  const Friction& law = model.bodies.at<Friction>(state.regions.at<RegionIdentity>(region).body);
+  const double most = (std::max(law.static_friction, law.dynamic_friction) + kMostDrag) *
+                      state.regions.at<RegionNormal>(region).force;
+  glm::dvec2& friction = state.regions.at<RegionFriction>(region).force;
+  const double size = glm::length(friction);
+  if (size > most) {
+    const glm::dvec2 beyond = (1.0 - most / size) * friction;
+    friction -= beyond;
+    energy.force -= tangent_to_body(state.regions.at<RegionFrame>(region), beyond);
+  }
+}
+
 }  // namespace
 
 void settle_energy(const Model& model, State& state, std::uint32_t region,
@@ -240,6 +255,7 @@ void settle_energy(const Model& model, State& state, std::uint32_t region,
   now.lent = std::max(now.lent + std::min(lacking, 0.0), 0.0);
   take_back(model, state, region, glm::dot(frame.normal, shift_after(motion, now.point)),
             before.taken, now);
+  limit_friction(model, state, region, now);
   state.regions.at<PatchEnergy>(region) = now;
 }
 

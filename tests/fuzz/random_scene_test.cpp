@@ -49,7 +49,9 @@ INSTANTIATE_TEST_SUITE_P(
         Seed{20011, "PatchWithMuchFriction", true}, Seed{20163, "PatchWithMuchFrictionOnAStick"},
         Seed{20119, "PatchWithMoreStaticFriction"}, Seed{21368, "RimOfACylinderInABall", true},
         Seed{21332, "RimOfACylinderOnABox"}, Seed{22057, "EdgeOnAFace"},
-        Seed{30374, "MdrOfACylindersRim"}, Seed{30449, "MdrOfABallOfWhichOnlyASideIsSeen", true}),
+        Seed{30374, "MdrOfACylindersRim"}, Seed{30449, "MdrOfABallOfWhichOnlyASideIsSeen", true},
+        Seed{22339, "SteepFaceOnAnEdge", true}, Seed{22013, "SteepFaceOfABox", true},
+        Seed{24158, "CrookedBoxOnItsLongestEdge", true}, Seed{24179, "CapsuleOverARim"}),
     [](const testing::TestParamInfo<Seed>& seed) { return std::string(seed.param.what); });
 
 }  // namespace

@@ -149,5 +149,26 @@ TEST(BodyEdgesTest, ARodHeldOnABodyThatGivesWayComesToRest) {
   }
 }
 
+// Inside a body the distance to its surface has a kink where two faces are as near as each other.
+// Steepest descent along the tool's surface ended there, before it came to the deepest point.
+TEST(BodyEdgesTest, AToolBesideAnEdgeIsFoundWhereverItsSamplesAre) {
+  constexpr double kRadius = 0.012;
+  constexpr double kBeside = 0.3;
+  // A descent along a kink ends where that falls by 1 in 20: for a ball a twentieth of its radius
+  // from the deepest point, which is deeper by half the square.
+  constexpr double kMostMissed = 0.5 * 0.05 * 0.05 * kRadius;
+  const double over = std::sqrt(1.0 - kBeside * kBeside);
+  for (int place = 0; place < 40; ++place) {
+    SceneDescription scene = rod_on_block();
+    scene.tools[0] = test::make_tool({test::make_part(ShapeKind::kSphere, glm::dvec3(kRadius))});
+    Hand hand(scene);
+    const glm::dvec3 touching(kHalfWidth + kBeside * kRadius, over * kRadius, 5e-4 * place);
+    hand.step_to({{touching + kMostMissed * kUp,
+                   glm::angleAxis(0.05 * place, glm::normalize(glm::dvec3(0.2, 0.4, 1.0)))}});
+    hand.move({0.0, -2.0 * kMostMissed, 0.0}, kUp, 0.0, 30);
+    EXPECT_EQ(hand.world().state.regions.size(), 1U) << place;
+  }
+}
+
 }  // namespace
 }  // namespace torsion::engine

@@ -20,8 +20,8 @@ constexpr double kSide = kSteepest;
 constexpr double kUnderside = kFullyFacing;
 
 // Squares of what the distance to the tool changes by along the normal: below the first an
-// underside bends up to a side, below the second it is one. With 0.09 as the first, one of 324
-// plates alternates that are held still (held_still_test.cpp), with 1/9 none.
+// underside bends up to a side, below the second it is one. With 0.09 as the first, one more plate
+// alternated of those that held_still_test.cpp holds still.
 constexpr double kBendsUp = 1.0 / 9.0;
 constexpr double kSideways = 1.05 * kSide * kSide;
 

@@ -51,7 +51,8 @@ INSTANTIATE_TEST_SUITE_P(
         Seed{21332, "RimOfACylinderOnABox"}, Seed{22057, "EdgeOnAFace"},
         Seed{30374, "MdrOfACylindersRim"}, Seed{30449, "MdrOfABallOfWhichOnlyASideIsSeen", true},
         Seed{22339, "SteepFaceOnAnEdge", true}, Seed{22013, "SteepFaceOfABox", true},
-        Seed{24158, "CrookedBoxOnItsLongestEdge", true}, Seed{24179, "CapsuleOverARim"}),
+        Seed{24158, "CrookedBoxOnItsLongestEdge", true}, Seed{24179, "CapsuleOverARim"},
+        Seed{21223, "FrictionOfTheLastStepOfAContact", true}, Seed{21347, "EdgeAlongAnEdge"}),
     [](const testing::TestParamInfo<Seed>& seed) { return std::string(seed.param.what); });
 
 }  // namespace

@@ -221,7 +221,7 @@ void LiveSession::hold(std::uint32_t tool, const Pose& handle) {
   }
 }
 
-Pose LiveSession::taking_handle(std::uint32_t tool) const {
+Pose LiveSession::take(std::uint32_t tool) {
   const Snapshot& snapshot = frame().snapshot;
   const Pose& now = snapshot.tools.at<ToolPose>(tool).now;
   if (way_ == ToolHold::kDirect) {
@@ -230,6 +230,8 @@ Pose LiveSession::taking_handle(std::uint32_t tool) const {
   Wrench contact = snapshot.tools.at<ToolWrench>(tool).total;
   contact.torque +=
       glm::cross(snapshot.tools.at<ToolMotion>(tool).mass_center - now.position, contact.force);
+  couplings_[tool] = strong_enough(own_coupling(tool), contact);
+  send({LiveCommandKind::kCoupling, tool, 0, nullptr, couplings_[tool]});
   return balancing_handle(couplings_[tool], now, contact);
 }
 
@@ -241,11 +243,16 @@ void LiveSession::release(std::uint32_t tool) {
   send({LiveCommandKind::kPoseFrom, tool, static_cast<std::uint64_t>(PoseFrom::kScript), nullptr});
 }
 
-void LiveSession::set_strength(double strength) {
+VirtualCoupling LiveSession::own_coupling(std::uint32_t tool) const {
   const Model& model = shown().simulation.world.model;
+  return mouse_coupling(session_.scene, tool_radius(model, tool), strength_);
+}
+
+void LiveSession::set_strength(double strength) {
+  strength_ = strength;
   for (std::uint32_t tool = 0; tool < couplings_.size(); ++tool) {
     if (!on_device(tool)) {
-      couplings_[tool] = mouse_coupling(session_.scene, tool_radius(model, tool), strength);
+      couplings_[tool] = own_coupling(tool);
       send({LiveCommandKind::kCoupling, tool, 0, nullptr, couplings_[tool]});
     }
   }

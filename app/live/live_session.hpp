@@ -14,6 +14,9 @@
 
 namespace torsion::engine {
 
+/// N: what a hand keeps up without effort.
+inline constexpr double kGentleForce = 20.0;
+
 /// A scene under way: its physics thread, the handles of its tools, what was recorded of it, and
 /// the preparation of other models beside it. All functions are for one thread, the window's.
 class LiveSession {
@@ -71,8 +74,10 @@ class LiveSession {
   /// Holds a tool at `handle`, through its coupling; an animation lets go of it.
   /// @pre no device has it
   void hold(std::uint32_t tool, const Pose& handle);
-  /// Where a hand that takes the tool now is to be, so that it stays where it is.
-  [[nodiscard]] Pose taking_handle(std::uint32_t tool) const;
+  /// Makes a tool's coupling ready for a hand that takes it: as strong as what the tool bears now
+  /// asks for, where that is more than the mouse's strength.
+  /// @return where that hand is to be, so that the tool stays where it is
+  Pose take(std::uint32_t tool);
   /// Lets go of a tool: within kReturnTime it is back on its animation's way.
   void release(std::uint32_t tool);
   [[nodiscard]] bool held(std::uint32_t tool) const { return held_[tool] != 0; }
@@ -108,6 +113,7 @@ class LiveSession {
   Result<Done> finish_recording();
 
  private:
+  [[nodiscard]] VirtualCoupling own_coupling(std::uint32_t tool) const;
   void send(const LiveCommand& command) { loop_.commands.push(command); }
   void prepare_in_background(std::vector<BodyPick> picks);
   void take_prepared();
@@ -124,6 +130,7 @@ class LiveSession {
   MouseCarry carry_;
   std::vector<std::uint64_t> samples_;  // so many were sent, one count a tool
   std::vector<std::uint8_t> held_;
+  double strength_ = kGentleForce;  // N, of the mouse
   std::vector<VirtualCoupling> couplings_;
   ToolHold way_ = ToolHold::kMassless;
   std::filesystem::path record_;  // empty: to a file without a name
@@ -142,9 +149,6 @@ class LiveSession {
   std::uint64_t next_number_ = 1;
   std::string error_;
 };
-
-/// N: what a hand keeps up without effort.
-inline constexpr double kGentleForce = 20.0;
 
 /// A coupling between a mouse, which feels nothing, and a tool: limited in force, and so that the
 /// tool does not go deeper than the models hold; as soft as gives the largest force a third of the

@@ -178,7 +178,7 @@ void Viewer::take_tool(std::uint32_t tool, double depth) {
   if (carries) {
     handles_[tool] = session_->device()->outcome.handle;
   } else if (!session_->held(tool)) {
-    handles_[tool] = session_->taking_handle(tool);
+    handles_[tool] = session_->take(tool);
   }
   state_.tool = tool;
   const ContactAxes axes = axes_under(tool);
@@ -269,7 +269,7 @@ void Viewer::begin_move() {
   }
   const Snapshot& snapshot = session_->frame().snapshot;
   if (!session_->held(tool)) {
-    handles_[tool] = session_->taking_handle(tool);
+    handles_[tool] = session_->take(tool);
   }
   state_.let_go = false;
   stop_driving();
@@ -302,7 +302,7 @@ void Viewer::begin_drive() {
   const std::uint32_t tool = state_.tool;
   const Snapshot& snapshot = session_->frame().snapshot;
   if (!session_->held(tool)) {
-    handles_[tool] = session_->taking_handle(tool);
+    handles_[tool] = session_->take(tool);
   }
   state_.let_go = false;
   const ContactAxes axes = axes_under(tool);

@@ -32,14 +32,15 @@ Wrench coupling_wrench(const VirtualCoupling& coupling, const MovingFrame& handl
 
 namespace {
 
+constexpr double kBalanceShare = 0.9;  // of its largest, with which a coupling balances at most
+
 /// The inverse of soft_limit(), up to nine tenths of `most`.
 glm::dvec3 before_limit(const glm::dvec3& vector, double most) {
-  constexpr double kShare = 0.9;
   const double length = glm::length(vector);
   if (!(length > 0.0) || !(most > 0.0)) {
     return glm::dvec3(0.0);
   }
-  const double share = std::min(length / most, kShare);
+  const double share = std::min(length / most, kBalanceShare);
   return vector / length * (share * most / std::sqrt(1.0 - share * share));
 }
 
@@ -61,6 +62,18 @@ Pose balancing_handle(const VirtualCoupling& coupling, const Pose& tool, const W
     }
   }
   return handle;
+}
+
+VirtualCoupling strong_enough(const VirtualCoupling& coupling, const Wrench& contact) {
+  VirtualCoupling stronger = coupling;
+  stronger.largest_force =
+      std::max(coupling.largest_force, glm::length(contact.force) / kBalanceShare);
+  stronger.largest_torque =
+      std::max(coupling.largest_torque, glm::length(contact.torque) / kBalanceShare);
+  // A spring in turning has its largest torque at a half turn: it is to answer at a sixth or less.
+  stronger.turn_stiffness = std::max(
+      coupling.turn_stiffness, glm::length(before_limit(contact.torque, stronger.largest_torque)));
+  return stronger;
 }
 
 namespace {

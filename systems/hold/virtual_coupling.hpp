@@ -43,6 +43,12 @@ glm::dvec3 soft_limit(const glm::dvec3& vector, double most);
 /// @param contact  on the tool about its origin, world axes
 Pose balancing_handle(const VirtualCoupling& coupling, const Pose& tool, const Wrench& contact);
 
+/// The coupling with limits raised as far as a balancing handle needs them to answer all of
+/// `contact`: a tool that is taken while it presses is not thrown off. In turning also with a
+/// stiffness that answers within a sixth of a turn. Nothing is lower than it was.
+/// @param contact  on the tool about its origin, world axes
+VirtualCoupling strong_enough(const VirtualCoupling& coupling, const Wrench& contact);
+
 /// What set a stiffness.
 enum class StiffnessLimit {
   kPassivity,  // b > K (T / 2 + t_d)

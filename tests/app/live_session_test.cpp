@@ -75,6 +75,33 @@ TEST(LiveSessionTest, SwitchesModelsWhileHeldAndItsRecordingGivesTheSameBits) {
   EXPECT_EQ(hash(again.simulation.world), hash(session.shown().simulation.world));
 }
 
+// An animation may press harder than the mouse can: who takes the tool then has the strength for
+// it.
+TEST(LiveSessionTest, AToolThatPressesHarderThanTheMouseStaysWhereItIsTaken) {
+  constexpr bool kPrivileges = false;
+  Session pressing = test::ball_session();
+  pressing.scene.tools[0].script.links.back().animated_translation = {
+      Interpolation::kLinear,
+      {0.0, 0.2},
+      {{0.0, test::kTouching, 0.0, 0.0}, {0.0, test::kTouching - 0.015, 0.0, 0.0}}};
+  LiveSession session(std::move(pressing), test::ball_options());
+  session.start(kPrivileges);
+  ASSERT_TRUE(comes_true(session, [&] { return clock_of(session).time > 0.5; }));
+  const auto force = [&] {
+    return session.frame().snapshot.tools.at<ToolWrench>(0).total.force.y;
+  };
+  const double pressed = force();
+  ASSERT_GT(pressed, 1.5 * session.coupling(0).largest_force);
+  session.hold(0, session.take(0));
+  const std::uint64_t taken = clock_of(session).step;
+  ASSERT_TRUE(comes_true(session, [&] {
+    EXPECT_NEAR(force(), pressed, 1e-3 * pressed) << clock_of(session).step - taken;
+    return clock_of(session).step > taken + 300 || testing::Test::HasFailure();
+  }));
+  EXPECT_TRUE(session.held(0));
+  session.release(0);
+}
+
 // The frames' memory is taken for the first models: it has room for what any others leave.
 TEST(LiveSessionTest, DrawsTheAnchorsOfABodyModelThatItIsSwitchedTo) {
   constexpr bool kPrivileges = false;

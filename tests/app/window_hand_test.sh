@@ -10,14 +10,15 @@ cd "$folder"
 name=$(basename "$scene" .gltf)
 
 open_window "$scene" --seconds 3000 --record session.rec
+sleep 4  # the animation is over, and the tool above the cube
 act
 # The panel's part about moving the tool, without the plots above it.
 click 160 209
 click 160 259
-act mousemove 800 250
+act mousemove 800 190
 act mousedown 1
-act mousemove 800 270
-act mousemove 800 290
+act mousemove 800 220
+act mousemove 800 250
 xdotool click 4 click 4 click 4
 sleep 0.5
 act
@@ -25,9 +26,9 @@ keep pressed
 act mouseup 1
 # The near side of the ring around the tool, to the right and at once.
 sleep 2
-act mousemove 800 288
+act mousemove 800 279
 act mousedown 1
-act mousemove 860 284
+act mousemove 860 275
 keep ringed
 act mouseup 1
 # The field of the turn. While it has the keys nothing else hears of them, so there are no pictures to wait for.

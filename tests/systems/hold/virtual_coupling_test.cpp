@@ -133,5 +133,22 @@ TEST(VirtualCouplingTest, ABalancingHandleAnswersTheContactsWrench) {
   EXPECT_EQ(balancing_handle({}, tool, {{1.0, 0.0, 0.0}, {}}).position, tool.position);
 }
 
+TEST(VirtualCouplingTest, OneThatIsStrongEnoughAnswersAnyContact) {
+  const VirtualCoupling coupling{500.0, 0.0, 0.8, 0.0, 4.0, 0.3};
+  const Pose tool{{0.1, -0.2, 0.3}, glm::angleAxis(0.7, glm::normalize(glm::dvec3(1.0, 2.0, 3.0)))};
+  const Wrench contact{{3.0, 50.0, -1.0}, {0.5, 0.0, -2.0}};
+  const VirtualCoupling stronger = strong_enough(coupling, contact);
+  const Pose handle = balancing_handle(stronger, tool, contact);
+  const Wrench pull = coupling_wrench(stronger, {handle}, {tool});
+  EXPECT_LT(glm::length(pull.force + contact.force), 1e-12 * 50.0);
+  EXPECT_LT(glm::length(pull.torque + contact.torque), 1e-12 * 2.0);
+  EXPECT_LT(glm::angle(glm::inverse(tool.rotation) * handle.rotation), glm::radians(60.0001));
+  // What it can do is not made less.
+  const VirtualCoupling same = strong_enough(coupling, {{1.0, 0.0, 0.0}, {0.0, 0.1, 0.0}});
+  EXPECT_EQ(same.largest_force, 4.0);
+  EXPECT_EQ(same.largest_torque, 0.3);
+  EXPECT_EQ(same.turn_stiffness, 0.8);
+}
+
 }  // namespace
 }  // namespace torsion::engine

@@ -109,6 +109,9 @@ TEST(FitTest, FiniteElementsWithNoiseGiveBackModulusAndFriction) {
   // What a fit takes by itself; with nu = 0.49 contact model mdr has no error to speak of either.
   for (const auto& [name, contact] : {std::pair("ball_on_cube_nu30", ContactModel::kAuto),
                                       std::pair("ball_on_cube_nu49", ContactModel::kMdr)}) {
+    if (test::is_left_out(contact == ContactModel::kMdr)) {
+      continue;
+    }
     SCOPED_TRACE(name);
     const ElementScene scene = scene_named(name);
     SceneDescription start = scene.scene;
@@ -198,7 +201,7 @@ TEST(FitTest, IntervalsHoldTheTruthAsOftenAsTheySay) {
                         0.4999, 0.6),
       {node + ".youngs_modulus", node + ".friction"}, ContactModel::kMdr, BodyModel::kNone);
   measure_model(problem, truth);
-  const unsigned seeds = test::all_cases() ? 200 : 10;
+  const unsigned seeds = test::all_cases() ? 200 : 6;
   for (const double memory : {0.0, 0.7}) {
     SCOPED_TRACE(memory);
     int held = 0;

@@ -42,8 +42,10 @@ Result<Session> open_case(const SmoothRun& run, double rate) {
 class SmoothForceTest : public testing::TestWithParam<SmoothRun> {};
 
 TEST_P(SmoothForceTest, NoStepStandsOut) {
-  // 10 kHz and odd grids of the plate are left to all cases.
-  if (test::is_left_out(GetParam().rate == 1000.0 && GetParam().side % 2 == 0)) {
+  // 10 kHz and odd grids of the plate are left to all cases, and what takes longest.
+  if (test::is_left_out(GetParam().rate == 1000.0 && GetParam().side % 2 == 0 &&
+                        (GetParam().contact == ContactModel::kPatch ||
+                         GetParam().scene != std::string_view("tube_wall_6mm.gltf")))) {
     GTEST_SKIP() << test::kLeftOut;
   }
   Result<Session> opened = open_case(GetParam(), GetParam().rate);

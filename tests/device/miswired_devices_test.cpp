@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <random>
 
 #include <glm/common.hpp>
@@ -15,6 +14,7 @@
 #include "systems/hold/handle_side.hpp"
 #include "tests/device/fake_bus.hpp"
 #include "tests/device/handled_device.hpp"
+#include "tests/support/studies.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -165,7 +165,7 @@ Miswiring miscalibrated(std::size_t kind, std::mt19937& random) {
 }
 
 std::uint32_t sessions_of_each() {
-  return std::getenv("TORSION_ALL_CASES") != nullptr ? 400U : 4U;  // NOLINT(concurrency-mt-unsafe)
+  return test::all_cases() ? 400U : test::kSanitized ? 1U : 4U;
 }
 
 class MiswiredDevicesTest : public testing::TestWithParam<std::size_t> {};

@@ -6,9 +6,12 @@
 #include <cmath>
 #include <deque>
 #include <random>
+#include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+
+#include "tests/support/studies.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -90,8 +93,10 @@ void expect_close(const AxisDynamics& found, const FreeDevice& device, bool much
 }
 
 TEST(IdentificationTest, FindsMassDampingFrictionAndDelay) {
-  for (const double mass : {0.05, 0.15, 0.5}) {
-    for (const double damping : {0.3, 1.0, 3.0}) {
+  const auto masses = test::kSanitized ? std::vector{0.15} : std::vector{0.05, 0.15, 0.5};
+  const auto dampings = test::kSanitized ? std::vector{1.0} : std::vector{0.3, 1.0, 3.0};
+  for (const double mass : masses) {
+    for (const double damping : dampings) {
       for (const double friction : {0.0, 0.1, 0.3}) {
         for (const double delay : {0.0, 3e-3}) {
           FreeDevice device;

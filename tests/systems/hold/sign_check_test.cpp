@@ -13,6 +13,7 @@
 
 #include "ecs/device_sample.hpp"
 #include "systems/hold/handle_side.hpp"
+#include "tests/support/studies.hpp"
 #include "tests/systems/hold/emulated_hand.hpp"
 
 namespace torsion::engine {
@@ -154,8 +155,8 @@ TEST(SignCheckTest, IsNeverWrongWhoeverHoldsIt) {
   std::mt19937 legs(8);
   int unresolved = 0;
   int missed = 0;
-  constexpr int kHands = 200;
-  for (int i = 0; i < kHands; ++i) {
+  const int hands = test::trials_of(200);
+  for (int i = 0; i < hands; ++i) {
     Person person = random_person(random);
     const SignVerdict right = verdict(person, kTranslationAxes | kTurnAxis);
     EXPECT_NE(right, SignVerdict::kReversed) << i;
@@ -175,8 +176,8 @@ TEST(SignCheckTest, IsNeverWrongWhoeverHoldsIt) {
   RecordProperty("unresolved", unresolved);
   RecordProperty("missed", missed);
   // Nine in ten of hands so different have to be seen for the check to be of use.
-  EXPECT_LT(unresolved, kHands / 10);
-  EXPECT_LT(missed, kHands / 10);
+  EXPECT_LT(unresolved, hands / 10);
+  EXPECT_LT(missed, hands / 10);
 }
 
 /// A device and its person before a tool that is held where it is, from the first sample on.

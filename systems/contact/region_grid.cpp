@@ -8,6 +8,7 @@
 
 #include "systems/contact/grid_cells.hpp"
 #include "systems/contact/law.hpp"
+#include "systems/contact/pressed_face.hpp"
 #include "systems/contact/tool_motion.hpp"
 #include "systems/half_space/influence.hpp"
 #include "systems/math/frames.hpp"
@@ -357,12 +358,11 @@ void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoin
   const Grid grid = grid_of(context, region);
   region_points_of(context, grid.identity) = contact;
   const ContactPoint deepest = deepest_of_cluster(grid, contact);
-  const Distance surface = signed_distance(
-      grid.model, grid.model.bodies.at<OwnedRows>(grid.identity.body).parts, deepest.position);
+  const BodyFace face = pressed_face(grid, deepest);
   RegionFrame& frame = grid.frame;
   frame = RegionFrame{};
   frame.origin = deepest.position;
-  turn_normal_to(frame, glm::normalize(surface.gradient));
+  turn_normal_to(frame, face.normal);
   PlaneBox box;
   const glm::dvec2 start(2.0 * deepest.depth);
   box.include(-start, start);

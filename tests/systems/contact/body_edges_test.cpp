@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -167,6 +168,41 @@ TEST(BodyEdgesTest, AToolBesideAnEdgeIsFoundWhereverItsSamplesAre) {
                    glm::angleAxis(0.05 * place, glm::normalize(glm::dvec3(0.2, 0.4, 1.0)))}});
     hand.move({0.0, -2.0 * kMostMissed, 0.0}, kUp, 0.0, 30);
     EXPECT_EQ(hand.world().state.regions.size(), 1U) << place;
+  }
+}
+
+/// Of a ball's force that answers its approach to an edge of the block, from `angle` beside the
+/// top's normal in the plane across the edge, along that way, without friction: its share along
+/// the way.
+double along_approach(ContactModel contact, double angle, double depth) {
+  constexpr double kRadius = 0.012;
+  SceneDescription scene = rod_on_block();
+  scene.tools[0] = test::make_tool({test::make_part(ShapeKind::kSphere, glm::dvec3(kRadius))});
+  scene.bodies[0].friction = {0.0, 0.0};
+  scene.bodies[0].models.contact = contact;
+  Hand hand(scene);
+  const glm::dvec3 outwards(std::sin(angle), std::cos(angle), 0.0);
+  const glm::dvec3 edge(kHalfWidth, 0.0, 0.0);
+  hand.step_to({{edge + (kRadius + 1e-5) * outwards, kUpright}});
+  hand.move(-(depth + 1e-5) * outwards, kUp, 0.0, 50);
+  hand.move({0.0, 0.0, 0.0}, kUp, 0.0, 20);  // what faded in at birth is over
+  const glm::dvec3 force = hand.wrench().force;
+  EXPECT_GT(glm::length(force), 0.0);
+  return glm::dot(force, outwards) / glm::length(force);
+}
+
+// A ball that meets the edge between top and side: the two faces are as near as each other where it
+// is deepest, but it leaves by the one that it comes to more straight on, whose normal is within 45
+// degrees of its way.
+TEST(BodyEdgesTest, ABallThatMeetsAnEdgeIsCarriedByTheFaceThatItPressesOn) {
+  for (const ContactModel contact :
+       {ContactModel::kPaper, ContactModel::kMdr, ContactModel::kPatch, ContactModel::kWinkler}) {
+    for (const double angle : {0.1, 0.3, 0.5, 0.7, 0.87, 1.07, 1.27, 1.47}) {
+      for (const double depth : {3e-5, 5e-4}) {
+        EXPECT_GT(along_approach(contact, angle, depth), std::cos(0.25 * std::numbers::pi))
+            << static_cast<int>(contact) << " " << angle << " " << depth;
+      }
+    }
   }
 }
 

@@ -105,6 +105,7 @@ std::uint32_t group_points(std::span<const glm::dvec3> points, std::span<const N
 namespace {
 
 constexpr int kDescentSteps = 48;
+constexpr int kMostMissed = 2;  // at a corner of the tool no way along a kink goes down
 constexpr double kSmallestStep =
     1e-3;  // of the sample spacing: finer does not change the depth by a micrometre
 constexpr double kAlongKink = 0.05;  // of the slope beside a kink: below it the point is a minimum
@@ -228,16 +229,21 @@ bool stands_alone(const ContactSearch& search, const Candidate& candidate) {
 struct SurfacePoint {
   glm::dvec3 position;  // m, tool
   double distance;      // m, to the body
-  glm::dvec3 gradient;  // of that along the tool's surface, tool
+  glm::dvec3 gradient;  // of that, tool
 };
 
 SurfacePoint surface_point(const ContactSearch& search, const glm::dvec3& position) {
   const Pose& pose = search.tool_in_body;
   const Distance to_body =
       signed_distance(search.model, search.body_parts, to_outer(pose, position));
-  const glm::dvec3 normal = signed_distance(search.model, search.tool.parts, position).gradient;
-  const glm::dvec3 uphill = glm::conjugate(pose.rotation) * to_body.gradient;
-  return {position, to_body.value, uphill - normal * glm::dot(uphill, normal)};
+  return {position, to_body.value, glm::conjugate(pose.rotation) * to_body.gradient};
+}
+
+/// The gradient along the tool's surface.
+glm::dvec3 gradient_along(const ContactSearch& search, const SurfacePoint& point) {
+  const glm::dvec3 normal =
+      signed_distance(search.model, search.tool.parts, point.position).gradient;
+  return point.gradient - normal * glm::dot(point.gradient, normal);
 }
 
 /// The shortest vector that ends between the ends of two. Where two gradients meet at a kink, a
@@ -256,8 +262,10 @@ glm::dvec3 shortest_between(const glm::dvec3& a, const glm::dvec3& b) {
 ContactPoint descend(const ContactSearch& search, const Candidate& start) {
   const SurfaceSample& sample = search.model.samples.at<SurfaceSample>(start.sample);
   SurfacePoint point = surface_point(search, sample.position);
-  glm::dvec3 uphill = point.gradient;
-  bool bent = false;  // whether it is not the gradient, but goes along a kink
+  glm::dvec3 steepest = gradient_along(search, point);
+  glm::dvec3 uphill = steepest;
+  bool bent = false;  // whether the way is not the steepest, but goes along a kink
+  int missed = 0;     // such ways from this point that did not go down
   double step = 0.5 * sample.spacing;
   for (int iteration = 0; iteration < kDescentSteps && step > kSmallestStep * sample.spacing;
        ++iteration) {
@@ -271,20 +279,24 @@ ContactPoint descend(const ContactSearch& search, const Candidate& start) {
     const SurfacePoint trial = surface_point(search, place);
     if (trial.distance < point.distance) {
       point = trial;
-      uphill = point.gradient;
+      steepest = gradient_along(search, point);
+      uphill = steepest;
       bent = false;
+      missed = 0;
       continue;
     }
-    // Downhill from here is uphill from there: a minimum lies between, or a kink to go along.
-    const glm::dvec3 along = shortest_between(uphill, trial.gradient);
-    if (bent || glm::length(along) < kAlongKink * slope) {
-      step *= 0.5;
-      uphill = point.gradient;
-      bent = false;
-    } else {
-      uphill = along;
-      bent = true;
+    missed += bent ? 1 : 0;
+    if (!bent && missed < kMostMissed) {
+      // Downhill from here is uphill from there: a minimum lies between, or a kink to go along.
+      uphill = shortest_between(steepest, gradient_along(search, trial));
+      if (glm::length(uphill) >= kAlongKink * slope) {
+        bent = true;
+        continue;
+      }
     }
+    step *= 0.5;
+    uphill = steepest;
+    bent = false;
   }
   return {to_outer(search.tool_in_body, point.position), -point.distance, 0};
 }

@@ -77,6 +77,7 @@ class LiveSession {
   /// Makes a tool's coupling ready for a hand that takes it: as strong as what the tool bears now
   /// asks for, where that is more than the mouse's strength.
   /// @return where that hand is to be, so that the tool stays where it is
+  /// @pre no device has it
   Pose take(std::uint32_t tool);
   /// Lets go of a tool: within kReturnTime it is back on its animation's way.
   void release(std::uint32_t tool);

@@ -36,6 +36,12 @@ struct ToolInBody {
   }
 };
 
+/// A face of a body as a plane near a point inside.
+struct BodyFace {
+  glm::dvec3 normal{0.0};  // body, unit, outwards
+  double depth = 0.0;      // m: of the point below it
+};
+
 /// @param place  where the body's surface is looked for
 /// @param point  m, body: whose depth below the face is wanted
 BodyFace face_at(const Grid& grid, const glm::dvec3& place, const glm::dvec3& point) {
@@ -83,7 +89,7 @@ bool leaves_by(const ToolInBody& tool, const BodyFace& face, const BodyFace& oth
 
 }  // namespace
 
-BodyFace pressed_face(const Grid& grid, const ContactPoint& point) {
+glm::dvec3 pressed_normal(const Grid& grid, const ContactPoint& point) {
   BodyFace pressed = face_at(grid, point.position, point.position);
   const ToolInBody tool{grid.model, grid.model.tools.at<OwnedRows>(grid.identity.tool).parts,
                         relative(grid.state.bodies.at<BodyPose>(grid.identity.body).now,
@@ -109,7 +115,7 @@ BodyFace pressed_face(const Grid& grid, const ContactPoint& point) {
       }
     }
   }
-  return pressed;
+  return pressed.normal;
 }
 
 }  // namespace torsion::engine

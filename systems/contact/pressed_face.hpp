@@ -6,16 +6,12 @@
 
 namespace torsion::engine {
 
-/// A face of a body as a plane near a point inside.
-struct BodyFace {
-  glm::dvec3 normal{0.0};  // body, unit, outwards
-  double depth = 0.0;      // m: of the point below it
-};
-
-/// The face of the grid's body that its tool presses on at a contact point. Where faces meet, a
-/// point inside is as near to one as to the other, and the nearest says nothing: the tool leaves by
-/// the face under which it reaches less deep at their edge, as the way out is the shortest there.
+/// The normal of the face of the grid's body that its tool presses on at a contact point. Where
+/// faces meet, a point inside is as near to one as to the other, and the nearest says nothing: the
+/// tool leaves by the face under which it reaches less deep at their edge, as the way out is the
+/// shortest there.
 /// @param point  of the tool's surface, inside the body
-BodyFace pressed_face(const Grid& grid, const ContactPoint& point);
+/// @return body frame, unit, outwards
+glm::dvec3 pressed_normal(const Grid& grid, const ContactPoint& point);
 
 }  // namespace torsion::engine

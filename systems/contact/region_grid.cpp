@@ -358,11 +358,10 @@ void place_new_grid(StepContext& context, std::uint32_t region, const RegionPoin
   const Grid grid = grid_of(context, region);
   region_points_of(context, grid.identity) = contact;
   const ContactPoint deepest = deepest_of_cluster(grid, contact);
-  const BodyFace face = pressed_face(grid, deepest);
   RegionFrame& frame = grid.frame;
   frame = RegionFrame{};
   frame.origin = deepest.position;
-  turn_normal_to(frame, face.normal);
+  turn_normal_to(frame, pressed_normal(grid, deepest));
   PlaneBox box;
   const glm::dvec2 start(2.0 * deepest.depth);
   box.include(-start, start);

@@ -144,6 +144,7 @@ struct Regions {
   RestOverlap overlap;       // all depths, and the largest radius
   double force = 0.0;        // N, the largest
   bool unannounced = false;  // whether any has come up or has changed without the tool's motion
+  bool regridded = false;    // whether any has
 };
 
 bool unannounced(std::uint32_t event) {
@@ -161,7 +162,9 @@ Regions regions_on(const StepContext& context, std::uint32_t body) {
       regions.overlap.depth += overlap.depth;
       regions.overlap.radius = std::max(regions.overlap.radius, overlap.radius);
       regions.force = std::max(regions.force, state.regions.at<RegionNormal>(region).force);
-      regions.unannounced |= unannounced(state.regions.at<RegionWrench>(region).event_now);
+      const std::uint32_t event = state.regions.at<RegionWrench>(region).event_now;
+      regions.unannounced |= unannounced(event);
+      regions.regridded |= event == static_cast<std::uint32_t>(RegionEvent::kRegridded);
     }
   }
   return regions;
@@ -169,6 +172,7 @@ Regions regions_on(const StepContext& context, std::uint32_t body) {
 
 void bound_forces_on(StepContext& context, std::uint32_t body) {
   constexpr double kSameSize = 1.1;  // the contact's, as samples and cells show it step by step
+  constexpr double kNewCells = 1.5;  // likewise where its cells are new, of 22 % more force
   constexpr double kDrift = 0.02;  // of the peak: a closed path may give 1 % (scene_properties.cpp)
   const Model& model = context.model;
   State& state = context.state;
@@ -184,7 +188,8 @@ void bound_forces_on(StepContext& context, std::uint32_t body) {
   // The sum of the work drifts by what steps leave unsolved; but the energy that the last force
   // needs must have been put in.
   const double needed = 0.5 * energy.force * energy.force / stiffness;
-  double most = std::max(energy.most + work, kSameSize * needed + std::max(work, 0.0));
+  const double size = regions.regridded ? kNewCells : kSameSize;
+  double most = std::max(energy.most + work, size * needed + std::max(work, 0.0));
   if (regions.unannounced) {
     const double depth = body_law_of(model, body).moves_as_a_whole
                              ? std::max(regions.overlap.depth, depth_by_cells(context, body))

@@ -222,6 +222,7 @@ void LiveSession::hold(std::uint32_t tool, const Pose& handle) {
 }
 
 Pose LiveSession::take(std::uint32_t tool) {
+  TORSION_ASSERT(!on_device(tool));
   const Snapshot& snapshot = frame().snapshot;
   const Pose& now = snapshot.tools.at<ToolPose>(tool).now;
   if (way_ == ToolHold::kDirect) {

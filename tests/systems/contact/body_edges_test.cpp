@@ -174,10 +174,14 @@ TEST(BodyEdgesTest, AToolBesideAnEdgeIsFoundWhereverItsSamplesAre) {
 /// Of a ball's force that answers its approach to an edge of the block, from `angle` beside the
 /// top's normal in the plane across the edge, along that way, without friction: its share along
 /// the way.
-double along_approach(ContactModel contact, double angle, double depth) {
+/// @param as_mesh  ball and block are meshes
+double along_approach(ContactModel contact, double angle, double depth, bool as_mesh) {
   constexpr double kRadius = 0.012;
   SceneDescription scene = rod_on_block();
-  scene.tools[0] = test::make_tool({test::make_part(ShapeKind::kSphere, glm::dvec3(kRadius))});
+  scene.bodies[0].parts = {test::make_part(ShapeKind::kBox, {kHalfWidth, 0.03, 0.03},
+                                           {glm::dvec3(0.0, -0.03, 0.0), kUpright}, as_mesh)};
+  scene.tools[0] =
+      test::make_tool({test::make_part(ShapeKind::kSphere, glm::dvec3(kRadius), {}, as_mesh)});
   scene.bodies[0].friction = {0.0, 0.0};
   scene.bodies[0].models.contact = contact;
   Hand hand(scene);
@@ -195,13 +199,20 @@ double along_approach(ContactModel contact, double angle, double depth) {
 // is deepest, but it leaves by the one that it comes to more straight on, whose normal is within 45
 // degrees of its way.
 TEST(BodyEdgesTest, ABallThatMeetsAnEdgeIsCarriedByTheFaceThatItPressesOn) {
+  constexpr double kShare = 0.5 * std::numbers::sqrt2;
   for (const ContactModel contact :
        {ContactModel::kPaper, ContactModel::kMdr, ContactModel::kPatch, ContactModel::kWinkler}) {
     for (const double angle : {0.1, 0.3, 0.5, 0.7, 0.87, 1.07, 1.27, 1.47}) {
       for (const double depth : {3e-5, 5e-4}) {
-        EXPECT_GT(along_approach(contact, angle, depth), std::cos(0.25 * std::numbers::pi))
+        EXPECT_GT(along_approach(contact, angle, depth, false), kShare)
             << static_cast<int>(contact) << " " << angle << " " << depth;
       }
+    }
+  }
+  for (const ContactModel contact : {ContactModel::kMdr, ContactModel::kPatch}) {
+    for (const double angle : {0.1, 0.5, 1.07, 1.47}) {
+      EXPECT_GT(along_approach(contact, angle, 5e-4, true), kShare)
+          << static_cast<int>(contact) << " " << angle << " as meshes";
     }
   }
 }

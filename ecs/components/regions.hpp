@@ -98,7 +98,9 @@ struct Overlap {
   double radius = 0.0;          // m: sqrt(area / pi)
   double mean_depth = 0.0;      // m: x of the paper, over the area
   double largest_depth = 0.0;   // m
-  glm::dvec3 mean_normal{0.0};  // body, unit: of the rest surface, over the area
+  // body, unit: of the rest surface, over the area; beside edges a part of the way there from the
+  // grid's (overlap_normal.hpp)
+  glm::dvec3 mean_normal{0.0};
 };
 
 /// What of the overlap carries load, as the contact model finds it: a ball's contact on an elastic

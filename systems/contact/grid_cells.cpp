@@ -6,7 +6,9 @@
 #include <numbers>
 #include <optional>
 
+#include "systems/contact/body_edges.hpp"
 #include "systems/contact/law.hpp"
+#include "systems/contact/overlap_normal.hpp"
 #include "systems/contact/rims.hpp"
 #include "systems/contact/tool_surface.hpp"
 #include "systems/geometry/distance_shapes.hpp"
@@ -25,18 +27,21 @@ void find_rest_surface(const Grid& grid) {
 
 /// Depth under the body's rest surface, its change across a cell, and the share of the cell that is
 /// in contact, to first order in the shape of both surfaces there.
-/// @param half        m: half a cell
-/// @param beside_edge  out: 1 where a cell in contact may lie beside an edge of the body, in lanes
+/// @param half      m: half a cell
+/// @param tool_z    m: of the cells' places on the tool
+/// @param steepest  out: 1 less the cosine between the grid's normal and that of a face that the
+///                  tool reaches down to, the largest, in lanes
 TORSION_WIDEST
 void find_depths(const glm::dvec2& half, std::size_t count, const double* __restrict value,
                  const double* __restrict body_x, const double* __restrict body_y,
                  const double* __restrict body_z, const double* __restrict tool_x,
-                 const double* __restrict tool_y, double* __restrict depth,
-                 double* __restrict depth_change, double* __restrict coverage,
-                 double* __restrict bearing, Lanes& __restrict beside_edge) {
+                 const double* __restrict tool_y, const double* __restrict tool_z,
+                 double* __restrict depth, double* __restrict depth_change,
+                 double* __restrict coverage, double* __restrict bearing,
+                 Lanes& __restrict steepest) {
   const double half_x = half.x;
   const double half_y = half.y;
-  Lanes beside{};
+  Lanes most{};
   for (std::size_t first = 0; first < count; first += kLanes) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::size_t cell = first + lane;
@@ -53,39 +58,11 @@ void find_depths(const glm::dvec2& half, std::size_t count, const double* __rest
       depth_change[cell] = across;
       coverage[cell] = share;
       bearing[cell] = share >= 0.5 ? 1.0 : 0.0;
-      beside[lane] = larger(body_z[cell] < kFullyFacing ? share : 0.0, beside[lane]);
+      const double counts = tool_z[cell] < 0.0 || share > 0.0 ? 1.0 : 0.0;
+      most[lane] = larger(counts * (1.0 - body_z[cell]), most[lane]);
     }
   }
-  beside_edge = beside;
-}
-
-/// The share of a cell where the depth is positive, to first order.
-/// @param across  m: how much the depth changes across the cell
-double share_below(double depth, double across) {
-  return 2.0 * std::abs(depth) >= across ? (depth > 0.0 ? 1.0 : 0.0) : 0.5 + depth / across;
-}
-
-/// Beside an edge of the body the nearest point may lie on the body's side. The distance to it
-/// gives the share of the cell that is over the body; the depth is measured under the face that the
-/// tool presses on, here that face's tangent plane.
-void take_depth_from_plane(const Grid& grid, std::size_t cell, double facing) {
-  const CellColumns& columns = grid.scratch.cell_columns;
-  const glm::dvec2 half = cell_half_size(grid);
-  const double across =
-      2.0 * (std::abs(columns.tool_x[cell]) * half.x + std::abs(columns.tool_y[cell]) * half.y) +
-      1e-30;
-  const double height = columns.points.z[cell];
-  const double below = share_below(-height, across);
-  const double mean = below < 1.0 ? 0.5 * below * across : -height;
-  double& coverage = columns.coverage[cell];
-  columns.depth[cell] = facing * columns.depth[cell] - (1.0 - facing) * height;
-  coverage *= facing + (1.0 - facing) * below;
-  columns.bearing[cell] = coverage >= 0.5 ? 1.0 : 0.0;
-  if (coverage > 0.0) {
-    // Chosen so that the mean over the covered part of a partly covered cell is `mean`.
-    columns.depth_change[cell] =
-        facing * columns.depth_change[cell] + (1.0 - facing) * 2.0 * mean / coverage;
-  }
+  steepest = most;
 }
 
 /// One bit a cell, one word a row: the cells that are covered, and those that may carry pressure.
@@ -128,20 +105,17 @@ CellBits find_coverage(const Grid& grid, bool rims) {
   const CellColumns& columns = grid.scratch.cell_columns;
   const std::size_t count = columns.coverage.size();
   double* const coverage = columns.coverage.data();
-  Lanes beside_edge;
+  Lanes steepest;
   const DistanceColumns& body = columns.points;
   find_depths(cell_half_size(grid), count, body.value.data(), body.gradient_x.data(),
               body.gradient_y.data(), body.gradient_z.data(), columns.tool_x.data(),
-              columns.tool_y.data(), columns.depth.data(), columns.depth_change.data(), coverage,
-              columns.bearing.data(), beside_edge);
+              columns.tool_y.data(), body.z.data(), columns.depth.data(),
+              columns.depth_change.data(), coverage, columns.bearing.data(), steepest);
   std::fill(coverage + count, coverage + (count + kLanes - 1) / kLanes * kLanes, 0.0);
-  if (largest_of(beside_edge) > 0.0) {
-    const std::span<const double> normal = columns.points.gradient_z;
-    for (std::size_t cell = 0; cell < count; ++cell) {
-      if (normal[cell] < kFullyFacing && coverage[cell] > 0.0) {
-        take_depth_from_plane(grid, cell, facing_share(normal[cell]));
-      }
-    }
+  const double least_cosine = 1.0 - largest_of(steepest);
+  grid.scratch.body_edges = {askew_share(least_cosine), least_cosine < kFullyFacing, {}};
+  if (grid.scratch.body_edges.ends) {
+    cut_at_body_edges(grid);
   }
   if (rims) {
     take_rims(columns);
@@ -311,6 +285,7 @@ CellBits find_cells(const Grid& grid, const RegionPoints& contact) {
   find_tool_surface(grid);
   const bool rims = find_rims(grid);
   find_rest_surface(grid);
+  find_upper_faces(grid);
   const CellBits own = keep_own_cells(grid, contact, find_coverage(grid, rims));
   store_cells(grid);
   return own;
@@ -390,11 +365,14 @@ Overlap summarize_cells(const Grid& grid) {
   overlap.mean_depth = sum_of(lanes.volume) / overlap.area;
   overlap.rest_center = overlap.center + grid.frame.normal * overlap.mean_depth;
   overlap.radius = std::sqrt(overlap.area / std::numbers::pi);
-  const glm::dvec3 normal(sum_of(lanes.normal_x), sum_of(lanes.normal_y), sum_of(lanes.normal_z));
-  if (glm::length(normal) > 0.1 * overlap.area) {
-    overlap.mean_normal = glm::normalize(tangent_to_body(grid.frame, glm::dvec2(normal)) +
-                                         grid.frame.normal * normal.z);
-  }
+  const glm::dvec3 faces(sum_of(lanes.normal_x), sum_of(lanes.normal_y), sum_of(lanes.normal_z));
+  const glm::dvec3 known =
+      glm::length(faces) > 0.1 * overlap.area ? faces : glm::dvec3(0.0, 0.0, 1.0);
+  const glm::dvec3 normal = grid.scratch.body_edges.askew > 0.0
+                                ? normal_beside_edges(grid, glm::normalize(known))
+                                : known;
+  overlap.mean_normal = glm::normalize(tangent_to_body(grid.frame, glm::dvec2(normal)) +
+                                       grid.frame.normal * normal.z);
   return overlap;
 }
 

@@ -151,6 +151,14 @@ inline double facing_share(double slope) {
   return smooth_step(4.0 * slope - 1.0);
 }
 
+/// How much a face lies askew of the grid, 0 to 1.
+/// @param slope  cosine between that face's normal and the grid's
+inline double askew_share(double slope) {
+  constexpr double kStraight = 0.9;
+  constexpr double kAskew = 0.8;
+  return smooth_step((kStraight - slope) / (kStraight - kAskew));
+}
+
 /// Finds, for every cell of the grid, the tool's surface along the normal, how deep it lies under
 /// the body's rest surface, and the share of the cell that is in contact. Cells that are not joined
 /// to the region's own contact points belong to a neighbour and get coverage 0. Leaves in

@@ -4,6 +4,17 @@
 
 namespace torsion::engine {
 
+LeftCells first_of(const LeftCells& left, std::size_t count) {
+  const DistanceColumns& points = left.points;
+  return {left.cells.first(count),
+          {points.x.first(count), points.y.first(count), points.z.first(count),
+           points.value.first(count), points.gradient_x.first(count),
+           points.gradient_y.first(count), points.gradient_z.first(count)},
+          left.tool_x.first(count),
+          left.tool_y.first(count),
+          left.gradient_square.first(count)};
+}
+
 void lay_columns(std::size_t cells, std::span<std::span<double>* const> columns,
                  Column<double>& memory) {
   const std::size_t stride = whole_lanes(cells);
@@ -38,8 +49,8 @@ void ContactScratch::reserve(const Model& model, const State& state) {
       &cell_columns.tool_x,       &cell_columns.tool_y,      &cell_columns.depth,
       &cell_columns.depth_change, &cell_columns.coverage,    &cell_columns.bearing,
       &cell_columns.rim_share,    &cell_columns.rim_bearing, &cell_columns.gradient_square,
-      &cell_columns.open,         &left_cells.tool_x,        &left_cells.tool_y,
-      &left_cells.gradient_square};
+      &cell_columns.open,         &cell_columns.over_body,   &cell_columns.under_face,
+      &left_cells.tool_x,         &left_cells.tool_y,        &left_cells.gradient_square};
   for (DistanceColumns* found : {&cell_columns.points, &left_cells.points}) {
     columns.insert(columns.end(), {&found->x, &found->y, &found->z, &found->value,
                                    &found->gradient_x, &found->gradient_y, &found->gradient_z});

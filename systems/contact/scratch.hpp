@@ -72,6 +72,27 @@ struct CellColumns {
   // Of a cell what lies under the tool, and how stiff it is for that, where the tool has rims.
   std::span<double> rim_share, rim_bearing;
   std::span<double> open;  // 0 to 1: how far a cell has no underside of its own (rims.cpp)
+  // Where the body has edges: the share of a cell that is over it, and how far the tool is under
+  // the face that it presses on, or under that face's plane, m.
+  std::span<double> over_body, under_face;
+};
+
+/// A face of a body as a plane over a grid: height = at_origin + slope_x x + slope_y y, m.
+struct FacePlane {
+  double at_origin = 0.0;
+  double slope_x = 0.0;
+  double slope_y = 0.0;
+
+  [[nodiscard]] double height(double x, double y) const {
+    return at_origin + slope_x * x + slope_y * y;
+  }
+};
+
+/// What the edges of the body do within one region's grid.
+struct BodyEdges {
+  double askew = 0.0;  // 0 to 1: how much a face there lies askew of the grid
+  bool ends = false;   // whether the body has a side there: the columns of CellColumns are found
+  FacePlane face;      // that the tool presses on, then
 };
 
 /// Those of a region's cells that are not yet on the tool's surface.
@@ -80,6 +101,9 @@ struct LeftCells {
   DistanceColumns points;
   std::span<double> tool_x, tool_y, gradient_square;  // as in CellColumns
 };
+
+/// The first of the cells that are left.
+LeftCells first_of(const LeftCells& left, std::size_t count);
 
 /// The beam from what is fixed to a region, as a spring in series with its contact.
 struct BeamSpring {
@@ -130,6 +154,7 @@ struct ContactScratch {
       region_points;  // (regions) by block of cells, which does not move when rows do
   // region_grids
   CellColumns cell_columns;               // (cells of one region)
+  BodyEdges body_edges;                   // likewise
   LeftCells left_cells;                   // likewise
   std::vector<std::uint32_t> near_parts;  // (parts of all bodies and tools)
 

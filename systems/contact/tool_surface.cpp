@@ -94,18 +94,6 @@ void step_to_surface(double size, const DistanceColumns& points, std::span<doubl
                   tool_y.data(), gradient_square.data());
 }
 
-/// The first of the cells that are left.
-LeftCells first_of(const LeftCells& left, std::size_t count) {
-  const DistanceColumns& points = left.points;
-  return {left.cells.first(count),
-          {points.x.first(count), points.y.first(count), points.z.first(count),
-           points.value.first(count), points.gradient_x.first(count),
-           points.gradient_y.first(count), points.gradient_z.first(count)},
-          left.tool_x.first(count),
-          left.tool_y.first(count),
-          left.gradient_square.first(count)};
-}
-
 /// Whether a cell that may be in contact, because its underside with its slopes comes below the
 /// rest surface, still moves far.
 /// @param cell_length  m

@@ -82,10 +82,10 @@ void cover_under(const FacePlane& plane, const Grid& grid, std::size_t cell, dou
 
 }  // namespace
 
-void find_upper_faces(const Grid& grid) {
+bool find_upper_faces(const Grid& grid) {
   const std::size_t count = list_askew(grid);
   if (count == 0) {
-    return;
+    return false;
   }
   const CellColumns& columns = grid.scratch.cell_columns;
   const LeftCells left = first_of(grid.scratch.left_cells, count);
@@ -105,6 +105,7 @@ void find_upper_faces(const Grid& grid) {
     nearest.gradient_z[cell] = std::lerp(slope, upper.gradient_z[k], part);
     nearest.value[cell] = -deep * nearest.gradient_z[cell];
   }
+  return true;
 }
 
 void cut_at_body_edges(const Grid& grid) {

@@ -12,7 +12,8 @@ namespace torsion::engine {
 /// make the overlap deeper than it is.
 /// @pre   CellColumns has the cells' distances to the body
 /// @post  and those to the faces that their columns leave by, along their normals
-void find_upper_faces(const Grid& grid);
+/// @return whether there are such cells
+bool find_upper_faces(const Grid& grid);
 
 /// Beside an edge of the body the nearest point may lie on the body's side. The distance to it
 /// gives the share of the cell that is over the body; the depth is measured under the face that the

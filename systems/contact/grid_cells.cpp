@@ -27,21 +27,16 @@ void find_rest_surface(const Grid& grid) {
 
 /// Depth under the body's rest surface, its change across a cell, and the share of the cell that is
 /// in contact, to first order in the shape of both surfaces there.
-/// @param half      m: half a cell
-/// @param tool_z    m: of the cells' places on the tool
-/// @param steepest  out: 1 less the cosine between the grid's normal and that of a face that the
-///                  tool reaches down to, the largest, in lanes
+/// @param half  m: half a cell
 TORSION_WIDEST
 void find_depths(const glm::dvec2& half, std::size_t count, const double* __restrict value,
                  const double* __restrict body_x, const double* __restrict body_y,
                  const double* __restrict body_z, const double* __restrict tool_x,
-                 const double* __restrict tool_y, const double* __restrict tool_z,
-                 double* __restrict depth, double* __restrict depth_change,
-                 double* __restrict coverage, double* __restrict bearing,
-                 Lanes& __restrict steepest) {
+                 const double* __restrict tool_y, double* __restrict depth,
+                 double* __restrict depth_change, double* __restrict coverage,
+                 double* __restrict bearing) {
   const double half_x = half.x;
   const double half_y = half.y;
-  Lanes most{};
   for (std::size_t first = 0; first < count; first += kLanes) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::size_t cell = first + lane;
@@ -58,8 +53,25 @@ void find_depths(const glm::dvec2& half, std::size_t count, const double* __rest
       depth_change[cell] = across;
       coverage[cell] = share;
       bearing[cell] = share >= 0.5 ? 1.0 : 0.0;
-      const double counts = tool_z[cell] < 0.0 || share > 0.0 ? 1.0 : 0.0;
-      most[lane] = larger(counts * (1.0 - body_z[cell]), most[lane]);
+    }
+  }
+}
+
+/// 1 less the cosine between the grid's normal and that of a face that the tool reaches down to:
+/// the largest of all cells, in lanes.
+/// @param tool_z  m: of the cells' places on the tool
+TORSION_WIDEST
+void find_steepest(std::size_t count, const double* __restrict coverage,
+                   const double* __restrict tool_z, const double* __restrict body_z,
+                   Lanes& __restrict steepest) {
+  Lanes most{};
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t cell = first + lane;
+      const double askew = 1.0 - body_z[cell];
+      const double covered = coverage[cell] > 0.0 ? askew : 0.0;
+      const double below = tool_z[cell] < 0.0 ? askew : 0.0;
+      most[lane] = larger(larger(covered, below), most[lane]);
     }
   }
   steepest = most;
@@ -99,21 +111,33 @@ CellBits bits_of_covered(const Grid& grid) {
   return covered;
 }
 
+/// Depths and coverage under the cells' faces of the body.
+/// @return the cosine between the grid's normal and that of the steepest of those
+double find_depths(const Grid& grid) {
+  const CellColumns& columns = grid.scratch.cell_columns;
+  const DistanceColumns& body = columns.points;
+  const std::size_t count = columns.coverage.size();
+  find_depths(cell_half_size(grid), count, body.value.data(), body.gradient_x.data(),
+              body.gradient_y.data(), body.gradient_z.data(), columns.tool_x.data(),
+              columns.tool_y.data(), columns.depth.data(), columns.depth_change.data(),
+              columns.coverage.data(), columns.bearing.data());
+  Lanes steepest;
+  find_steepest(count, columns.coverage.data(), body.z.data(), body.gradient_z.data(), steepest);
+  return 1.0 - largest_of(steepest);
+}
+
 /// Computes depth, its change and coverage into the columns.
 /// @param rims  whether find_rims has found any
 CellBits find_coverage(const Grid& grid, bool rims) {
   const CellColumns& columns = grid.scratch.cell_columns;
   const std::size_t count = columns.coverage.size();
   double* const coverage = columns.coverage.data();
-  Lanes steepest;
-  const DistanceColumns& body = columns.points;
-  find_depths(cell_half_size(grid), count, body.value.data(), body.gradient_x.data(),
-              body.gradient_y.data(), body.gradient_z.data(), columns.tool_x.data(),
-              columns.tool_y.data(), body.z.data(), columns.depth.data(),
-              columns.depth_change.data(), coverage, columns.bearing.data(), steepest);
+  double steepest = find_depths(grid);
+  if (askew_share(steepest) > 0.0 && find_upper_faces(grid)) {
+    steepest = find_depths(grid);
+  }
   std::fill(coverage + count, coverage + (count + kLanes - 1) / kLanes * kLanes, 0.0);
-  const double least_cosine = 1.0 - largest_of(steepest);
-  grid.scratch.body_edges = {askew_share(least_cosine), least_cosine < kFullyFacing, {}};
+  grid.scratch.body_edges = {askew_share(steepest), steepest < kFullyFacing, {}};
   if (grid.scratch.body_edges.ends) {
     cut_at_body_edges(grid);
   }
@@ -285,7 +309,6 @@ CellBits find_cells(const Grid& grid, const RegionPoints& contact) {
   find_tool_surface(grid);
   const bool rims = find_rims(grid);
   find_rest_surface(grid);
-  find_upper_faces(grid);
   const CellBits own = keep_own_cells(grid, contact, find_coverage(grid, rims));
   store_cells(grid);
   return own;

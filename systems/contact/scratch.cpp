@@ -49,12 +49,13 @@ void ContactScratch::reserve(const Model& model, const State& state) {
       &cell_columns.tool_x,       &cell_columns.tool_y,      &cell_columns.depth,
       &cell_columns.depth_change, &cell_columns.coverage,    &cell_columns.bearing,
       &cell_columns.rim_share,    &cell_columns.rim_bearing, &cell_columns.gradient_square,
-      &cell_columns.open,         &cell_columns.over_body,   &cell_columns.under_face,
-      &left_cells.tool_x,         &left_cells.tool_y,        &left_cells.gradient_square};
+      &cell_columns.open,         &left_cells.tool_x,        &left_cells.tool_y,
+      &left_cells.gradient_square};
   for (DistanceColumns* found : {&cell_columns.points, &left_cells.points}) {
     columns.insert(columns.end(), {&found->x, &found->y, &found->z, &found->value,
                                    &found->gradient_x, &found->gradient_y, &found->gradient_z});
   }
+  columns.insert(columns.end(), {&cell_columns.over_body, &cell_columns.under_face});
   lay_columns(cells, columns, column_memory);
   cell_memory.assign(cells, 0);
   left_cells.cells = cell_memory;

@@ -1,5 +1,6 @@
 #include "tests/fuzz/random_scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -140,6 +141,22 @@ RandomScene random_scene(std::uint64_t seed) {
   random.options.rate = dice.logarithmic(100.0, 1e5);
   random.options.use_cache = false;
   random.text += fmt::format("; {:.4g} Hz", random.options.rate);
+  return random;
+}
+
+RandomScene random_scene_at_edge(std::uint64_t seed) {
+  RandomScene random = random_scene(seed);
+  Dice dice(~seed);
+  const ShapePart& body = random.scene.bodies[0].parts[0].shape;
+  for (RandomWay& way : random.ways) {
+    const double angle = dice.between(0.0, 2.0 * std::numbers::pi);
+    const glm::dvec2 out(std::cos(angle), std::sin(angle));
+    const glm::dvec2 sides = glm::abs(out) / glm::dvec2(body.half_extent.x, body.half_extent.z);
+    const double to_edge =
+        body.kind == ShapeKind::kBox ? 1.0 / std::max(sides.x, sides.y) : 1.0 / glm::length(sides);
+    way.beside = dice.between(0.93, 1.03) * to_edge * out;
+  }
+  random.text += "; at an edge";
   return random;
 }
 

@@ -33,4 +33,7 @@ struct RandomScene {
 /// shapes and meshes, also coarse ones with sharp edges, one or two parts, one or two tools.
 RandomScene random_scene(std::uint64_t seed);
 
+/// The same with each tool over an edge of the body, a little before or beyond it.
+RandomScene random_scene_at_edge(std::uint64_t seed);
+
 }  // namespace torsion::engine::test

@@ -183,10 +183,10 @@ glm::dvec3 volume_normal(const Grid& grid) {
 glm::dvec3 normal_beside_edges(const Grid& grid, const glm::dvec3& mean) {
   // What the cells see depends on how the grid lies. With whole turns a contact on a corner was
   // seen to go to and fro.
-  constexpr double kTurn = 0.4;  // of the way, in a step
+  constexpr double kPart = 0.4;  // of the way, in a step
   const double askew = grid.scratch.body_edges.askew;
   const glm::dvec3 found = glm::mix(mean, volume_normal(grid), askew);
-  return glm::mix(glm::normalize(found), glm::dvec3(0.0, 0.0, 1.0), (1.0 - kTurn) * askew);
+  return glm::mix(glm::normalize(found), glm::dvec3(0.0, 0.0, 1.0), (1.0 - kPart) * askew);
 }
 
 }  // namespace torsion::engine

@@ -53,7 +53,8 @@ INSTANTIATE_TEST_SUITE_P(
         Seed{22339, "SteepFaceOnAnEdge", true}, Seed{22013, "SteepFaceOfABox", true},
         Seed{24158, "CrookedBoxOnItsLongestEdge", true}, Seed{24179, "CapsuleOverARim"},
         Seed{21223, "FrictionOfTheLastStepOfAContact", true}, Seed{21347, "EdgeAlongAnEdge"},
-        Seed{24096, "FaceBesideThatIsPressed", true}, Seed{23124, "NewCellsOnAnEdge", true}),
+        Seed{24096, "FaceBesideThatIsPressed", true}, Seed{23124, "NewCellsOnAnEdge", true},
+        Seed{31027, "MdrOnTwoPartsThatMeetAtAnEdge"}),
     [](const testing::TestParamInfo<Seed>& seed) { return std::string(seed.param.what); });
 
 }  // namespace

@@ -27,12 +27,6 @@ std::size_t list_askew(const Grid& grid) {
   return count;
 }
 
-/// The share of a cell where the depth is positive, to first order.
-/// @param across  m: how much the depth changes across the cell
-double share_below(double depth, double across) {
-  return 2.0 * std::abs(depth) >= across ? (depth > 0.0 ? 1.0 : 0.0) : 0.5 + depth / across;
-}
-
 /// The face that the tool presses on, as the mean of what of it is inside the tool; where there is
 /// none, the grid's plane.
 FacePlane pressed_plane(const CellColumns& columns) {

@@ -151,6 +151,12 @@ inline double facing_share(double slope) {
   return smooth_step(4.0 * slope - 1.0);
 }
 
+/// The share of a cell where the depth is positive, to first order.
+/// @param across  m: how much the depth changes across the cell
+inline double share_below(double depth, double across) {
+  return 2.0 * std::abs(depth) >= across ? (depth > 0.0 ? 1.0 : 0.0) : 0.5 + depth / across;
+}
+
 /// How much a face lies askew of the grid, 0 to 1.
 /// @param slope  cosine between that face's normal and the grid's
 inline double askew_share(double slope) {

@@ -90,9 +90,8 @@ class Line {
     if (level_ <= 0.0 || covered <= 0.0) {
       return covered;
     }
-    const double deep = columns_.depth[cell] - level_;
-    const double part = 0.5 + deep / std::max(columns_.depth_change[cell], 1e-30);
-    return std::min(covered, std::clamp(part, 0.0, 1.0));
+    return std::min(covered,
+                    share_below(columns_.depth[cell] - level_, columns_.depth_change[cell]));
   }
 
   /// How much of a side beside a cell counts. (It is known better than the cell's own share, which
@@ -139,7 +138,7 @@ class Line {
   [[nodiscard]] double past_end(std::size_t cell, double ends) const {
     const double sign = cell == last_ ? 1.0 : -1.0;
     const double side =
-        body_ends_ ? ends * side_share(cell) * std::max(columns_.under_face[cell] - level_, 0.0)
+        ends > 0.0 ? ends * side_share(cell) * std::max(columns_.under_face[cell] - level_, 0.0)
                    : 0.0;
     return side + 0.5 * sign * share(cell) * own_fall(cell);
   }

@@ -262,13 +262,6 @@ double part_at_rim(const Grid& grid, std::uint32_t cell) {
   return most;
 }
 
-/// The share of a cell on the tool's side of a plane.
-/// @param distance  m: of the cell's centre, outside
-/// @param across    m: how far the cell reaches along the plane's normal
-double share_inside(double distance, double across) {
-  return std::clamp(0.5 - distance / across, 0.0, 1.0);
-}
-
 /// What of a cell lies under the tool.
 struct RimCell {
   double share = 1.0;
@@ -282,9 +275,9 @@ struct RimCell {
 RimCell cell_at_side(const glm::dvec2& half, const glm::dvec3& side, double distance) {
   const double across = 2.0 * (std::abs(side.x) * half.x + std::abs(side.y) * half.y);
   const double aspect = across * across / (4.0 * half.x * half.y);
-  const double share = share_inside(distance, across);
+  const double share = share_below(-distance, across);
   const double inward = std::max(distance + 0.5 * share * across, 0.0);
-  return {share, bearing_of(share_inside(distance - kRimBeyond * across, across), aspect),
+  return {share, bearing_of(share_below(kRimBeyond * across - distance, across), aspect),
           -inward / (side.x * side.x + side.y * side.y) * glm::dvec2(side)};
 }
 

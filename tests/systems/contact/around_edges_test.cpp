@@ -45,7 +45,7 @@ double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
 // ---- A ball that goes from a block's top round its edge
 
 constexpr double kGoingRadius = 0.01;  // m
-constexpr double kTurnSteps = 600;
+constexpr int kTurnSteps = 600;
 
 /// The ball's middle from the edge, m: pressed on the top, to the edge, a quarter turn round it,
 /// off the side.
@@ -99,7 +99,7 @@ Round go_round(Hand& hand, const std::vector<glm::dvec2>& way) {
 }
 
 // With one plane for all of the way the force stayed that of the top, grew to 23 times what pressed
-// the ball there, and took a thousand times as much work as that.
+// the ball there, and took hundreds of times as much work as that.
 TEST(AroundEdgesTest, ABallThatGoesRoundAnEdgeIsPushedOutEverywhere) {
   constexpr double kDepth = 3e-4;  // m
   const std::vector<glm::dvec2> there = way_round(kDepth);
@@ -247,7 +247,9 @@ double touching(const Hand& hand, const std::vector<Piece>& pieces, const glm::d
 }
 
 struct Found {
-  double askew = 0.0;  // degrees: of the force, from the gradient of the overlap's volume
+  double force = 0.0;  // N
+  double faces = 0.0;  // m^2: of the sum of the body's faces in the tool
+  double askew = 0.0;  // degrees: of the force, from that sum
   double moves = 0.0;  // degrees: at most, while all is held still
 };
 
@@ -274,7 +276,10 @@ Found press_on_edge(Dice& dice, int trial) {
   hand.move(glm::dvec3(0.0), test::kUp, 0.0, 80);
   Found found;
   const glm::dvec3 force = hand.wrench().force;
-  found.askew = degrees_between(force, faces_inside(hand, pieces, hand.poses[0]));
+  const glm::dvec3 faces = faces_inside(hand, pieces, hand.poses[0]);
+  found.force = glm::length(force);
+  found.faces = glm::length(faces);
+  found.askew = degrees_between(force, faces);
   for (int step = 0; step < 10; ++step) {
     hand.move(glm::dvec3(0.0), test::kUp, 0.0, 1);
     found.moves = std::max(found.moves, degrees_between(force, hand.wrench().force));
@@ -288,6 +293,8 @@ TEST(AroundEdgesTest, OnEdgesAndCornersTheForceIsAlongTheGradientOfTheOverlap) {
   std::vector<double> askew;
   for (int trial = 0; trial < trials; ++trial) {
     const Found found = press_on_edge(dice, trial);
+    EXPECT_GT(found.force, 0.0) << trial;  // without either there is no angle between them
+    EXPECT_GT(found.faces, 0.0) << trial;
     // An overlap on an edge is some 8 cells wide, and its side some 4 high: half a cell more of a
     // face is 4 to 7 degrees, on a corner in two directions.
     EXPECT_LT(found.askew, 12.0) << trial;

@@ -10,6 +10,7 @@ void Model::reserve(const Capacities& capacities, const Settings& chosen) {
   fields.reserve(capacities.fields);
   field_nodes.reserve(capacities.field_nodes);
   field_bricks.reserve(capacities.field_bricks);
+  field_creases.reserve(capacities.field_creases);
   fixed_volumes.reserve(capacities.fixed_volumes);
   samples.reserve(capacities.samples);
   balls.reserve(capacities.balls);

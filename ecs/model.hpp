@@ -19,6 +19,7 @@ struct Capacities {
   std::uint32_t fields = 0;
   std::uint32_t field_nodes = 0;
   std::uint32_t field_bricks = 0;
+  std::uint32_t field_creases = 0;
   std::uint32_t fixed_volumes = 0;
   std::uint32_t samples = 0;
   std::uint32_t balls = 0;
@@ -57,6 +58,7 @@ struct Model {
   Table<DistanceField> fields;
   Table<DistanceNode> field_nodes;
   Table<DistanceBrick> field_bricks;
+  Table<DistanceCrease> field_creases;
   Table<FixedVolume> fixed_volumes;
   Table<SurfaceSample> samples;
   Table<SurfaceBall> balls;
@@ -80,12 +82,14 @@ struct Model {
   void reserve_models(const Capacities& capacities, const Settings& chosen);
 
   [[nodiscard]] auto tables() {
-    return std::tie(bodies, tools, parts, fields, field_nodes, field_bricks, fixed_volumes, samples,
-                    balls, anchors, sections, influences, ports, compliance);
+    return std::tie(bodies, tools, parts, fields, field_nodes, field_bricks, field_creases,
+                    fixed_volumes, samples, balls, anchors, sections, influences, ports,
+                    compliance);
   }
   [[nodiscard]] auto tables() const {
-    return std::tie(bodies, tools, parts, fields, field_nodes, field_bricks, fixed_volumes, samples,
-                    balls, anchors, sections, influences, ports, compliance);
+    return std::tie(bodies, tools, parts, fields, field_nodes, field_bricks, field_creases,
+                    fixed_volumes, samples, balls, anchors, sections, influences, ports,
+                    compliance);
   }
 };
 

@@ -34,6 +34,7 @@ struct DistanceField {
   std::uint32_t subdivision = 1;  // fine cells along one edge of a coarse cell
   Range coarse_nodes;             // rows in `field_nodes`, x fastest
   Range bricks;                   // rows in `field_bricks`, one for each coarse cell, x fastest
+  Range creases;                  // rows in `field_creases`
 };
 
 /// Gradient and signed distance at one grid node (negative inside). Written by: load.
@@ -41,10 +42,19 @@ struct DistanceNode {
   glm::vec4 gradient_and_distance{0.0F};  // xyz: unitless, part frame; w: m
 };
 
-/// First row in `field_nodes` of a coarse cell's (subdivision + 1)^3 fine nodes, or kNoRow. Written
-/// by: load.
+/// The fine grid in one coarse cell, where it has one. Written by: load.
 struct DistanceBrick {
-  std::uint32_t first_node = kNoRow;
+  std::uint32_t first_node = kNoRow;    // row in `field_nodes`, of (subdivision + 1)^3, or kNoRow
+  std::uint32_t first_crease = kNoRow;  // row in `field_creases`, of subdivision^3, x fastest, or
+                                        // kNoRow where the surface is smooth in all its cells
+};
+
+/// The planes whose edges cut a fine cell. Written by: load.
+struct DistanceCrease {
+  std::uint32_t first_plane = kNoRow;  // row in `field_nodes`: normals, and distances of the cell's
+                                       // lowest corner from them
+  std::uint16_t planes = 0;            // how many; 0 where the surface is smooth
+  std::uint16_t concave = 0;           // 1 where the innermost counts, 0 where the outermost does
 };
 
 /// A node of the sphere tree over a tool's surface: everything of the surface below it lies in this

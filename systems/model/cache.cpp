@@ -147,7 +147,7 @@ bool store_cached(const CacheKey& key, std::span<const std::byte> bytes) {
 namespace {
 
 // For the bytes in the cache: raise it when the same mesh gives others.
-constexpr std::uint32_t kFieldVersion = 1;
+constexpr std::uint32_t kFieldVersion = 2;
 
 }  // namespace
 

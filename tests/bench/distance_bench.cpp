@@ -93,6 +93,13 @@ void mesh_field(benchmark::State& state) {
   state.counters["triangles"] = static_cast<double>(mesh.triangles.size());
 }
 
+/// A patch across an edge of the mesh of a box.
+void mesh_field_at_edge(benchmark::State& state) {
+  World world = field_world(build_distance_field(box_mesh(glm::dvec3(0.05))).value());
+  world.model.parts.at<ShapePart>(0).pose.position.x = 0.05;
+  time_patch(state, world);
+}
+
 void exact_distance_to_mesh(benchmark::State& state) {
   const SurfaceMesh mesh = sphere_mesh(0.05, static_cast<std::uint32_t>(state.range(0)));
   const Result<MeshDistance> distance = MeshDistance::build(mesh);
@@ -115,6 +122,13 @@ void field_at_load(benchmark::State& state) {
   }
   state.counters["triangles"] = static_cast<double>(mesh.triangles.size());
   state.counters["MB"] = static_cast<double>(bytes) * 1e-6;
+}
+
+void field_of_box_at_load(benchmark::State& state) {
+  const SurfaceMesh mesh = box_mesh(glm::dvec3(0.05));
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(build_distance_field(mesh));
+  }
 }
 
 /// Ten balls in a row, and what is left of them when only those near the patch are asked.
@@ -158,8 +172,10 @@ BENCHMARK_CAPTURE(single_point, sphere, ShapeKind::kSphere, glm::dvec3(0.05));
 BENCHMARK_CAPTURE(single_point, box, ShapeKind::kBox, glm::dvec3(0.05));
 BENCHMARK_CAPTURE(single_point, ellipsoid, ShapeKind::kEllipsoid, glm::dvec3(0.08, 0.05, 0.06));
 BENCHMARK(mesh_field)->Arg(3)->Arg(7);
+BENCHMARK(mesh_field_at_edge);
 BENCHMARK(exact_distance_to_mesh)->Arg(3)->Arg(7);
 BENCHMARK(field_at_load)->Arg(3)->Arg(7)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(field_of_box_at_load)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(union_of_ten, all, false);
 BENCHMARK_CAPTURE(union_of_ten, near_only, true);
 

@@ -45,7 +45,7 @@ TEST(HashTest, AColumnThatChangesIsNamed) {
   World world = test::small_world(3);
   const ColumnHashes before = hash_columns(world.state);
   EXPECT_TRUE(differing(before, hash_columns(world.state)).empty());
-  world.state.regions.at<RegionNormal>(0).force += 1.0;
+  world.state.regions.at<RegionNormal>(0).force = 12345.0;
   world.state.cells.at<CellTraction>(1).pressure = 12345.0;
   EXPECT_EQ(differing(before, hash_columns(world.state)), (columns<RegionNormal, CellTraction>()));
   EXPECT_EQ(kColumnNames[column_number<RegionNormal>()], "RegionNormal");

@@ -30,10 +30,15 @@ void mend_shapes(World& world) {
   field.subdivision = 2;
   field.coarse_nodes = {0, 27};
   field.bricks = {0, 8};
+  field.creases = {0, 8};
   for (DistanceBrick& brick : world.model.field_bricks.column<DistanceBrick>()) {
     brick.first_node = kNoRow;
+    brick.first_crease = kNoRow;
   }
-  world.model.field_bricks.at<DistanceBrick>(3).first_node = 27;
+  world.model.field_bricks.at<DistanceBrick>(3) = {27, 0};
+  for (DistanceCrease& crease : world.model.field_creases.column<DistanceCrease>()) {
+    crease = {};
+  }
 }
 
 // Two tools with 10 samples in a chain and 20 balls each, two bodies with 3 anchors each.
@@ -78,6 +83,7 @@ World small_world(unsigned seed) {
   capacities.fields = 1;
   capacities.field_nodes = 54;
   capacities.field_bricks = 8;
+  capacities.field_creases = 8;
   capacities.fixed_volumes = 2;
   capacities.samples = 20;
   capacities.balls = 40;
@@ -98,6 +104,7 @@ World small_world(unsigned seed) {
   world.model.fields.append(1);
   world.model.field_nodes.append(54);
   world.model.field_bricks.append(8);
+  world.model.field_creases.append(8);
   world.model.fixed_volumes.append(2);
   world.model.samples.append(20);
   world.model.balls.append(40);

@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
 #include "systems/paper/paper.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/directions.hpp"
+#include "tests/support/studies.hpp"
 #include "tests/systems/geometry/distance_meshes.hpp"
 
 namespace torsion::engine {
@@ -166,6 +169,72 @@ TEST(MeshToolTest, ATorusOnItsSideTouchesInOneRing) {
   // A ring has its middle in the middle, however thin it is.
   EXPECT_NEAR(glm::length(glm::dvec2(overlap.rest_center.x, overlap.rest_center.z)), 0.0,
               0.001 * ring);
+}
+
+// ---- Flat meshes against the exact shapes that they are
+
+/// A plate or a puck set down on a block, or both as meshes.
+struct SetDown {
+  ShapeKind kind;
+  glm::dvec3 half;  // m
+  double yaw;       // rad
+  double depth;     // m
+  bool mesh_body;
+};
+
+SetDown random_set_down(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  SetDown made;
+  made.kind = seed % 3 == 2 ? ShapeKind::kCylinder : ShapeKind::kBox;
+  made.half = {0.008 + 0.02 * share(random), 0.004 + 0.01 * share(random),
+               0.008 + 0.02 * share(random)};
+  made.half.z = made.kind == ShapeKind::kCylinder ? made.half.x : made.half.z;
+  made.yaw = std::numbers::pi * share(random);
+  made.depth = made.half.x * std::pow(10.0, -4.0 + 2.0 * share(random));
+  made.mesh_body = seed % 2 != 0;
+  return made;
+}
+
+Wrench set_down(const SetDown& what, ContactModel contact, bool as_meshes) {
+  SceneDescription scene;
+  scene.bodies.push_back(test::make_body(
+      {test::make_part(ShapeKind::kBox, {0.05, 0.03, 0.05}, {glm::dvec3(0.0, -0.03, 0.0), kUpright},
+                       as_meshes && what.mesh_body)}));
+  scene.bodies[0].models = {contact, BodyModel::kNone};
+  scene.bodies[0].models.region_threshold = 0.05;
+  scene.tools.push_back(test::make_tool({test::make_part(what.kind, what.half, {}, as_meshes)}));
+  PrepareOptions options;
+  options.settings.grid_side =
+      24;  // so that contact model patch tells an edge from the cells alone
+  Hand hand(scene, options);
+  constexpr double kGap = 1e-6;  // m
+  constexpr int kSteps = 40;
+  for (int step = 0; step <= kSteps; ++step) {
+    const double height = what.half.y + kGap - (what.depth + kGap) * step / kSteps;
+    hand.step_to({{glm::dvec3(0.003, height, -0.002), glm::angleAxis(what.yaw, kUp)}});
+  }
+  EXPECT_EQ(hand.clock().faults, 0U);
+  return hand.wrench();
+}
+
+// Depths of 1e-4 to 1e-2 of the half side: the bulge that a field without creases has beside its
+// edges, of 1e-3 of the side, carried up to a quarter of the force, and at one side of the plate.
+// What is left are the cells' parts under the plate's edges, of a grid of 24 cells a side.
+TEST(MeshToolTest, FlatMeshesSetDownLightlyPressAsTheirExactShapes) {
+  for (const ContactModel contact :
+       {ContactModel::kPaper, ContactModel::kMdr, ContactModel::kPatch, ContactModel::kWinkler}) {
+    for (unsigned seed = 0; seed < static_cast<unsigned>(test::trials_of(24, 4)); ++seed) {
+      const SetDown what = random_set_down(seed);
+      const Wrench exact = set_down(what, contact, false);
+      const Wrench mesh = set_down(what, contact, true);
+      const double force = glm::length(exact.force);
+      EXPECT_LT(glm::distance(mesh.force, exact.force), 0.01 * force)
+          << "seed " << seed << ", model " << static_cast<int>(contact);
+      EXPECT_LT(glm::distance(mesh.torque, exact.torque), 0.005 * force * what.half.x)
+          << "seed " << seed << ", model " << static_cast<int>(contact);
+    }
+  }
 }
 
 }  // namespace

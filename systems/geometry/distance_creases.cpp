@@ -18,13 +18,16 @@ constexpr double kSharp = 0.866;
 // of one.
 constexpr float kFlat = 0.966F;
 
+// Of the cell: where contacts do not ask any more, and where no corner of a cell with some of the
+// surface can be.
+constexpr double kAbove = 0.1;
+constexpr double kFarthest = 0.7;
 constexpr std::size_t kMostPlanes = 8;
 constexpr double kClose = 1e-4;  // of the cell: the planes are those of the faces
 
 /// What a sample counts. Contacts ask at the surface and below it; outside of a convex edge, where
 /// the distance is that to the edge itself, planes are only near it.
 double weight_of(const Distance& exact, double spacing) {
-  constexpr double kAbove = 0.1;
   return exact.value <= kAbove * spacing ? 1.0 : 0.05;
 }
 
@@ -94,7 +97,15 @@ glm::vec4 distance_at_crease(std::span<const DistanceNode> planes, const glm::ve
   return found;
 }
 
-bool may_have_crease(const CellNodes& nodes) {
+bool may_have_crease(const CellNodes& nodes, double spacing) {
+  const auto above = static_cast<float>(kFarthest * spacing);
+  bool near = false;
+  for (unsigned i = 0; i < kCorners; ++i) {
+    near = near || nodes.at(i).w <= above;
+  }
+  if (!near) {
+    return false;
+  }
   for (unsigned i = 0; i < kCorners; ++i) {
     for (unsigned j = 0; j < i; ++j) {
       if (glm::dot(glm::vec3(nodes.at(i)), glm::vec3(nodes.at(j))) < kFlat) {

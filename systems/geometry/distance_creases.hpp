@@ -23,8 +23,10 @@ namespace torsion::engine {
 glm::vec4 distance_at_crease(std::span<const DistanceNode> planes, const glm::vec3& offset,
                              bool concave);
 
-/// Whether the normals of a cell's corners differ by so much that it may hold a sharp edge.
-bool may_have_crease(const CellNodes& nodes);
+/// Whether a cell is at the surface or below it, and the normals of its corners differ by so much
+/// that it may hold a sharp edge.
+/// @param spacing  m
+bool may_have_crease(const CellNodes& nodes, double spacing);
 
 /// Where a cell's crease is fitted: 4 x 4 x 4 places, its corners and faces among them.
 inline constexpr std::size_t kCreaseSamples = 64;

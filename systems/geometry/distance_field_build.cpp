@@ -215,7 +215,7 @@ BrickCreases find_creases(const MeshDistance& mesh, const DistanceNode* nodes,
     const glm::uvec3 at(cell % subdivision, cell / subdivision % subdivision,
                         cell / (subdivision * subdivision));
     const CellNodes corners{nodes + at.z * layer + at.y * row + at.x, row, layer};
-    if (!may_have_crease(corners)) {
+    if (!may_have_crease(corners, spacing)) {
       continue;
     }
     std::array<Distance, kCreaseSamples> exact{};

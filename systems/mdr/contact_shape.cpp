@@ -156,6 +156,7 @@ Area area_of(const PlaceMoments& sums, std::uint32_t side, const glm::dvec2& sca
 /// What the cells show along a principal axis of the paraboloid.
 struct PrincipalAxis {
   Eigen::Vector2d direction;
+  double bend = 0.0;    // 1/m, >= 0
   double known = 0.0;   // apex_share
   double top = 0.0;     // m: its apex, where known
   double extent = 0.0;  // m
@@ -178,6 +179,11 @@ double apex_share(double bend, double spread, double depth) {
 // as wide, 1.4 where 5 times.
 constexpr double kFlatStamp = 4.0 / 3.0;
 constexpr double kCylinder = 0.8;
+
+/// Of a flat face the paraboloid's axes are those of rounding errors, and another pair each step.
+/// There the covered area's count: it counts as this much of the curvature with which the depth
+/// would end at the area's rim.
+constexpr double kAreaShare = 0.01;
 
 /// The apex of a paraboloid two cells wide is a quarter deeper than the nearest centres.
 constexpr double kBetweenCells = 1.25;
@@ -220,13 +226,14 @@ ContactShape fit_contact_shape(const RegionFrame& frame, std::uint32_t side,
   const double depth = std::max(fit.at(middle), 1e-300);
   set_sums(sums, area, middle, largest, shape);
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal;
-  principal.computeDirect(fit.curvature);
+  principal.computeDirect(fit.curvature + kAreaShare * 0.5 * depth * area.spread.inverse());
   std::array<PrincipalAxis, 2> axes;
   for (int k = 0; k < 2; ++k) {
     PrincipalAxis& axis = axes[static_cast<std::size_t>(k)];
     axis.direction = principal.eigenvectors().col(k);
     const double spread = axis.direction.dot(area.spread * axis.direction);
-    const double bend = std::max(principal.eigenvalues()(k), 0.0);
+    const double bend = std::max(axis.direction.dot(fit.curvature * axis.direction), 0.0);
+    axis.bend = bend;
     axis.known = apex_share(bend, spread, depth);
     axis.extent = 2.0 * std::sqrt(std::max(spread, 0.0));
     const double center = axis.direction.dot(area.center);
@@ -246,8 +253,8 @@ ContactShape fit_contact_shape(const RegionFrame& frame, std::uint32_t side,
   }
   shape.extent_1 = axes[0].extent;
   shape.extent_2 = axes[1].extent;
-  shape.curvature_1 = std::max(principal.eigenvalues()(0), 0.0);
-  shape.curvature_2 = std::max(principal.eigenvalues()(1), 0.0);
+  shape.curvature_1 = axes[0].bend;
+  shape.curvature_2 = axes[1].bend;
   shape.apex = {apex.x(), apex.y()};
   // Where the cells show little (a thin contact lies across them) the paraboloid may do anything
   // outside of them, but its depth is limited to what may lie between two cells.

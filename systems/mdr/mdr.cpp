@@ -343,7 +343,7 @@ constexpr System<StepContext> kMdrSolve[] = {
 const ContactLaw kMdrLaw{
     .model = ContactModel::kMdr,
     .moves_own_support = true,
-    .answers_from = 10.0,  // only when tools that pinch a body sway it
+    .answers_from = 0.5,
     .keeps = KeptColumns::kSpringLayers,
     .grid_side = 12,
     .solve = kMdrSolve,

@@ -54,7 +54,9 @@ INSTANTIATE_TEST_SUITE_P(
         Seed{24158, "CrookedBoxOnItsLongestEdge", true}, Seed{24179, "CapsuleOverARim"},
         Seed{21223, "FrictionOfTheLastStepOfAContact", true}, Seed{21347, "EdgeAlongAnEdge"},
         Seed{24096, "FaceBesideThatIsPressed", true}, Seed{23124, "NewCellsOnAnEdge", true},
-        Seed{31027, "MdrOnTwoPartsThatMeetAtAnEdge"}),
+        Seed{31027, "MdrOnTwoPartsThatMeetAtAnEdge"},
+        Seed{72102, "BoxOfTrianglesSetDownFlat", true}, Seed{24035, "RimsOfTriangles"},
+        Seed{62103, "MdrPuckAndBallOnASoftBody", true}, Seed{31238, "MdrTwoToolsOnASoftCapsule"}),
     [](const testing::TestParamInfo<Seed>& seed) { return std::string(seed.param.what); });
 
 }  // namespace

@@ -15,8 +15,8 @@
 namespace torsion::engine {
 namespace {
 
-constexpr double kFound = 1e-6;   // of the grid: so little is left to do; cells often tell no more
-constexpr double kTurned = 1e-9;  // rad: likewise
+constexpr double kFound = 1e-6;  // of the grid: so little is left to do; cells often tell no more
+constexpr double kLeastAngle = 1e-9;  // rad: likewise
 constexpr double kCellsAcross = 3.0;  // a band: from so many its direction can be told
 constexpr double kCellsTurned = 1.5;  // likewise, where it lies nearly along the grid
 constexpr double kBand = 0.2;  // width over length: of a contact that is longer than its grid
@@ -111,7 +111,7 @@ void find_band(const Grid& grid, const RegionPoints& contact, double start_depth
     CellBits covered = find_cells(grid, contact);
     const ContactAxes axes = contact_axes(grid, covered_moments(grid));
     // Of a band that is narrower than its cells, those tell no angle.
-    if (is_wide(grid, kCellsTurned) && std::abs(axes.angle) > kTurned) {
+    if (is_wide(grid, kCellsTurned) && std::abs(axes.angle) > kLeastAngle) {
       turn_axes(grid.frame, axes.angle);
       restart_heights(grid, start_depth);
       covered = find_cells(grid, contact);

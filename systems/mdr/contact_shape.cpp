@@ -162,15 +162,32 @@ struct PrincipalAxis {
   double extent = 0.0;  // m
 };
 
+// Of the fall of a whole paraboloid's depth from its apex to its rim: so much shows where the apex
+// is; a ball cut in the middle has 0.3 across the cut.
+constexpr double kShown = 0.7;
+constexpr double kUnknown = 0.2;
+
+constexpr double kAreaShare = 0.01;  // axes_from
+
 /// How well the cells show the apex along a principal axis, 0 to 1. The depth of a whole paraboloid
 /// falls by 2 bend spread = the depth of its apex from there to its rim. That of a flat contact,
 /// which ends at an edge, does not fall, and gradient / bend would be arbitrary.
 /// @param bend    1/m, curvature
 /// @param spread  m^2, variance of the place over the area
 double apex_share(double bend, double spread, double depth) {
-  constexpr double kShown = 0.7;  // of the fall; a ball cut in the middle has 0.3 across the cut
-  constexpr double kUnknown = 0.2;
   return smooth_step((2.0 * bend * spread / depth - kUnknown) / (kShown - kUnknown));
+}
+
+/// What the axes of a contact are taken from: the curvature. Of a flat face it is that of rounding
+/// errors, and another pair of axes each step; there the covered area decides, by a small part of
+/// the curvature with which the depth would end at the area's rim.
+Eigen::Matrix2d axes_from(const Eigen::Matrix2d& curvature, const Eigen::Matrix2d& spread,
+                          double depth) {
+  const double falls = 2.0 * (curvature * spread).trace() / depth;
+  const double flat = 1.0 - smooth_step(falls / kUnknown);
+  return flat > 0.0
+             ? Eigen::Matrix2d(curvature + flat * kAreaShare * 0.5 * depth * spread.inverse())
+             : curvature;
 }
 
 // How far the force of a tilted flat punch moves, over what the squares of the depth give. Flat and
@@ -179,11 +196,6 @@ double apex_share(double bend, double spread, double depth) {
 // as wide, 1.4 where 5 times.
 constexpr double kFlatStamp = 4.0 / 3.0;
 constexpr double kCylinder = 0.8;
-
-/// Of a flat face the paraboloid's axes are those of rounding errors, and another pair each step.
-/// There the covered area's count: it counts as this much of the curvature with which the depth
-/// would end at the area's rim.
-constexpr double kAreaShare = 0.01;
 
 /// The apex of a paraboloid two cells wide is a quarter deeper than the nearest centres.
 constexpr double kBetweenCells = 1.25;
@@ -226,7 +238,7 @@ ContactShape fit_contact_shape(const RegionFrame& frame, std::uint32_t side,
   const double depth = std::max(fit.at(middle), 1e-300);
   set_sums(sums, area, middle, largest, shape);
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal;
-  principal.computeDirect(fit.curvature + kAreaShare * 0.5 * depth * area.spread.inverse());
+  principal.computeDirect(axes_from(fit.curvature, area.spread, depth));
   std::array<PrincipalAxis, 2> axes;
   for (int k = 0; k < 2; ++k) {
     PrincipalAxis& axis = axes[static_cast<std::size_t>(k)];

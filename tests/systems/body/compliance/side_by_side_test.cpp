@@ -99,7 +99,7 @@ double swing_of(const std::vector<glm::dvec3>& force) {
   return most;
 }
 
-// While each of them met the other's answer a step late, the forces of half of such pairs went to
+// While each met the other's answer a step late, the forces of four in ten of such pairs went to
 // and fro by 5 to 35 %, or lost the contact: what both do to the block by friction, to turn it
 // between them, came back twice. The two models know the contacts in different ways, mdr as one
 // disc and patch by cells: the plate's force differs by up to 6 %.

@@ -32,7 +32,7 @@ struct DistanceField {
   double spacing = 0.0;           // m, between coarse nodes
   glm::uvec3 cells{0};            // coarse cells along each axis; nodes are one more
   std::uint32_t subdivision = 1;  // fine cells along one edge of a coarse cell
-  Range coarse_nodes;             // rows in `field_nodes`, x fastest
+  Range coarse_nodes;             // rows in `field_nodes`, x fastest; the field's others follow
   Range bricks;                   // rows in `field_bricks`, one for each coarse cell, x fastest
   Range creases;                  // rows in `field_creases`
 };
@@ -42,17 +42,19 @@ struct DistanceNode {
   glm::vec4 gradient_and_distance{0.0F};  // xyz: unitless, part frame; w: m
 };
 
-/// The fine grid in one coarse cell, where it has one. Written by: load.
+/// The fine grid in one coarse cell, where it has one. Its rows are relative to the field's first
+/// node and first crease. Written by: load.
 struct DistanceBrick {
-  std::uint32_t first_node = kNoRow;    // row in `field_nodes`, of (subdivision + 1)^3, or kNoRow
-  std::uint32_t first_crease = kNoRow;  // row in `field_creases`, of subdivision^3, x fastest, or
-                                        // kNoRow where the surface is smooth in all its cells
+  std::uint32_t first_node = kNoRow;    // of (subdivision + 1)^3, or kNoRow
+  std::uint32_t first_crease = kNoRow;  // of subdivision^3, x fastest, or kNoRow where the surface
+                                        // is smooth in all its cells
 };
 
-/// The planes whose edges cut a fine cell. Written by: load.
+/// The planes whose edges cut a fine cell. Its rows are relative to the field's first node. Written
+/// by: load.
 struct DistanceCrease {
-  std::uint32_t first_plane = kNoRow;  // row in `field_nodes`: normals, and distances of the cell's
-                                       // lowest corner from them
+  std::uint32_t first_plane = kNoRow;  // a node that holds a plane's normal, and the distance of
+                                       // the cell's lowest corner from it
   std::uint16_t planes = 0;            // how many; 0 where the surface is smooth
   std::uint16_t concave = 0;           // 1 where the innermost counts, 0 where the outermost does
 };

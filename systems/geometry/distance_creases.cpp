@@ -1,7 +1,7 @@
 #include "systems/geometry/distance_creases.hpp"
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
 

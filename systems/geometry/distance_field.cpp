@@ -68,8 +68,7 @@ Distance FieldDistance::operator()(double x, double y, double z) const {
   } else {
     const std::size_t row = field_.cells.x + 1;
     const std::size_t layer = row * (field_.cells.y + 1);
-    const CellNodes nodes{
-        nodes_ + field_.coarse_nodes.first + pz.cell * layer + py.cell * row + px.cell, row, layer};
+    const CellNodes nodes{nodes_ + pz.cell * layer + py.cell * row + px.cell, row, layer};
     blended = distance_in_cell(nodes, {px.fraction, py.fraction, pz.fraction}, field_.spacing);
   }
 

@@ -26,9 +26,9 @@ class FieldDistance {
   FieldDistance(const Model& model, std::uint32_t row)
       : field_(model.fields.at<DistanceField>(row)),
         inverse_spacing_(1.0 / field_.spacing),
-        nodes_(model.field_nodes.column<DistanceNode>().data()),
+        nodes_(model.field_nodes.column<DistanceNode>().data() + field_.coarse_nodes.first),
         bricks_(model.field_bricks.rows<DistanceBrick>(field_.bricks).data()),
-        creases_(model.field_creases.column<DistanceCrease>().data()) {}
+        creases_(model.field_creases.rows<DistanceCrease>(field_.creases).data()) {}
 
   /// @param x, y, z  m, part frame
   Distance operator()(double x, double y, double z) const;

@@ -46,11 +46,15 @@ class RowWalk {
  public:
   explicit RowWalk(const MeshDistance& mesh) : mesh_(mesh) {}
 
-  DistanceNode node_at(const glm::dvec3& point) {
+  Distance distance_at(const glm::dvec3& point) {
     const MeshDistance::Closest closest = mesh_.closest(point, hint_);
     hint_ = closest.triangle;
-    return {glm::vec4(glm::vec3(closest.distance.gradient),
-                      static_cast<float>(closest.distance.value))};
+    return closest.distance;
+  }
+
+  DistanceNode node_at(const glm::dvec3& point) {
+    const Distance distance = distance_at(point);
+    return {glm::vec4(glm::vec3(distance.gradient), static_cast<float>(distance.value))};
   }
 
  private:
@@ -210,7 +214,7 @@ BrickCreases find_creases(const MeshDistance& mesh, const DistanceNode* nodes,
   const std::size_t layer = row * row;
   BrickCreases found;
   found.cells.resize(std::size_t{subdivision} * subdivision * subdivision);
-  std::uint32_t hint = kNoRow;
+  RowWalk walk(mesh);
   for (std::uint32_t cell = 0; cell < found.cells.size(); ++cell) {
     const glm::uvec3 at(cell % subdivision, cell / subdivision % subdivision,
                         cell / (subdivision * subdivision));
@@ -221,10 +225,7 @@ BrickCreases find_creases(const MeshDistance& mesh, const DistanceNode* nodes,
     std::array<Distance, kCreaseSamples> exact{};
     for (std::size_t i = 0; i < kCreaseSamples; ++i) {
       const auto [x, y, z] = crease_sample(i);
-      const glm::dvec3 point = lowest + spacing * (glm::dvec3(at) + glm::dvec3(x, y, z));
-      const MeshDistance::Closest closest = mesh.closest(point, hint);
-      hint = closest.triangle;
-      exact[i] = closest.distance;
+      exact[i] = walk.distance_at(lowest + spacing * (glm::dvec3(at) + glm::dvec3(x, y, z)));
     }
     const CreaseFit fit = fit_crease(corners, spacing, exact);
     found.cells[cell] = {static_cast<std::uint32_t>(found.planes.size()),

@@ -167,8 +167,6 @@ struct PrincipalAxis {
 constexpr double kShown = 0.7;
 constexpr double kUnknown = 0.2;
 
-constexpr double kAreaShare = 0.01;  // axes_from
-
 /// How well the cells show the apex along a principal axis, 0 to 1. The depth of a whole paraboloid
 /// falls by 2 bend spread = the depth of its apex from there to its rim. That of a flat contact,
 /// which ends at an edge, does not fall, and gradient / bend would be arbitrary.
@@ -183,6 +181,7 @@ double apex_share(double bend, double spread, double depth) {
 /// the curvature with which the depth would end at the area's rim.
 Eigen::Matrix2d axes_from(const Eigen::Matrix2d& curvature, const Eigen::Matrix2d& spread,
                           double depth) {
+  constexpr double kAreaShare = 0.01;
   const double falls = 2.0 * (curvature * spread).trace() / depth;
   const double flat = 1.0 - smooth_step(falls / kUnknown);
   return flat > 0.0
@@ -244,12 +243,11 @@ ContactShape fit_contact_shape(const RegionFrame& frame, std::uint32_t side,
     PrincipalAxis& axis = axes[static_cast<std::size_t>(k)];
     axis.direction = principal.eigenvectors().col(k);
     const double spread = axis.direction.dot(area.spread * axis.direction);
-    const double bend = std::max(axis.direction.dot(fit.curvature * axis.direction), 0.0);
-    axis.bend = bend;
-    axis.known = apex_share(bend, spread, depth);
+    axis.bend = std::max(axis.direction.dot(fit.curvature * axis.direction), 0.0);
+    axis.known = apex_share(axis.bend, spread, depth);
     axis.extent = 2.0 * std::sqrt(std::max(spread, 0.0));
     const double center = axis.direction.dot(area.center);
-    axis.top = axis.known > 0.0 ? std::clamp(axis.direction.dot(fit.gradient) / bend,
+    axis.top = axis.known > 0.0 ? std::clamp(axis.direction.dot(fit.gradient) / axis.bend,
                                              center - axis.extent, center + axis.extent)
                                 : 0.0;
   }

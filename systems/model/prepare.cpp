@@ -121,19 +121,9 @@ Range append_rows(AnyTable& table, std::span<const T> rows) {
 
 std::uint32_t append_field(Model& model, const BuiltField& built) {
   DistanceField field = built.header;
-  const Range nodes = append_rows<DistanceNode>(model.field_nodes, built.nodes);
-  const Range bricks = append_rows<DistanceBrick>(model.field_bricks, built.bricks);
-  const Range creases = append_rows<DistanceCrease>(model.field_creases, built.creases);
-  for (DistanceBrick& brick : model.field_bricks.rows<DistanceBrick>(bricks)) {
-    brick.first_node += brick.first_node == kNoRow ? 0 : nodes.first;
-    brick.first_crease += brick.first_crease == kNoRow ? 0 : creases.first;
-  }
-  for (DistanceCrease& crease : model.field_creases.rows<DistanceCrease>(creases)) {
-    crease.first_plane += crease.planes == 0 ? 0 : nodes.first;
-  }
-  field.coarse_nodes.first += nodes.first;
-  field.bricks = bricks;
-  field.creases = creases;
+  field.coarse_nodes.first = append_rows<DistanceNode>(model.field_nodes, built.nodes).first;
+  field.bricks = append_rows<DistanceBrick>(model.field_bricks, built.bricks);
+  field.creases = append_rows<DistanceCrease>(model.field_creases, built.creases);
   return append_rows<DistanceField>(model.fields, {&field, 1}).first;
 }
 

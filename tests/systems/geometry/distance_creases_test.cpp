@@ -79,8 +79,8 @@ CreaseErrors errors_of(const SurfaceMesh& upright) {
     std::normal_distribution<double> coordinate;
     const glm::dquat turn =
         trial == 0 ? test::kUpright
-                   : glm::normalize(glm::dquat(coordinate(random), coordinate(random),
-                                               coordinate(random), coordinate(random)));
+                   : glm::normalize(glm::dquat{coordinate(random), coordinate(random),
+                                               coordinate(random), coordinate(random)});
     SurfaceMesh mesh = upright;
     for (glm::dvec3& position : mesh.positions) {
       position = turn * position;

@@ -252,6 +252,19 @@ TEST(DistanceFieldBuildTest, BytesAreTheFieldAndDamagedBytesAreNone) {
     brick.first_node = static_cast<std::uint32_t>(field.nodes.size());
   }
   EXPECT_FALSE(field_from_bytes(to_bytes(beyond)).has_value());
+  const BuiltField sharp = built(box_mesh(glm::dvec3(0.05)), {8, 2, 1});
+  ASSERT_FALSE(sharp.creases.empty());
+  EXPECT_TRUE(field_from_bytes(to_bytes(sharp)).has_value());
+  BuiltField planes_beyond = sharp;
+  for (DistanceCrease& crease : planes_beyond.creases) {
+    crease.first_plane = static_cast<std::uint32_t>(sharp.nodes.size());
+  }
+  EXPECT_FALSE(field_from_bytes(to_bytes(planes_beyond)).has_value());
+  BuiltField creases_beyond = sharp;
+  for (DistanceBrick& brick : creases_beyond.bricks) {
+    brick.first_crease = static_cast<std::uint32_t>(sharp.creases.size());
+  }
+  EXPECT_FALSE(field_from_bytes(to_bytes(creases_beyond)).has_value());
   BuiltField wide = field;
   wide.header.cells.x = 1'000'000;
   EXPECT_FALSE(field_from_bytes(to_bytes(wide)).has_value());

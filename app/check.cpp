@@ -1,5 +1,4 @@
 #include <memory>
-#include <tuple>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,6 +8,7 @@
 #include "app/scene_warnings.hpp"
 #include "app/session.hpp"
 #include "device/scripted_motion.hpp"
+#include "ecs/memory.hpp"
 #include "ecs/model_names.hpp"
 #include "scenes/load_gltf.hpp"
 #include "systems/scratch.hpp"
@@ -64,18 +64,6 @@ std::string parts_text(const std::vector<PartDescription>& parts) {
 const char* fixed_text(FixedKind kind) {
   constexpr const char* kNames[] = {"a point", "a face", "volumes"};
   return kNames[static_cast<std::size_t>(kind)];
-}
-
-/// What the tables of the physics world take when they are full, bytes.
-std::size_t memory_of(const World& world) {
-  std::size_t bytes = 0;
-  const auto add = [&bytes](const auto& table) {
-    table.each_column(
-        [&](auto /*rows*/, std::size_t row_size) { bytes += row_size * table.capacity(); });
-  };
-  std::apply([&add](const auto&... tables) { (add(tables), ...); }, world.model.tables());
-  std::apply([&add](const auto&... tables) { (add(tables), ...); }, world.state.tables());
-  return bytes;
 }
 
 /// What runs for one body, as `check` says it in words and as JSON.

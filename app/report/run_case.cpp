@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "ecs/memory.hpp"
 #include "systems/surface/surface_field.hpp"
 
 namespace torsion::engine {
@@ -77,18 +78,6 @@ std::vector<double> surface_twists(const ReferenceCase& reference_case,
     twists.push_back(around / static_cast<double>(kDirections.size()));
   }
   return twists;
-}
-
-std::size_t memory_of(const World& world) {
-  std::size_t bytes = 0;
-  const auto add = [&](const auto&... tables) {
-    (tables.each_column(
-         [&](std::span<const std::byte>, std::size_t row) { bytes += row * tables.capacity(); }),
-     ...);
-  };
-  std::apply(add, world.model.tables());
-  std::apply(add, world.state.tables());
-  return bytes;
 }
 
 double quantile(std::vector<double>& values, double share) {

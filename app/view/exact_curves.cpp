@@ -146,12 +146,12 @@ Curve exact_over_turn(const History& history, std::uint64_t generation,
 }
 
 Curve exact_limit(double normal_force, const ExactContact& contact) {
-  constexpr int kPoints = 40;
+  constexpr int kCurvePoints = 40;
   const double force = contact.friction * normal_force;
   const double radius = exact_radius(contact, normal_force);
   Curve curve{"exact", kLightCurve, {}, {}, true};
-  for (int i = 0; i <= kPoints; ++i) {
-    const double angle = 0.5 * std::numbers::pi * i / kPoints;
+  for (int i = 0; i <= kCurvePoints; ++i) {
+    const double angle = 0.5 * std::numbers::pi * i / kCurvePoints;
     const reference::SlidingSpinning load =
         reference::hertz_limit_surface(std::sin(angle), std::cos(angle));
     curve.x.push_back(force * load.force);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr ImU32 kLegendPaper = IM_COL32(250, 250, 252, 225);
 constexpr ImU32 kLegendInk = IM_COL32(25, 28, 33, 255);
-constexpr float kWidth = 236.0F;  // pixels
+constexpr float kLegendWidth = 236.0F;  // pixels
 constexpr float kPad = 8.0F;
 
 struct Row {
@@ -47,7 +47,7 @@ void draw_bar(ImDrawList& list, const DrawOptions& draw, ImVec2 at, float line) 
   const HeatScale scale = heat_scale(draw.heat_map, draw.heat_limit);
   list.AddText(at, kLegendInk, scale.title.c_str());
   at.y += line + 1.0F;
-  const float width = kWidth - 2.0F * kPad;
+  const float width = kLegendWidth - 2.0F * kPad;
   for (int i = 0; i < kSteps; ++i) {
     const glm::dvec3 color = 255.0 * heat_color(draw.heat_map, (i + 0.5) / kSteps);
     list.AddRectFilled(ImVec2(at.x + width * static_cast<float>(i) / kSteps, at.y),
@@ -85,9 +85,9 @@ void draw_legend(const ViewState& state, const glm::dvec2& picture) {
   const float line = ImGui::GetTextLineHeight();
   const float bar_height = bar ? 2.0F * line + 14.0F : 0.0F;
   const float height = bar_height + line * static_cast<float>(rows.size()) + 2.0F * kPad;
-  const ImVec2 low(static_cast<float>(picture.x) - kWidth - 6.0F, 6.0F);
+  const ImVec2 low(static_cast<float>(picture.x) - kLegendWidth - 6.0F, 6.0F);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  list.AddRectFilled(low, ImVec2(low.x + kWidth, low.y + height), kLegendPaper);
+  list.AddRectFilled(low, ImVec2(low.x + kLegendWidth, low.y + height), kLegendPaper);
   ImVec2 at(low.x + kPad, low.y + kPad);
   if (bar) {
     draw_bar(list, state.draw, at, line);

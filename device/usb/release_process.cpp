@@ -71,7 +71,7 @@ void take_entry(std::array<Watched, kMostRows>& devices, const Entry& entry) {
 /// The program's claims end with its open files, which may be a moment after its socket.
 bool claim(int node, unsigned interface) {
   constexpr int kTries = 200;
-  constexpr timespec kPause{0, 200000};  // ns: 40 ms in all
+  constexpr timespec kBetweenTries{0, 200000};  // ns: 40 ms in all
   for (int i = 0; i < kTries; ++i) {
     if (::ioctl(node, USBDEVFS_CLAIMINTERFACE, &interface) == 0) {
       return true;
@@ -79,7 +79,7 @@ bool claim(int node, unsigned interface) {
     if (errno != EBUSY) {
       return false;
     }
-    ::nanosleep(&kPause, nullptr);
+    ::nanosleep(&kBetweenTries, nullptr);
   }
   return false;
 }

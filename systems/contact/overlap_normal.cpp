@@ -28,9 +28,9 @@ struct LineFall {
 };
 
 /// Along one line of cells.
-class Line {
+class CellLine {
  public:
-  Line(const Grid& grid, const Axis& axis, std::size_t first)
+  CellLine(const Grid& grid, const Axis& axis, std::size_t first)
       : columns_(grid.scratch.cell_columns),
         axis_(axis),
         first_(first + axis.spare * axis.stride),
@@ -157,7 +157,7 @@ class Line {
 double mean_fall(const Grid& grid, const Axis& axis) {
   LineFall sum;
   for (std::size_t line = 0; line < grid.side; ++line) {
-    const LineFall one = Line(grid, axis, line * axis.across).fall();
+    const LineFall one = CellLine(grid, axis, line * axis.across).fall();
     sum.fall += one.fall;
     sum.length += one.length;
   }

@@ -12,18 +12,18 @@ constexpr unsigned kCorners = 8;
 
 // Cosine of 30 degrees, from which on modellers call an edge sharp: the facets of a round thing of
 // more than 12 sides are smooth.
-constexpr double kSharp = 0.866;
+constexpr double kSharpEdge = 0.866;
 
 // Cosine of 15 degrees: a cell whose corners differ by less holds no sharp edge, or next to nothing
 // of one.
-constexpr float kFlat = 0.966F;
+constexpr float kFlatEnough = 0.966F;
 
 // Of the cell: where contacts do not ask any more, and where no corner of a cell with some of the
 // surface can be.
 constexpr double kAbove = 0.1;
-constexpr double kFarthest = 0.7;
+constexpr double kFarthestPlane = 0.7;
 constexpr std::size_t kMostPlanes = 8;
-constexpr double kClose = 1e-4;  // of the cell: the planes are those of the faces
+constexpr double kOnFaces = 1e-4;  // of the cell: the planes are those of the faces
 
 /// What a sample counts. Contacts ask at the surface and below it; outside of a convex edge, where
 /// the distance is that to the edge itself, planes are only near it.
@@ -50,7 +50,7 @@ double error_at(std::span<const DistanceNode> planes, const glm::vec3& offset, b
 bool has_sharp_edge(const std::array<Distance, kCreaseSamples>& exact) {
   for (std::size_t i = 0; i < kCreaseSamples; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (glm::dot(exact[i].gradient, exact[j].gradient) < kSharp) {
+      if (glm::dot(exact[i].gradient, exact[j].gradient) < kSharpEdge) {
         return true;
       }
     }
@@ -74,7 +74,7 @@ std::vector<DistanceNode> choose_planes(double spacing,
         most = error;
       }
     }
-    if (most <= kClose * spacing) {
+    if (most <= kOnFaces * spacing) {
       break;
     }
     planes.push_back(plane_at(exact[worst], offset_of(worst, spacing)));
@@ -98,7 +98,7 @@ glm::vec4 distance_at_crease(std::span<const DistanceNode> planes, const glm::ve
 }
 
 bool may_have_crease(const CellNodes& nodes, double spacing) {
-  const auto above = static_cast<float>(kFarthest * spacing);
+  const auto above = static_cast<float>(kFarthestPlane * spacing);
   bool near = false;
   for (unsigned i = 0; i < kCorners; ++i) {
     near = near || nodes.at(i).w <= above;
@@ -108,7 +108,7 @@ bool may_have_crease(const CellNodes& nodes, double spacing) {
   }
   for (unsigned i = 0; i < kCorners; ++i) {
     for (unsigned j = 0; j < i; ++j) {
-      if (glm::dot(glm::vec3(nodes.at(i)), glm::vec3(nodes.at(j))) < kFlat) {
+      if (glm::dot(glm::vec3(nodes.at(i)), glm::vec3(nodes.at(j))) < kFlatEnough) {
         return true;
       }
     }

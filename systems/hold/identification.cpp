@@ -21,7 +21,7 @@ constexpr double kSpringTurn = 0.5;    // rad
 constexpr double kDamperTime = 0.05;   // s: damping over stiffness of what holds it
 constexpr double kLearnTime = 2.0;     // s
 // Before it is swung, while a person lets go of it: it may be heavy, and nobody knows how heavy.
-constexpr double kStiffer = 5.0;
+constexpr double kFirmly = 5.0;
 constexpr double kLearnSooner = 0.3;   // s
 constexpr double kLeash = 0.02;        // m: farther from its place its place follows
 constexpr double kMostWeight = 3.0;    // of the swinging force
@@ -117,7 +117,7 @@ double holding_force(Identification& identification, std::size_t axis, double pe
   const bool firmly = translates && !is_swung;
   const double largest = identification.largest[group_of(axis)];
   const double stiffness =
-      (firmly ? kStiffer : 1.0) * largest / (translates ? kSpringReach : kSpringTurn);
+      (firmly ? kFirmly : 1.0) * largest / (translates ? kSpringReach : kSpringTurn);
   const double pull = -stiffness * identification.way[axis];
   const double learnt = pull * period / (firmly ? kLearnSooner : kLearnTime);
   identification.weight[axis] = std::clamp(identification.weight[axis] + learnt,
@@ -151,7 +151,7 @@ struct Weighed {
 };
 
 /// What two unknowns of a + b u come to, none of them below `floor`.
-struct Line {
+struct FittedLine {
   double a = 0.0;
   double b = 0.0;
 };
@@ -170,7 +170,7 @@ struct LineSums {
     y += weight * value;
     uy += weight * at * value;
   }
-  [[nodiscard]] Line line() const {
+  [[nodiscard]] FittedLine line() const {
     const double determinant = s * uu - u * u;
     if (!(determinant > 1e-12 * s * uu)) {
       return {s > 0.0 ? y / s : 0.0, 0.0};
@@ -178,13 +178,13 @@ struct LineSums {
     return {(uu * y - u * uy) / determinant, (s * uy - u * y) / determinant};
   }
   /// Neither below zero: energy is only taken.
-  [[nodiscard]] Line rising_line() const {
-    const Line free = line();
+  [[nodiscard]] FittedLine rising_line() const {
+    const FittedLine free = line();
     if (free.a >= 0.0 && free.b >= 0.0) {
       return free;
     }
-    return free.a < 0.0 ? Line{0.0, std::max(0.0, uu > 0.0 ? uy / uu : 0.0)}
-                        : Line{std::max(0.0, s > 0.0 ? y / s : 0.0), 0.0};
+    return free.a < 0.0 ? FittedLine{0.0, std::max(0.0, uu > 0.0 ? uy / uu : 0.0)}
+                        : FittedLine{std::max(0.0, s > 0.0 ? y / s : 0.0), 0.0};
   }
 };
 
@@ -199,8 +199,8 @@ AxisDynamics fit_with_delay(const std::array<Weighed, N>& responses, double dela
     out_phase.add(relative * one.rate * one.rate, 4.0 / (std::numbers::pi * one.speed),
                   z.imag() / one.rate);
   }
-  const Line stiff = in_phase.line();
-  const Line loss = out_phase.rising_line();
+  const FittedLine stiff = in_phase.line();
+  const FittedLine loss = out_phase.rising_line();
   AxisDynamics fit{true, stiff.b, loss.a, loss.b, stiff.a, delay, 0.0};
   double square = 0.0;
   double all = 0.0;

@@ -16,14 +16,14 @@ namespace {
 // Hz, of the three axes of a group. Whole numbers, so that none is seen in the window of another;
 // above what a hand does on purpose, below where a device of 100 Hz or a tenth of a millimetre's
 // count sees nothing.
-constexpr std::array<double, 3> kFirst = {8.0, 10.0, 12.0};
+constexpr std::array<double, 3> kFirstRates = {8.0, 10.0, 12.0};
 constexpr std::array<double, 3> kSecond = {15.0, 18.0, 21.0};
 constexpr std::array<double, 2> kUndriven = {6.0, 23.0};
-constexpr double kRise = 0.1;    // s: by then hand and device have forgotten the beginning
-constexpr double kWindow = 1.0;  // s
-constexpr double kFall = 0.03;   // s
-constexpr double kClear = 2.0;   // times the hand's own motion
-constexpr double kSure = 2.0;    // times what the sum of mass and damping is uncertain by
+constexpr double kRise = 0.1;      // s: by then hand and device have forgotten the beginning
+constexpr double kWindow = 1.0;    // s
+constexpr double kFall = 0.03;     // s
+constexpr double kClear = 2.0;     // times the hand's own motion
+constexpr double kSureSign = 2.0;  // times what the sum of mass and damping is uncertain by
 constexpr double kPhase =
     0.1;  // share of the stiffness that an unknown delay may turn into damping
 constexpr std::uint8_t kMostWindows = 4;  // then it is not seen
@@ -75,7 +75,7 @@ AxisAnswer answer_of(const SignCheck& check, std::size_t axis) {
   if (!(std::abs(x1) > kClear * noise1) || !(std::abs(x2) > kClear * noise2)) {
     return {};
   }
-  const double w1 = turn_rate(kFirst[axis]);
+  const double w1 = turn_rate(kFirstRates[axis]);
   const double w2 = turn_rate(kSecond[axis]);
   const double force = check.windows * amplitude(check);
   const std::complex<double> d1 = force / x1;
@@ -86,7 +86,7 @@ AxisAnswer answer_of(const SignCheck& check, std::size_t axis) {
   const double uncertain = std::abs(d1) * noise1 / std::abs(x1) +
                            std::abs(d2) * noise2 / std::abs(x2) +
                            kPhase * std::max(std::abs(d1), std::abs(d2));
-  return {std::abs(sum) > kSure * uncertain, sum < -kSure * uncertain};
+  return {std::abs(sum) > kSureSign * uncertain, sum < -kSureSign * uncertain};
 }
 
 /// m: how much all axes answered to the force along one.
@@ -150,11 +150,11 @@ bool is_inside_out_in_phase(const SignCheck& check) {
 /// Whether an axis did not answer because the hand moved too much; a handle that nothing moves
 /// would not answer another time either.
 bool was_moved(const SignCheck& check, std::uint32_t resolved) {
-  constexpr double kStill = 1e-9;  // m, rad
+  constexpr double kStandsStill = 1e-9;  // m, rad
   bool moved = false;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const bool open = is_checked(check, axis) && (resolved >> axis & 1U) == 0U;
-    moved = moved || (open && std::abs(check.noise[axis][0]) > kStill);
+    moved = moved || (open && std::abs(check.noise[axis][0]) > kStandsStill);
   }
   return moved;
 }
@@ -256,7 +256,7 @@ SignVerdict take_sign_sample(SignCheck& check, const Pose& measured, double peri
     return weight * std::polar(1.0, -turn_rate(frequency) * then);
   };
   for (std::size_t by = 0; by < 3; ++by) {
-    const std::complex<double> first = wave(kFirst[by]);
+    const std::complex<double> first = wave(kFirstRates[by]);
     for (std::size_t of = 0; of < 3; ++of) {
       check.first[of][by] += first * way[static_cast<glm::length_t>(of)];
     }
@@ -282,7 +282,7 @@ Wrench sign_probe(const SignCheck& check) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (is_checked(check, axis)) {
       probe[static_cast<glm::length_t>(axis)] =
-          size * (std::cos(turn_rate(kFirst[axis]) * check.time) +
+          size * (std::cos(turn_rate(kFirstRates[axis]) * check.time) +
                   std::cos(turn_rate(kSecond[axis]) * check.time));
     }
   }

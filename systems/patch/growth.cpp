@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kLeastGrowth = 1.25;
 constexpr double kMostGrowth = 8.0;
-constexpr double kDeeper = 1.1;  // times the depth of the last step: a ball contact wider by 5 %
+constexpr double kSlightlyDeeper =
+    1.1;  // times the depth of the last step: a ball contact wider by 5 %
 constexpr double kMuchDeeper = 4.0;      // what was loaded says less then than the overlap
 constexpr double kMostWider = 16.0;      // in one step
 constexpr double kLoadedOverlap = 0.85;  // of the overlap's extent: a ball's contact takes 0.71, a
@@ -183,7 +184,7 @@ double deepening(const State& state, std::uint32_t region) {
 }
 
 bool has_grown(const PatchState& state) {
-  return state.grown != 0 && state.depth <= kDeeper * (state.depth - state.deepened);
+  return state.grown != 0 && state.depth <= kSlightlyDeeper * (state.depth - state.deepened);
 }
 
 void grow_with_depth(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
@@ -194,7 +195,7 @@ void grow_with_depth(StepContext& context, std::uint32_t region, const RegionPoi
   // without it; where the body gives way as a whole, its motion is not all that they change by.
   const double deeper =
       depth_before > 0.0 ? std::min(depth / depth_before, deepening(context.state, region)) : 1.0;
-  if (deeper <= kDeeper) {
+  if (deeper <= kSlightlyDeeper) {
     return;
   }
   PatchState& state = context.state.regions.at<PatchState>(region);

@@ -16,8 +16,8 @@ xdotool windowfocus "$id" key Escape
 wait "$bare"
 
 # Short scenes, then the gallery with the validation layers.
-"$torsion" view "$looping" --seconds 15 --json >looping.json
-"$torsion" view "$once" --seconds 8 --json >once.json
+"$torsion" view "$looping" --seconds 7 --json >looping.json
+"$torsion" view "$once" --seconds 5 --json >once.json
 export VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation
 export VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT
 open_window --seconds 3000

@@ -24,6 +24,14 @@ namespace {
 /// interpolation between ports could go below that.
 constexpr double kStiffest = -0.75;
 
+/// Coefficient of friction below which a contact counts as free to slide: it would stick for less
+/// than this part of its depth, and what is left of the equations from step to step is as much.
+constexpr double kHolds = 1e-3;
+
+/// Of the stiffness of a contact that sticks: what one that is free has against sliding and
+/// turning, so that there is a root to divide by.
+constexpr double kFree = 1e-4;
+
 /// A symmetric compliance over the contact's own: its eigenvalues, and the factors that make it a
 /// compliance again.
 struct RelativeCompliance {
@@ -155,8 +163,13 @@ SupportFit& support_fit_of(const CompliantBody& body, const SupportedRegion& sup
 
 StiffnessRoot stiffness_root(const CompliantBody& body, const SupportedRegion& supported) {
   const RegionFrame& frame = body.state.regions.at<RegionFrame>(supported.region);
-  const StuckStiffness stuck = stuck_stiffness(body.model, body.state, supported.region,
+  StuckStiffness stuck = stuck_stiffness(body.model, body.state, supported.region,
                                                support_fit_of(body, supported).radius);
+  const Friction& friction = body.model.bodies.at<Friction>(body.row);
+  if (std::max(friction.static_friction, friction.dynamic_friction) < kHolds) {
+    stuck.along_tangents *= kFree;
+    stuck.about_normal *= kFree;
+  }
   Vector6 root;
   root << stuck.along_tangents, stuck.along_tangents, stuck.along_normal, stuck.about_tangents.x,
       stuck.about_tangents.y, stuck.about_normal;

@@ -4,11 +4,13 @@
 #include <array>
 #include <bit>
 #include <numeric>
+#include <optional>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
 #include "ecs/assert.hpp"
+#include "systems/contact/moved_surface.hpp"
 #include "systems/contact/region_wrenches.hpp"
 #include "systems/contact/scratch.hpp"
 #include "systems/math/disjoint_sets.hpp"
@@ -364,6 +366,46 @@ void find_points(ContactSearch& search) {
   }
 }
 
+bool has_region(const State& state, std::uint32_t tool, std::uint32_t body) {
+  return std::ranges::any_of(state.regions.column<RegionIdentity>(),
+                             [tool, body](const RegionIdentity& region) {
+                               return region.tool == tool && region.body == body;
+                             });
+}
+
+/// A tool's first contact is sought where the material is. One that has regions is seen by each of
+/// them from its own material; only where it has left the rest shape is it asked whether it would
+/// touch the material as the other tools have it.
+/// @param search  its pose may be changed
+/// @return whether it would
+bool find_points_of_pair(const StepContext& context, std::uint32_t tool, std::uint32_t body,
+                         ContactSearch& search) {
+  ContactScratch& scratch = search.scratch;
+  const std::size_t before = scratch.points.size();
+  const bool has = has_region(context.state, tool, body);
+  if (has) {
+    find_points(search);
+    if (scratch.points.size() > before) {
+      return false;
+    }
+  }
+  const auto moved = seen_from_moved_surface(context, tool, body, search.tool_in_body);
+  if (has && !moved) {
+    return false;
+  }
+  search.tool_in_body = moved.value_or(search.tool_in_body);
+  find_points(search);
+  if (!has) {
+    return false;
+  }
+  const bool touches = scratch.points.size() > before;
+  scratch.points.resize(before);
+  for (const Candidate& candidate : scratch.candidates) {
+    scratch.sample_states[candidate.sample].point = kNoRow;
+  }
+  return touches;
+}
+
 }  // namespace
 
 void detect_contacts(StepContext& context) {
@@ -379,13 +421,13 @@ void detect_contacts(StepContext& context) {
       ContactSearch search{
           model, scratch, model.bodies.at<OwnedRows>(body).parts, model.tools.at<OwnedRows>(tool),
           relative(state.bodies.at<BodyPose>(body).now, state.tools.at<ToolPose>(tool).now)};
-      find_points(search);
+      const bool touches_moved = find_points_of_pair(context, tool, body, search);
       const Range points{first, static_cast<std::uint32_t>(scratch.points.size()) - first};
       const auto first_near = static_cast<std::uint32_t>(scratch.near_pairs.size());
       pair_neighbours(search, first);
       const Range near{first_near,
                        static_cast<std::uint32_t>(scratch.near_pairs.size()) - first_near};
-      scratch.pairs.push_back({tool, body, points, near, 0});
+      scratch.pairs.push_back({tool, body, points, near, 0, touches_moved});
       if (too_deep(search, model.bodies.at<Bounds>(body),
                    {scratch.points.data() + first, points.count})) {
         raise(state.clock, Fault::kTooDeep);

@@ -258,10 +258,11 @@ void note_splits(const Model& model, State& state, ContactScratch& scratch,
 
 /// Whether a region's cells are to tell if its contact goes on, because the tool has no points at
 /// all: they are few where a tool's samples are far apart, and are sought under the body's rest
-/// shape, beside which friction may drag a deflected body until all of the tool's are. Where there
-/// are points, they decide which contacts exist.
+/// shape, beside which friction may drag a deflected body until all of the tool's are, and other
+/// tools push it. Where there are points, they decide which contacts exist.
 bool lives_without_points(const State& state, const ContactPair& pair, std::uint32_t region) {
-  return pair.points.count == 0 && state.regions.at<RegionNormal>(region).force > 0.0;
+  return pair.points.count == 0 &&
+         (pair.touches_moved || state.regions.at<RegionNormal>(region).force > 0.0);
 }
 
 /// Regions that own no cluster go on without points, or end.

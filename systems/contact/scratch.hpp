@@ -30,6 +30,7 @@ struct ContactPair {
   Range points;  // in Scratch::points
   Range near;    // in Scratch::near_pairs, rows counted from points.first
   std::uint32_t clusters = 0;
+  bool touches_moved = false;  // no points, but it would touch the material as others have it
 };
 
 /// A candidate sample while one pair is searched.

@@ -405,6 +405,7 @@ void deform_body(StepContext& context, std::uint32_t row) {
 const BodyLaw kComplianceLaw{
     .model = BodyModel::kCompliance,
     .moves_as_a_whole = true,
+    .motion_at = motion_of_material,
     .begin = begin_support,
     .begin_split = begin_split_support,
     .split = split_support,

@@ -3,10 +3,12 @@
 
 #include <Eigen/Core>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include "systems/body/compliance/supported_regions.hpp"
 #include "systems/contact/law.hpp"
 #include "systems/contact/scratch.hpp"
+#include "systems/math/frames.hpp"
 
 namespace torsion::engine {
 namespace {
@@ -58,27 +60,69 @@ void move_by_part(const Matrix6& motion, const Matrix6& known, const Vector6& lo
   support.rotation_by_others += rotation;
 }
 
+/// The load to which the body has answered. A contact model that does not know the answer to its
+/// load in the step in which that is found is a step ahead of the body with it.
+Vector6 answered_load(const CompliantBody& body, std::uint32_t region, const SupportFit& here) {
+  if (law_of(body.model, body.row).by_cells) {
+    return contact_load(body.model, body.state, region, here).wrench;
+  }
+  const auto& wrench = body.state.regions.at<RegionReaction>(region).wrench;
+  return Eigen::Map<const Vector6>(wrench.data());
+}
+
+/// How the loads of a body's regions move the material under a contact.
+/// @param counts  of a region's row: whether its load does
+template <class Counts>
+Vector6 motion_under(const CompliantBody& body, const ContactEllipse& contact,
+                     const Counts& counts) {
+  const State& state = body.state;
+  SupportFit there;
+  Vector6 motion = Vector6::Zero();
+  for (std::uint32_t other = 0; other < state.regions.size(); ++other) {
+    const RegionIdentity& identity = state.regions.at<RegionIdentity>(other);
+    const SupportFit& here = state.support_fits.at<SupportFit>(block_of(identity));
+    if (identity.body != body.row || !counts(other) || here.reach == 0.0) {
+      continue;
+    }
+    if (there.reach == 0.0) {
+      fit_support(body.ports, contact, there);
+      there.share = 1.0;
+    }
+    motion += motion_of(body, there, here) * answered_load(body, other, here);
+  }
+  return motion;
+}
+
 }  // namespace
+
+Pose motion_of_material(const Model& model, State& state, std::uint32_t row, std::uint32_t tool,
+                        const SurfaceSpot& spot) {
+  RegionFrame frame;
+  frame.origin = spot.point;
+  frame.half_size = glm::dvec2(spot.radius);
+  turn_normal_to(frame, spot.normal);
+  const CompliantBody body{model, state, row, ports_of(model, row)};
+  const Vector6 motion = motion_under(body, disc_of_grid(frame), [&](std::uint32_t region) {
+    return state.regions.at<RegionIdentity>(region).tool != tool;
+  });
+  const glm::dvec3 rotation(motion[3], motion[4], motion[5]);
+  const double angle = glm::length(rotation);
+  Pose moved;
+  if (angle > 0.0) {
+    moved.rotation = glm::angleAxis(angle, rotation / angle);
+  }
+  moved.position =
+      spot.point - moved.rotation * spot.point + glm::dvec3(motion[0], motion[1], motion[2]);
+  return moved;
+}
 
 void begin_support(const Model& model, State& state, std::uint32_t region) {
   const std::uint32_t row = state.regions.at<RegionIdentity>(region).body;
   RegionSupport& support = state.regions.at<RegionSupport>(region);
   support = RegionSupport{};
   const CompliantBody body{model, state, row, ports_of(model, row)};
-  SupportFit there;
-  Vector6 motion = Vector6::Zero();
-  for (std::uint32_t other = 0; other < state.regions.size(); ++other) {
-    const RegionIdentity& identity = state.regions.at<RegionIdentity>(other);
-    const SupportFit& here = state.support_fits.at<SupportFit>(block_of(identity));
-    if (identity.body != row || other == region || here.reach == 0.0) {
-      continue;
-    }
-    if (there.reach == 0.0) {
-      fit_support(body.ports, disc_of_grid(state.regions.at<RegionFrame>(region)), there);
-      there.share = 1.0;
-    }
-    motion += motion_of(body, there, here) * contact_load(model, state, other, here).wrench;
-  }
+  const Vector6 motion = motion_under(body, disc_of_grid(state.regions.at<RegionFrame>(region)),
+                                      [region](std::uint32_t other) { return other != region; });
   support.about = state.regions.at<RegionFrame>(region).origin;
   support.translation = {motion[0], motion[1], motion[2]};
   support.rotation = {motion[3], motion[4], motion[5]};

@@ -6,6 +6,7 @@
 
 #include "ecs/model.hpp"
 #include "ecs/state.hpp"
+#include "systems/contact/support/body_law.hpp"
 #include "systems/contact/support/contact_load.hpp"
 #include "systems/contact/support/support_fit.hpp"
 
@@ -78,6 +79,10 @@ Matrix6 layer_motion(const Model& model, std::uint32_t body, const ContactEllips
                      double thickness);
 
 // For regions that begin, split off or end: kComplianceLaw (contact/support/body_law.hpp).
+
+/// BodyLaw::motion_at.
+Pose motion_of_material(const Model& model, State& state, std::uint32_t row, std::uint32_t tool,
+                        const SurfaceSpot& spot);
 
 /// BodyLaw::begin. Writes RegionSupport.
 void begin_support(const Model& model, State& state, std::uint32_t region);

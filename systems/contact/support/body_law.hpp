@@ -4,9 +4,18 @@
 
 #include <cstdint>
 
+#include <glm/vec3.hpp>
+
 #include "ecs/state.hpp"
 
 namespace torsion::engine {
+
+/// A spot of a body's rest surface.
+struct SurfaceSpot {
+  glm::dvec3 point{0.0};   // m, body
+  glm::dvec3 normal{0.0};  // body, unit, outward
+  double radius = 0.0;     // m
+};
 
 /// One body model: how the material under a region has been moved by what presses on the body.
 struct BodyLaw {
@@ -14,6 +23,11 @@ struct BodyLaw {
   /// The body as a whole deflects under its contacts, and moves the material under each
   /// (RegionSupport).
   bool moves_as_a_whole = false;
+
+  /// Where the body's regions, but for a tool's, have moved the material of a spot: a point of it
+  /// at rest at x is at to_outer(result, x), body. Null: nowhere.
+  Pose (*motion_at)(const Model& model, State& state, std::uint32_t body, std::uint32_t tool,
+                    const SurfaceSpot& spot) = nullptr;
 
   // What it knows of a region when that begins, splits off or ends; null: nothing.
   /// A region begins: finds where the body's other regions have moved the material under it.

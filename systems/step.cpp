@@ -9,6 +9,7 @@
 #include "systems/body/skeleton/skeleton.hpp"
 #include "systems/check_columns.hpp"
 #include "systems/contact/detect_contacts.hpp"
+#include "systems/contact/group_points.hpp"
 #include "systems/contact/group_regions.hpp"
 #include "systems/contact/law.hpp"
 #include "systems/contact/region_grid.hpp"

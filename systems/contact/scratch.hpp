@@ -11,7 +11,7 @@
 #include "ecs/column.hpp"
 #include "ecs/components.hpp"
 #include "ecs/state.hpp"
-#include "systems/contact/detect_contacts.hpp"
+#include "systems/contact/group_points.hpp"
 #include "systems/geometry/distance.hpp"
 
 namespace torsion::engine {

@@ -10,7 +10,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "ecs/model_names.hpp"
-#include "systems/contact/detect_contacts.hpp"
+#include "systems/contact/group_points.hpp"
 #include "systems/contact/law.hpp"
 #include "systems/contact/region_grid.hpp"
 #include "systems/geometry/distance.hpp"

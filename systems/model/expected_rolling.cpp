@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include "systems/contact/detect_contacts.hpp"
+#include "systems/contact/group_points.hpp"
 #include "systems/geometry/distance.hpp"
 #include "systems/geometry/surface_piece.hpp"
 #include "systems/math/frames.hpp"

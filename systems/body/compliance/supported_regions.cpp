@@ -164,7 +164,7 @@ SupportFit& support_fit_of(const CompliantBody& body, const SupportedRegion& sup
 StiffnessRoot stiffness_root(const CompliantBody& body, const SupportedRegion& supported) {
   const RegionFrame& frame = body.state.regions.at<RegionFrame>(supported.region);
   StuckStiffness stuck = stuck_stiffness(body.model, body.state, supported.region,
-                                               support_fit_of(body, supported).radius);
+                                         support_fit_of(body, supported).radius);
   const Friction& friction = body.model.bodies.at<Friction>(body.row);
   if (std::max(friction.static_friction, friction.dynamic_friction) < kHolds) {
     stuck.along_tangents *= kFree;

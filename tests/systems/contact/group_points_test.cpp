@@ -1,11 +1,11 @@
+#include "systems/contact/group_points.hpp"
+
 #include <algorithm>
 #include <random>
 #include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-
-#include "systems/contact/detect_contacts.hpp"
 
 namespace torsion::engine {
 namespace {

@@ -14,7 +14,8 @@ namespace {
 struct Seed {
   std::uint64_t seed;
   const char* what;
-  bool chosen = false;  // for every run; the others with all cases
+  bool chosen = false;   // for every run; the others with all cases
+  bool at_edge = false;  // random_scene_at_edge
 };
 
 class RandomSceneTest : public testing::TestWithParam<Seed> {};
@@ -23,7 +24,8 @@ TEST_P(RandomSceneTest, KeepsAllProperties) {
   if (test::is_left_out(GetParam().chosen)) {
     GTEST_SKIP() << test::kLeftOut;
   }
-  const RandomScene scene = random_scene(GetParam().seed);
+  const RandomScene scene =
+      GetParam().at_edge ? random_scene_at_edge(GetParam().seed) : random_scene(GetParam().seed);
   const std::optional<std::string> broken = broken_property(scene);
   EXPECT_FALSE(broken.has_value()) << *broken << "\n" << scene.text;
 }
@@ -56,7 +58,9 @@ INSTANTIATE_TEST_SUITE_P(
         Seed{24096, "FaceBesideThatIsPressed", true}, Seed{23124, "NewCellsOnAnEdge", true},
         Seed{31027, "MdrOnTwoPartsThatMeetAtAnEdge"},
         Seed{72102, "BoxOfTrianglesSetDownFlat", true}, Seed{24035, "RimsOfTriangles"},
-        Seed{62103, "MdrPuckAndBallOnASoftBody", true}, Seed{31238, "MdrTwoToolsOnASoftCapsule"}),
+        Seed{62103, "MdrPuckAndBallOnASoftBody", true}, Seed{31238, "MdrTwoToolsOnASoftCapsule"},
+        Seed{90181, "PaperOnABodyThatAnotherToolTilts", false, true},
+        Seed{62088, "RimsOnABlockThatAnotherToolMoves"}),
     [](const testing::TestParamInfo<Seed>& seed) { return std::string(seed.param.what); });
 
 }  // namespace

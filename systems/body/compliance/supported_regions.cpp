@@ -26,11 +26,11 @@ constexpr double kStiffest = -0.75;
 
 /// Coefficient of friction below which a contact counts as free to slide: it would stick for less
 /// than this part of its depth, and what is left of the equations from step to step is as much.
-constexpr double kHolds = 1e-3;
+constexpr double kSlippery = 1e-3;
 
 /// Of the stiffness of a contact that sticks: what one that is free has against sliding and
 /// turning, so that there is a root to divide by.
-constexpr double kFree = 1e-4;
+constexpr double kFreeToSlide = 1e-4;
 
 /// A symmetric compliance over the contact's own: its eigenvalues, and the factors that make it a
 /// compliance again.
@@ -166,9 +166,9 @@ StiffnessRoot stiffness_root(const CompliantBody& body, const SupportedRegion& s
   StuckStiffness stuck = stuck_stiffness(body.model, body.state, supported.region,
                                          support_fit_of(body, supported).radius);
   const Friction& friction = body.model.bodies.at<Friction>(body.row);
-  if (std::max(friction.static_friction, friction.dynamic_friction) < kHolds) {
-    stuck.along_tangents *= kFree;
-    stuck.about_normal *= kFree;
+  if (std::max(friction.static_friction, friction.dynamic_friction) < kSlippery) {
+    stuck.along_tangents *= kFreeToSlide;
+    stuck.about_normal *= kFreeToSlide;
   }
   Vector6 root;
   root << stuck.along_tangents, stuck.along_tangents, stuck.along_normal, stuck.about_tangents.x,

@@ -291,24 +291,25 @@ bool has_region(const State& state, std::uint32_t tool, std::uint32_t body) {
 bool find_points_of_pair(const StepContext& context, std::uint32_t tool, std::uint32_t body,
                          ContactSearch& search) {
   ContactScratch& scratch = search.scratch;
-  const std::size_t before = scratch.points.size();
-  const bool has = has_region(context.state, tool, body);
-  if (has) {
+  const Pose at_rest = search.tool_in_body;
+  const auto moved = [&] {
+    return seen_from_moved_surface(context, tool, body, at_rest);
+  };
+  if (!has_region(context.state, tool, body)) {
+    search.tool_in_body = moved().value_or(at_rest);
     find_points(search);
-    if (scratch.points.size() > before) {
-      return false;
-    }
-  }
-  const auto moved = seen_from_moved_surface(context, tool, body, search.tool_in_body);
-  if (has && !moved) {
     return false;
   }
-  search.tool_in_body = moved.value_or(search.tool_in_body);
+  const std::size_t before = scratch.points.size();
   find_points(search);
-  if (!has) {
+  const std::optional<Pose> pose = scratch.points.size() > before ? std::nullopt : moved();
+  if (!pose) {
     return false;
   }
+  search.tool_in_body = *pose;
+  find_points(search);
   const bool touches = scratch.points.size() > before;
+  // They are where the material was at rest, and its regions are not.
   scratch.points.resize(before);
   for (const Candidate& candidate : scratch.candidates) {
     scratch.sample_states[candidate.sample].point = kNoRow;

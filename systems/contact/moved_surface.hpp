@@ -12,7 +12,7 @@ namespace torsion::engine {
 /// have moved it. A body that gives way as a whole may be pushed against a tool by others, or away
 /// from it: contact begins where the material is, not where it was at rest.
 /// @param tool_in_body  where the tool is
-/// @return nothing where they have not moved it
+/// @return nothing where they have not moved it, or not as far as to the tool
 std::optional<Pose> seen_from_moved_surface(const StepContext& context, std::uint32_t tool,
                                             std::uint32_t body, const Pose& tool_in_body);
 

@@ -157,10 +157,7 @@ Pose moved(const State& state, std::uint32_t tool, const Vector6& motion) {
   const Pose& now = state.tools.at<ToolPose>(tool).now;
   const glm::dvec3 center = state.tools.at<ToolMotion>(tool).mass_center;
   const glm::dvec3 shift(motion[0], motion[1], motion[2]);
-  const glm::dvec3 turn(motion[3], motion[4], motion[5]);
-  const double angle = glm::length(turn);
-  const glm::dquat rotation =
-      angle > 0.0 ? glm::angleAxis(angle, turn / angle) : glm::dquat(1.0, 0.0, 0.0, 0.0);
+  const glm::dquat rotation = rotation_by({motion[3], motion[4], motion[5]});
   return {center + shift + rotation * (now.position - center),
           glm::normalize(rotation * now.rotation)};
 }

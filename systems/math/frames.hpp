@@ -29,6 +29,12 @@ inline glm::dvec3 rotation_vector(glm::dquat q) {
   return imaginary * (2.0 * std::atan2(sine, q.w) / sine);
 }
 
+/// The rotation of a rotation vector, rad.
+inline glm::dquat rotation_by(const glm::dvec3& vector) {
+  const double angle = glm::length(vector);
+  return angle > 0.0 ? glm::angleAxis(angle, vector / angle) : glm::dquat(1.0, 0.0, 0.0, 0.0);
+}
+
 /// Rotation vector from `from` to `to`, rad, the short way round; outer axes.
 inline glm::dvec3 turn_between(const glm::dquat& from, const glm::dquat& to) {
   return rotation_vector(to * glm::conjugate(from));

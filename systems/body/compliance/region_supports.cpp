@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <glm/geometric.hpp>
-#include <glm/gtc/quaternion.hpp>
 
 #include "systems/body/compliance/supported_regions.hpp"
 #include "systems/contact/law.hpp"
@@ -105,15 +104,9 @@ Pose motion_of_material(const Model& model, State& state, std::uint32_t row, std
   const Vector6 motion = motion_under(body, disc_of_grid(frame), [&](std::uint32_t region) {
     return state.regions.at<RegionIdentity>(region).tool != tool;
   });
-  const glm::dvec3 rotation(motion[3], motion[4], motion[5]);
-  const double angle = glm::length(rotation);
-  Pose moved;
-  if (angle > 0.0) {
-    moved.rotation = glm::angleAxis(angle, rotation / angle);
-  }
-  moved.position =
-      spot.point - moved.rotation * spot.point + glm::dvec3(motion[0], motion[1], motion[2]);
-  return moved;
+  const glm::dquat rotation = rotation_by({motion[3], motion[4], motion[5]});
+  return {spot.point - rotation * spot.point + glm::dvec3(motion[0], motion[1], motion[2]),
+          rotation};
 }
 
 void begin_support(const Model& model, State& state, std::uint32_t region) {

@@ -25,7 +25,8 @@ namespace {
 constexpr double kStiffest = -0.75;
 
 /// Coefficient of friction below which a contact counts as free to slide: it would stick for less
-/// than this part of its depth, and what is left of the equations from step to step is as much.
+/// than this part of its depth. A pinched column still shakes at 1e-4 when such a contact counts as
+/// one that sticks, and no longer at this.
 constexpr double kSlippery = 1e-3;
 
 /// Of the stiffness of a contact that sticks: what one that is free has against sliding and

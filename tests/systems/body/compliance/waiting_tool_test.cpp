@@ -2,47 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "tests/support/allocation_guard.hpp"
 #include "tests/support/contact_scenes.hpp"
-#include "tests/support/directions.hpp"
+#include "tests/support/pinched_column.hpp"
 
 namespace torsion::engine {
 namespace {
 
-constexpr double kHeight = 0.1;  // m, of a column that stands on its end
 constexpr double kWidth = 0.03;  // m
-constexpr double kBall = 0.02;   // m, radius
-constexpr double kLevel = 0.08;  // m, of both balls
 
-/// Two balls, one on each side of the column.
 SceneDescription column(ContactModel contact) {
-  SceneDescription scene;
-  BodyDescription body =
-      test::make_body({test::make_part(ShapeKind::kBox, {0.5 * kWidth, 0.5 * kHeight, 0.5 * kWidth},
-                                       {{0.0, 0.5 * kHeight, 0.0}, test::kUpright})});
-  body.elasticity = {1e6, 0.3, 1100.0};
-  body.friction = {0.0, 0.0};
-  body.fixed.kind = FixedKind::kFace;
-  body.fixed.point = glm::dvec3(0.0);
-  body.fixed.normal = {0.0, 1.0, 0.0};
-  body.models = {contact, BodyModel::kCompliance};
-  scene.bodies = {body};
-  for (int tool = 0; tool < 2; ++tool) {
-    scene.tools.push_back(
-        test::make_tool({test::make_part(ShapeKind::kSphere, glm::dvec3(kBall))}));
-  }
-  return scene;
+  return test::pinched_column(kWidth, contact, 0.0);
 }
 
-/// @param push  m: of the left ball into the column's place at rest
-/// @param gap   m: from that to the right ball
+/// @param gap  m: from the column at rest to the right ball
 std::vector<Pose> poses_at(double push, double gap) {
-  const double x = 0.5 * kWidth + kBall;
-  return {{{push - x, kLevel, 0.0}, test::kUpright}, {{x + gap, kLevel, 0.0}, test::kUpright}};
+  return test::pinch_poses(kWidth, push, -gap);
 }
 
 struct Forces {
@@ -118,6 +98,7 @@ TEST_P(WaitingToolTest, EndsAsIfItHadBeenThereBefore) {
       hand->step_to(poses_at(kPush, kGap));
     }
   }
+  // What is left between them: supports that were fitted for other places of the same contact.
   const Forces expected = forces_of(follows);
   EXPECT_GT(expected.right, 5.0);
   for (const test::Hand* const hand : {&waits, &comes}) {
@@ -129,22 +110,36 @@ TEST_P(WaitingToolTest, EndsAsIfItHadBeenThereBefore) {
 
 // Where the column was at rest there is nothing any more.
 TEST_P(WaitingToolTest, FeelsNothingWhereTheBodyHasBeenPushedAway) {
-  SceneDescription scene = column(GetParam());
-  test::Hand alone(scene);
-  test::Hand both(scene);
-  const double x = 0.5 * kWidth + kBall;
-  const auto at = [x](double push, double level, double z) {
-    return Pose{{push - x, level, z}, test::kUpright};
+  constexpr double kPushedAt = 0.06;  // m, height
+  constexpr double kFeltAt = 0.095;   // m
+  test::Hand alone(column(GetParam()));
+  test::Hand both(column(GetParam()));
+  const auto at = [](double inside, double height) {
+    Pose pose = test::pinch_poses(kWidth, inside, 0.0)[0];
+    pose.position.y = height;
+    return pose;
   };
   for (int i = 0; i <= kSteps; ++i) {
     const double push = std::min(1.0, 2.0 * i / kSteps) * kPush;
     const double other = std::max(0.0, 2.0 * i / kSteps - 1.0) * 2e-3 - 1e-3;  // to 1 mm inside
-    const Pose pusher = at(push, 0.6 * kHeight, 0.0);
-    alone.step_to({pusher, at(-1.0, 0.0, 0.0)});
-    both.step_to({pusher, at(other, 0.95 * kHeight, 0.0)});
+    alone.step_to({at(push, kPushedAt), at(-1.0, kFeltAt)});
+    both.step_to({at(push, kPushedAt), at(other, kFeltAt)});
     ASSERT_EQ(both.wrench(1).force.x, 0.0) << "step " << i;
     ASSERT_EQ(both.wrench(0).force.x, alone.wrench(0).force.x) << "step " << i;
   }
+}
+
+TEST_P(WaitingToolTest, AStepTakesNothingFromTheHeap) {
+  test::Hand hand(column(GetParam()));
+  std::uint64_t taken = 0;
+  for (int i = 0; i <= kSteps; ++i) {
+    const std::vector<Pose> poses = poses_at(kPush * i / kSteps, kGap);
+    const test::AllocationGuard guard;
+    hand.step_to(poses);
+    taken += guard.allocations();
+  }
+  EXPECT_GT(forces_of(hand).right, 0.0);
+  EXPECT_EQ(taken, 0U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, WaitingToolTest,

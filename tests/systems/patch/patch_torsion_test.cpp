@@ -21,13 +21,22 @@ struct TorqueBounds {
   double unloading;  // Masing's rule doubles what the first loading has
 };
 
-// Grids of 12 and 16 cells a side have 62 to 78 and 120 to 150 cells in contact. How well their
-// staircase of a rim stands for the circle is luck: over ten depths the torque is 0.5 to 0.8 % and
-// 0.2 to 0.5 % off, and on the way back, where Masing's rule doubles what the first loading
-// has, 1.3 and 0.75 % at worst. Bounds are a third more.
-constexpr TorqueBounds kCoarse{12, 2, 0.01, 0.017};
+// How far a contact fills its grid depends on how it was pressed: grids of 12, 16 and 24 cells a
+// side have 60 to 78, 116 to 154 and 270 to 370 cells in contact. How well their staircase of a rim
+// stands for the circle is luck: over 24 depths, each pressed in 100 to 2000 steps, the torque is
+// up to 1.1, 0.5 and 0.25 % off, and on the way back, where Masing's rule doubles what the first
+// loading has, 1.7, 0.8 and 0.35 %. Bounds are a fifth to a third more.
+constexpr TorqueBounds kCoarse{12, 2, 0.014, 0.02};
 constexpr TorqueBounds kFine{16, 2, 0.0065, 0.01};
-constexpr TorqueBounds kFinest{24, 40, 0.0026, 0.004};
+constexpr TorqueBounds kFinest{24, 40, 0.0033, 0.0045};
+
+// The worst of those among them.
+struct Press {
+  double depth = 0.0;  // over kBallDepth
+  int steps = 0;
+};
+constexpr Press kPresses[] = {{1.0, 300},  {1.3, 300},  {1.36, 500},
+                              {1.56, 500}, {1.68, 700}, {1.88, 700}};
 
 // The goals, of loading and unloading: 2 % with 64 cells in contact, 0.7 % with 144.
 double goal(int cells) {
@@ -63,16 +72,19 @@ class PatchTorsionTest : public testing::TestWithParam<TorqueBounds> {};
 
 TEST_P(PatchTorsionTest, TwistAndUnloadingFollowLubkin) {
   const TorqueBounds& resolution = GetParam();
-  for (const double depth : {1.0, 1.3, 1.5, 1.7, 1.8}) {
+  for (const Press& press : kPresses) {
+    SCOPED_TRACE(press.depth);
     BallScene scene;
     scene.side = resolution.side;
     scene.iterations = resolution.iterations;
     PressedBall ball(scene);
-    ball.press(depth * kBallDepth, 300);
+    ball.press(press.depth * kBallDepth, press.steps);
+    // The last regrid's change of force fades.
+    ball.press(ball.depth(), 20);
     const TorqueErrors errors = twist_and_back(ball);
-    EXPECT_LE(errors.loading, resolution.loading) << depth;
-    EXPECT_LE(errors.unloading, resolution.unloading) << depth;
-    EXPECT_LE(std::max(errors.loading, errors.unloading), goal(ball.loaded_cells())) << depth;
+    EXPECT_LE(errors.loading, resolution.loading);
+    EXPECT_LE(errors.unloading, resolution.unloading);
+    EXPECT_LE(std::max(errors.loading, errors.unloading), goal(ball.loaded_cells()));
   }
 }
 

@@ -8,9 +8,11 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "systems/contact/group_points.hpp"
 #include "systems/contact/moved_surface.hpp"
 #include "systems/contact/region_wrenches.hpp"
 #include "systems/contact/scratch.hpp"
+#include "systems/math/disjoint_sets.hpp"
 #include "systems/math/frames.hpp"
 
 namespace torsion::engine {
@@ -220,25 +222,48 @@ void add_point(ContactScratch& scratch, std::uint32_t sample, const ContactPoint
   }
 }
 
-/// Pairs of contact points whose samples are neighbours, with rows counted from `first`.
-void pair_neighbours(const ContactSearch& search, std::uint32_t first) {
-  ContactScratch& scratch = search.scratch;
-  for (const Candidate& candidate : scratch.candidates) {
-    const std::uint32_t point = scratch.sample_states[candidate.sample].point;
-    if (point == kNoRow) {
+/// Links the points of one sample with those of its neighbours that come before it, or after it, in
+/// the order of samples.
+void link_neighbours(const ContactSearch& search, std::uint32_t row, std::uint32_t first,
+                     double threshold, bool after, PointLinks& links) {
+  const ContactScratch& scratch = search.scratch;
+  const std::uint32_t point = scratch.sample_states[row].point;
+  for (const std::uint32_t neighbour : search.model.samples.at<SurfaceSample>(row).neighbours) {
+    if (neighbour == kNoRow || (search.tool.samples.first + neighbour > row) != after) {
       continue;
     }
-    const SurfaceSample& sample = search.model.samples.at<SurfaceSample>(candidate.sample);
-    for (const std::uint32_t neighbour : sample.neighbours) {
-      if (neighbour == kNoRow) {
-        continue;
+    const SampleState& state = scratch.sample_states[search.tool.samples.first + neighbour];
+    if (state.stamp != scratch.stamp || state.point == kNoRow ||
+        links.parent[state.point - first] == links.parent[point - first]) {
+      continue;
+    }
+    const glm::dvec3 gap = scratch.points[state.point].position - scratch.points[point].position;
+    if (glm::dot(gap, gap) < threshold * threshold &&
+        link(links.parent, state.point - first, point - first)) {
+      links.sets -= 1;
+    }
+  }
+}
+
+/// Links points of neighbouring samples that are closer than `threshold`, until all are one set.
+/// Neighbourhood is mutual as a rule, so that the neighbours before each sample mostly do.
+/// @param first  of the points
+/// @return how many sets are left
+std::uint32_t link_points(const ContactSearch& search, std::uint32_t first, double threshold) {
+  ContactScratch& scratch = search.scratch;
+  PointLinks links =
+      no_links(std::span(scratch.parent).subspan(first, scratch.points.size() - first));
+  for (const bool after : {false, true}) {
+    for (const Candidate& candidate : scratch.candidates) {
+      if (links.sets <= 1) {
+        return links.sets;
       }
-      const SampleState& state = scratch.sample_states[search.tool.samples.first + neighbour];
-      if (state.stamp == scratch.stamp && state.point != kNoRow) {
-        scratch.near_pairs.push_back({point - first, state.point - first});
+      if (scratch.sample_states[candidate.sample].point != kNoRow) {
+        link_neighbours(search, candidate.sample, first, threshold, after, links);
       }
     }
   }
+  return links.sets;
 }
 
 /// When the tool is deeper than half of the body, or half of its surface is inside, the nearest
@@ -324,7 +349,6 @@ void detect_contacts(StepContext& context) {
   State& state = context.state;
   ContactScratch& scratch = context.scratch;
   scratch.points.clear();
-  scratch.near_pairs.clear();
   scratch.pairs.clear();
   for (std::uint32_t tool = 0; tool < model.tools.size(); ++tool) {
     for (std::uint32_t body = 0; body < model.bodies.size(); ++body) {
@@ -334,11 +358,9 @@ void detect_contacts(StepContext& context) {
           relative(state.bodies.at<BodyPose>(body).now, state.tools.at<ToolPose>(tool).now)};
       const bool touches_moved = find_points_of_pair(context, tool, body, search);
       const Range points{first, static_cast<std::uint32_t>(scratch.points.size()) - first};
-      const auto first_near = static_cast<std::uint32_t>(scratch.near_pairs.size());
-      pair_neighbours(search, first);
-      const Range near{first_near,
-                       static_cast<std::uint32_t>(scratch.near_pairs.size()) - first_near};
-      scratch.pairs.push_back({tool, body, points, near, 0, touches_moved});
+      const std::uint32_t sets =
+          link_points(search, first, model.bodies.at<BodyModels>(body).region_threshold);
+      scratch.pairs.push_back({tool, body, points, sets, 0, touches_moved});
       if (too_deep(search, model.bodies.at<Bounds>(body),
                    {scratch.points.data() + first, points.count})) {
         raise(state.clock, Fault::kTooDeep);

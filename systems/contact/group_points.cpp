@@ -12,24 +12,6 @@
 namespace torsion::engine {
 namespace {
 
-/// Links pairs that are closer than `threshold`, until all points are one group.
-/// @return how many groups are left
-std::uint32_t link_near(std::span<const glm::dvec3> points, std::span<const NearPair> near,
-                        double threshold, std::span<std::uint32_t> parent) {
-  auto left = static_cast<std::uint32_t>(points.size());
-  for (const NearPair& pair : near) {
-    if (parent[pair.first] == parent[pair.second]) {
-      continue;
-    }
-    const glm::dvec3 gap = points[pair.second] - points[pair.first];
-    if (glm::dot(gap, gap) < threshold * threshold && link(parent, pair.first, pair.second) &&
-        --left == 1) {
-      break;
-    }
-  }
-  return left;
-}
-
 int longest_axis(std::span<const glm::dvec3> points) {
   glm::dvec3 lowest = points[0];
   glm::dvec3 highest = points[0];
@@ -80,26 +62,31 @@ std::uint32_t number_groups(std::span<std::uint32_t> parent, std::uint32_t count
 
 }  // namespace
 
-std::uint32_t group_points(std::span<const glm::dvec3> points, std::span<const NearPair> near,
-                           double threshold, std::span<std::uint32_t> order,
-                           std::span<std::uint32_t> parent, std::span<std::uint32_t> groups) {
+PointLinks no_links(std::span<std::uint32_t> parent) {
+  std::iota(parent.begin(), parent.end(), 0U);
+  return {parent, static_cast<std::uint32_t>(parent.size())};
+}
+
+std::uint32_t group_points(std::span<const glm::dvec3> points, double threshold,
+                           const PointLinks& links, std::span<std::uint32_t> order,
+                           std::span<std::uint32_t> groups) {
   const auto count = static_cast<std::uint32_t>(points.size());
-  if (count == 0) {
-    return 0;
-  }
-  TORSION_ASSERT(order.size() >= count && parent.size() >= count && groups.size() >= count);
-  std::iota(parent.begin(), parent.begin() + count, 0U);
-  if (link_near(points, near, threshold, parent) == 1) {
+  TORSION_ASSERT(order.size() >= count && links.parent.size() == count && groups.size() >= count);
+  if (links.sets <= 1) {
     std::ranges::fill(groups.first(count), 0U);
-    return 1;
+    return links.sets;
   }
-  link_by_sweep(points, threshold, order.first(count), parent);
-  return number_groups(parent, count, groups);
+  link_by_sweep(points, threshold, order.first(count), links.parent);
+  return number_groups(links.parent, count, groups);
 }
 
 void group_contact_points(StepContext& context) {
   ContactScratch& scratch = context.scratch;
   for (ContactPair& pair : scratch.pairs) {
+    pair.clusters = pair.linked_sets;
+    if (pair.clusters <= 1) {
+      continue;  // all points are of cluster 0 already
+    }
     const std::span<ContactPoint> points(scratch.points.data() + pair.points.first,
                                          pair.points.count);
     scratch.cluster_points.clear();
@@ -108,11 +95,11 @@ void group_contact_points(StepContext& context) {
     }
     const std::span<std::uint32_t> order(scratch.order);
     const std::span<std::uint32_t> groups = order.subspan(order.size() / 2);
-    const double threshold = context.model.bodies.at<BodyModels>(pair.body).region_threshold;
-    const std::span<const NearPair> near(scratch.near_pairs.data() + pair.near.first,
-                                         pair.near.count);
-    pair.clusters = group_points(scratch.cluster_points, near, threshold,
-                                 order.first(order.size() / 2), scratch.parent, groups);
+    const std::span<std::uint32_t> parent =
+        std::span(scratch.parent).subspan(pair.points.first, pair.points.count);
+    pair.clusters = group_points(scratch.cluster_points,
+                                 context.model.bodies.at<BodyModels>(pair.body).region_threshold,
+                                 {parent, pair.linked_sets}, order.first(order.size() / 2), groups);
     for (std::size_t i = 0; i < points.size(); ++i) {
       points[i].cluster = groups[i];
     }

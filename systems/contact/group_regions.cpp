@@ -180,6 +180,9 @@ void match_by_overlap(const Model& model, const State& state, ContactScratch& sc
     const RegionCells cells(model, state, region);
     for (const ContactPoint& point : points) {
       scratch.overlaps[point.cluster] += cells.overlap_with(point.position);
+      if (pair.clusters == 1 && scratch.overlaps[0] > 0.0) {
+        break;  // there is nothing to choose
+      }
     }
     const auto best = std::ranges::max_element(scratch.overlaps);
     if (best == scratch.overlaps.end() || *best <= 0.0) {
@@ -187,7 +190,7 @@ void match_by_overlap(const Model& model, const State& state, ContactScratch& sc
     }
     ClusterOwner& owner = scratch.owners[static_cast<std::size_t>(best - scratch.overlaps.begin())];
     if (owner.region == kNoRow) {
-      owner = {region, *best};
+      owner.region = region;
     }
   }
 }
@@ -213,7 +216,7 @@ void match_by_distance(const Model& model, const State& state, ContactScratch& s
       }
     }
     if (cluster != kNoRow) {
-      scratch.owners[cluster] = {region, 0.0};
+      scratch.owners[cluster].region = region;
     }
   }
 }

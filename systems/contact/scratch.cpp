@@ -35,10 +35,9 @@ void ContactScratch::reserve(const Model& model, const State& state) {
   // Every sample of every tool may be inside every body.
   const std::size_t most_points = std::size_t{samples} * bodies;
   points.reserve(most_points);
-  near_pairs.reserve(most_points * kSampleNeighbours);
   pairs.reserve(std::size_t{model.tools.size()} * bodies);
   order.assign(2 * std::size_t{samples}, 0);
-  parent.assign(samples, 0);
+  parent.assign(most_points, 0);
   cluster_points.reserve(samples);
   owners.reserve(samples);
   overlaps.reserve(std::size_t{kMaxRegionsPerBody} * samples);

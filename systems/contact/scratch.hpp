@@ -11,7 +11,6 @@
 #include "ecs/column.hpp"
 #include "ecs/components.hpp"
 #include "ecs/state.hpp"
-#include "systems/contact/group_points.hpp"
 #include "systems/geometry/distance.hpp"
 
 namespace torsion::engine {
@@ -28,7 +27,8 @@ struct ContactPair {
   std::uint32_t tool = 0;
   std::uint32_t body = 0;
   Range points;  // in Scratch::points
-  Range near;    // in Scratch::near_pairs, rows counted from points.first
+  // Of points, when those of neighbouring samples are linked (Scratch::parent).
+  std::uint32_t linked_sets = 0;
   std::uint32_t clusters = 0;
   bool touches_moved = false;  // no points, but it would touch the material as others have it
 };
@@ -51,7 +51,6 @@ struct SampleState {
 struct ClusterOwner {
   std::uint32_t region =
       kNoRow;  // row in `regions`; kNoRow: nobody continues it, a new region forms
-  double overlap = 0.0;
   std::uint32_t split_from = kNoRow;  // nobody continues it, but it lies over this region
 };
 
@@ -141,11 +140,10 @@ struct ContactScratch {
   std::uint32_t stamp = 0;
   std::vector<Candidate> candidates;
   std::vector<ContactPoint> points;
-  std::vector<NearPair> near_pairs;  // points of neighbouring samples
   std::vector<ContactPair> pairs;
   // group_points
+  std::vector<std::uint32_t> parent;  // (points) of one in the sets of its pair's linked points
   std::vector<std::uint32_t> order;
-  std::vector<std::uint32_t> parent;
   std::vector<glm::dvec3> cluster_points;
   // group_regions
   std::vector<ClusterOwner> owners;          // (kMaxRegionsPerBody) of one pair's clusters

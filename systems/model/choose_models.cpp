@@ -148,7 +148,7 @@ std::pair<double, std::uint32_t> extent_of_groups(std::span<const glm::dvec3> po
   std::vector<std::uint32_t> order(points.size());
   std::vector<std::uint32_t> parent(points.size());
   std::vector<std::uint32_t> groups(points.size());
-  const std::uint32_t count = group_points(points, {}, threshold, order, parent, groups);
+  const std::uint32_t count = group_points(points, threshold, no_links(parent), order, groups);
   double radius = 0.0;
   for (std::uint32_t group = 0; group < count; ++group) {
     glm::dvec3 lowest(1e300);

@@ -72,7 +72,7 @@ std::vector<TouchedPlace> new_places(const Model& model, std::uint32_t body, std
   std::vector<std::uint32_t> parent(points.size());
   std::vector<std::uint32_t> groups(points.size());
   const std::uint32_t count = group_points(
-      on_body, {}, model.bodies.at<BodyModels>(body).region_threshold, order, parent, groups);
+      on_body, model.bodies.at<BodyModels>(body).region_threshold, no_links(parent), order, groups);
   std::vector<TouchedPlace> places(count);
   std::vector<const TouchingPoint*> deepest(count, nullptr);
   std::vector<double> depths(count, 0.0);

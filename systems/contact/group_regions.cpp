@@ -268,6 +268,37 @@ bool lives_without_points(const State& state, const ContactPair& pair, std::uint
          (pair.touches_moved || state.regions.at<RegionNormal>(region).force > 0.0);
 }
 
+/// The oldest region of the pair whose contact this one shares, or kNoRow: no points tell that, but
+/// the cells of both.
+std::uint32_t heir_by_cells(const Model& model, const State& state, const ContactScratch& scratch,
+                            const ContactPair& pair, std::uint32_t region) {
+  for (std::uint32_t other = 0; other < region; ++other) {
+    if (of_pair(state.regions.at<RegionIdentity>(other), pair) &&
+        std::ranges::find(scratch.ended_regions, other) == scratch.ended_regions.end() &&
+        touch(model, state, region, other)) {
+      return other;
+    }
+  }
+  return kNoRow;
+}
+
+/// A region goes on without points, or ends in another one.
+void go_on_without_points(StepContext& context, const ContactPair& pair, std::uint32_t region) {
+  const Model& model = context.model;
+  State& state = context.state;
+  const std::uint32_t heir = heir_by_cells(model, state, context.scratch, pair, region);
+  if (heir == kNoRow) {
+    follow_contact(context, region, {pair.points, kNoRow});
+    return;
+  }
+  end_region(model, state, region, heir);
+  context.scratch.ended_regions.push_back(region);
+  const ContactLaw& law = law_of(model, pair.body);
+  if (law.join != nullptr) {
+    law.join(context, region, heir);  // whose grid is where its contact is by now
+  }
+}
+
 /// Regions that own no cluster go on without points, or end.
 void end_or_go_on(StepContext& context, const ContactPair& pair,
                   std::span<const ContactPoint> points) {
@@ -280,7 +311,7 @@ void end_or_go_on(StepContext& context, const ContactPair& pair,
       continue;
     }
     if (lives_without_points(state, pair, region)) {
-      follow_contact(context, region, {pair.points, kNoRow});
+      go_on_without_points(context, pair, region);
     } else {
       end_region(model, state, region, heir_of(model, state, scratch, region, points));
       scratch.ended_regions.push_back(region);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -8,9 +9,11 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "ecs/assert.hpp"
 #include "systems/contact/grid_cells.hpp"
 #include "systems/contact/group_regions.hpp"
 #include "systems/geometry/bounds.hpp"
+#include "systems/geometry/distance.hpp"
 #include "systems/math/disjoint_sets.hpp"
 #include "systems/math/frames.hpp"
 
@@ -118,8 +121,7 @@ std::uint32_t cluster_on(const RegionCover& cover, std::span<const ContactPoint>
   return on == points.end() ? kNoRow : on->cluster;
 }
 
-/// Whether a covered cell of one lies on one of the other or beside it.
-bool touch(const RegionCover& one, const RegionCover& other) {
+bool covers_touch(const RegionCover& one, const RegionCover& other) {
   const double reach = glm::length(one.frame.half_size) + glm::length(other.frame.half_size);
   if (glm::distance(one.finder.origin, other.finder.origin) > reach ||
       glm::dot(one.normal, other.normal) < kLeastAgreement) {
@@ -176,7 +178,7 @@ void join_on(const Model& model, const State& state, std::uint32_t region, const
       continue;
     }
     const RegionCover beside(model, state, other);
-    if (!touch(cover, beside)) {
+    if (!covers_touch(cover, beside)) {
       continue;
     }
     const std::uint32_t neighbour = cluster_on(beside, points);
@@ -201,8 +203,14 @@ class ClusterBoxes {
   }
 
   /// How many clusters, of those it has a box for, may have points on a region or beside it.
+  [[nodiscard]] bool has_all() const { return count_ <= boxes_.size(); }
+
+  [[nodiscard]] bool near(std::uint32_t one, std::uint32_t other, double reach) const {
+    return boxes_meet(boxes_[one], boxes_[other], reach);
+  }
+
   [[nodiscard]] std::size_t near(const State& state, std::uint32_t region) const {
-    if (count_ > boxes_.size()) {
+    if (!has_all()) {
       return count_;
     }
     const RegionFrame& frame = state.regions.at<RegionFrame>(region);
@@ -221,6 +229,81 @@ class ClusterBoxes {
   std::uint32_t count_;
 };
 
+/// The point of a cluster that is nearest to a place.
+const glm::dvec3& nearest_of(std::uint32_t cluster, std::span<const ContactPoint> points,
+                             const glm::dvec3& place) {
+  const glm::dvec3* nearest = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const ContactPoint& point : points) {
+    const glm::dvec3 gap = point.position - place;
+    if (point.cluster == cluster && glm::dot(gap, gap) < least) {
+      least = glm::dot(gap, gap);
+      nearest = &point.position;
+    }
+  }
+  TORSION_ASSERT(nearest != nullptr);
+  return *nearest;
+}
+
+/// A point of the tool's surface in the body.
+struct SurfacePlace {
+  glm::dvec3 position{0.0};  // m, body
+  Distance to_body;
+};
+
+SurfacePlace place_on_tool(const Model& model, const ContactPair& pair, const glm::dvec3& near) {
+  const Range tool = model.tools.at<OwnedRows>(pair.tool).parts;
+  glm::dvec3 place = to_inner(pair.tool_in_body, near);
+  const Distance off_surface = signed_distance(model, tool, place);
+  place -= off_surface.value * off_surface.gradient;
+  const glm::dvec3 position = to_outer(pair.tool_in_body, place);
+  return {position, signed_distance(model, model.bodies.at<OwnedRows>(pair.body).parts, position)};
+}
+
+/// Whether the tool's surface is inside the body all the way from one point of it to another, and
+/// goes on as it began.
+/// @param step  m, of the way
+bool overlaps_between(const Model& model, const ContactPair& pair, const glm::dvec3& from,
+                      const glm::dvec3& to, double step) {
+  const double steps = std::ceil(glm::distance(from, to) / step);
+  SurfacePlace last = place_on_tool(model, pair, from);
+  for (double k = 1.0; k <= steps; k += 1.0) {
+    const SurfacePlace next = place_on_tool(model, pair, glm::mix(from, to, k / steps));
+    if ((k < steps && next.to_body.value >= 0.0) ||
+        glm::distance(last.position, next.position) > 2.0 * step ||
+        glm::dot(last.to_body.gradient, next.to_body.gradient) < kLeastAgreement) {
+      return false;
+    }
+    last = next;
+  }
+  return true;
+}
+
+/// Links clusters between which the tool's surface is inside the body. Samples are sparse along a
+/// line.
+void link_through_overlap(const Model& model, const ContactPair& pair, const ClusterBoxes& boxes,
+                          std::span<const ContactPoint> points, std::span<std::uint32_t> parent) {
+  constexpr double kReach = 8.0;  // of the threshold
+  constexpr double kStep = 0.5;   // likewise
+  const double threshold = model.bodies.at<BodyModels>(pair.body).region_threshold;
+  for (std::uint32_t one = 0; boxes.has_all() && one < pair.clusters; ++one) {
+    for (std::uint32_t other = one + 1; other < pair.clusters; ++other) {
+      if (root_of(parent, one) == root_of(parent, other) ||
+          !boxes.near(one, other, kReach * threshold)) {
+        continue;
+      }
+      // Nearly the nearest two.
+      glm::dvec3 from = nearest_of(one, points, nearest_of(other, points, points[0].position));
+      const glm::dvec3 to = nearest_of(other, points, from);
+      from = nearest_of(one, points, to);
+      if (glm::distance(from, to) < kReach * threshold &&
+          overlaps_between(model, pair, from, to, kStep * threshold)) {
+        link(parent, one, other);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void join_clusters(const Model& model, const State& state, ContactScratch& scratch,
@@ -233,6 +316,7 @@ void join_clusters(const Model& model, const State& state, ContactScratch& scrat
   const std::span<std::uint32_t> parent(scratch.parent.data(), pair.clusters);
   std::iota(parent.begin(), parent.end(), 0U);
   const ClusterBoxes boxes(points, pair.clusters);
+  link_through_overlap(model, pair, boxes, points, parent);
   for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
     // A region far from all clusters but one has nothing to join, and no near neighbour.
     if (is_of_pair(state, region, pair) && boxes.near(state, region) > 1) {
@@ -240,6 +324,10 @@ void join_clusters(const Model& model, const State& state, ContactScratch& scrat
     }
   }
   renumber(parent, scratch.order, points, pair);
+}
+
+bool touch(const Model& model, const State& state, std::uint32_t region, std::uint32_t other) {
+  return covers_touch({model, state, region}, {model, state, other});
 }
 
 }  // namespace torsion::engine

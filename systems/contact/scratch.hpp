@@ -30,6 +30,7 @@ struct ContactPair {
   // Of points, when those of neighbouring samples are linked (Scratch::parent).
   std::uint32_t linked_sets = 0;
   std::uint32_t clusters = 0;
+  Pose tool_in_body;           // for which the points were found
   bool touches_moved = false;  // no points, but it would touch the material as others have it
 };
 

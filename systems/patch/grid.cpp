@@ -277,9 +277,12 @@ void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints
   State& state = context.state;
   if (state.regions.at<RegionNormal>(region).force <= 0.0) {
     // The region has nothing to keep, and its grid may lie beside the points, where it would stay.
+    // Without points it is where the tool has last been.
     state.patch_cells.zero(state.regions.at<RegionIdentity>(region).cells);
     state.regions.at<PatchState>(region) = PatchState{};
-    place_new_grid(context, region, contact);
+    if (contact.cluster != kNoRow) {
+      place_new_grid(context, region, contact);
+    }
     return;
   }
   regrid_around_loaded(context, region, contact);
@@ -290,7 +293,7 @@ void follow_patch(StepContext& context, std::uint32_t region, const RegionPoints
 void find_patch_cells(StepContext& context, std::uint32_t region, const RegionPoints& contact) {
   const Grid grid = grid_of(context, region);
   const PatchState& state = context.state.regions.at<PatchState>(region);
-  if (state.started == 0) {
+  if (state.started == 0 && contact.cluster != kNoRow) {
     center_patch(grid, contact, deepest_of_cluster(grid, contact).depth);
     return;
   }

@@ -7,6 +7,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
+#include "ecs/model_names.hpp"
 #include "tests/support/contact_scenes.hpp"
 
 namespace torsion::engine::test {
@@ -94,6 +95,39 @@ TEST(JoinClustersTest, ACornerIsOneRegion) {
       for (int step = 0; step < 300; ++step) {
         hand.move(glm::dvec3(0.0), up, 1e-3, 1);
         ASSERT_EQ(hand.world().state.regions.size(), 1U) << step;
+      }
+    }
+  }
+}
+
+// Only some of the samples of a cylinder's side come near the line along which it touches.
+TEST(JoinClustersTest, ACylinderAlongACylinderIsOneRegionFromTheFirst) {
+  constexpr double kColumn = 0.07;  // m, radii
+  constexpr double kRoller = 0.03;
+  constexpr double kClear = 1e-8;  // m
+  constexpr double kDepth = 2e-5;
+  for (const bool as_mesh : {false, true}) {
+    for (const ContactModel contact :
+         {ContactModel::kPaper, ContactModel::kMdr, ContactModel::kPatch}) {
+      for (const double turned : {0.0, 0.3, 1.1}) {  // rad, about its axis
+        SceneDescription scene = ball_on_cube();
+        scene.bodies = {
+            make_body({make_part(ShapeKind::kCylinder, {kColumn, 0.17, kColumn}, {}, as_mesh, 7)})};
+        scene.bodies[0].models = {contact, BodyModel::kNone};
+        scene.tools = {make_tool({make_part(ShapeKind::kCylinder, {kRoller, 0.05, kRoller})})};
+        Hand hand(scene);
+        const glm::dvec3 up(0.0, 1.0, 0.0);
+        hand.step_to({{{kColumn + kRoller + kClear, 0.02, 0.0}, glm::angleAxis(turned, up)}});
+        ASSERT_EQ(hand.world().state.regions.size(), 0U);
+        hand.move({-kClear, 0.0, 0.0}, up, 0.0, 1);
+        for (int step = 1; step <= 100; ++step) {
+          hand.move({-kDepth / 100.0, 0.0, 0.0}, up, 0.0, 1);
+          // The distance field of a mesh is a micrometre off.
+          if (!as_mesh || step > 10) {
+            ASSERT_EQ(hand.world().state.regions.size(), 1U)
+                << name_of(contact) << ", turned by " << turned << ", step " << step;
+          }
+        }
       }
     }
   }

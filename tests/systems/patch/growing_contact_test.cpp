@@ -11,6 +11,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "systems/patch/grid.hpp"
+#include "systems/scratch.hpp"
 #include "tests/systems/patch/pressed_ball.hpp"
 
 namespace torsion::engine {
@@ -215,6 +217,22 @@ TEST(EdgeInABallTest, IsFeltAlikeHoweverItLiesAndFromItsFirstStep) {
     const double length = std::sqrt(2.0 * kEdgeBall * depths[1]);
     EXPECT_NEAR(found[1].area / (8.0 / 3.0 * depths[1] * length), 1.0, 0.5) << askew;
   }
+}
+
+// A contact that other tools push the material out of has neither points nor a force for a while.
+TEST(ContactWithoutPointsTest, ItsGridStaysWhereTheToolWas) {
+  PressedBall ball({.side = 12});
+  ball.press(test::kBallDepth, 50);
+  Simulation& simulation = ball.hand.simulation();
+  State& state = simulation.world.state;
+  const RegionFrame before = state.regions.at<RegionFrame>(0);
+  state.regions.at<RegionNormal>(0).force = 0.0;
+  StepContext context = simulation.scratch->context(simulation.world.model, state, ball.hand.poses);
+  follow_patch(context, 0, RegionPoints{});
+  const RegionFrame& frame = state.regions.at<RegionFrame>(0);
+  EXPECT_EQ(frame.origin, before.origin);
+  EXPECT_EQ(frame.normal, before.normal);
+  EXPECT_EQ(frame.half_size, before.half_size);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "systems/contact/grid_cells.hpp"
 #include "systems/contact/law.hpp"
 #include "systems/contact/pressed_face.hpp"
+#include "systems/contact/support/body_law.hpp"
 #include "systems/contact/tool_motion.hpp"
 #include "systems/half_space/influence.hpp"
 #include "systems/math/frames.hpp"
@@ -422,6 +423,10 @@ void region_grids(StepContext& context) {
     }
     if (law.refine != nullptr) {
       law.refine(context, region);
+    }
+    const BodyLaw& body = body_law_of(model, state.regions.at<RegionIdentity>(region).body);
+    if (body.begin_answer != nullptr) {
+      body.begin_answer(model, state, region);
     }
   }
 }

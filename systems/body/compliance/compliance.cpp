@@ -407,6 +407,7 @@ const BodyLaw kComplianceLaw{
     .moves_as_a_whole = true,
     .motion_at = motion_of_material,
     .begin = begin_support,
+    .begin_answer = begin_answer,
     .begin_split = begin_split_support,
     .split = split_support,
     .join = join_support,

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Core>
 #include <glm/geometric.hpp>
@@ -35,10 +36,13 @@ SupportedRegion solved_stand(const State& state, std::uint32_t region) {
   return supported;
 }
 
+ContactEllipse disc_in(const RegionFrame& frame, const glm::dvec3& center, double radius) {
+  return {center, radius * frame.tangent_x, radius * frame.tangent_y, frame.normal, radius};
+}
+
 /// A disc as large as the grid around a new region's contact points.
 ContactEllipse disc_of_grid(const RegionFrame& frame) {
-  const double radius = std::sqrt(frame.half_size.x * frame.half_size.y);
-  return {frame.origin, radius * frame.tangent_x, radius * frame.tangent_y, frame.normal, radius};
+  return disc_in(frame, frame.origin, std::sqrt(frame.half_size.x * frame.half_size.y));
 }
 
 /// Accounts for a part of a region's load that has become another region's.
@@ -121,6 +125,30 @@ void begin_support(const Model& model, State& state, std::uint32_t region) {
   support.rotation = {motion[3], motion[4], motion[5]};
   support.translation_by_others = support.translation;
   support.rotation_by_others = support.rotation;
+}
+
+void begin_answer(const Model& model, State& state, std::uint32_t region) {
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  const ContactLaw& law = law_of(model, identity.body);
+  const Overlap& overlap = state.regions.at<Overlap>(region);
+  const bool knows_answer = law.by_cells || law.moves_own_support;
+  const std::uint32_t block = block_of(identity);
+  if (!knows_answer || overlap.area <= 0.0 ||
+      state.support_fits.at<SupportFit>(block).reach > 0.0) {
+    return;
+  }
+  const CompliantBody body{model, state, identity.body, ports_of(model, identity.body)};
+  SupportedRegion supported;
+  supported.region = region;
+  supported.block = block;
+  supported.solved = law.by_cells;
+  forget_couplings(state, block);
+  // A ball's contact on an elastic half-space has half the area of its overlap.
+  const RegionFrame& frame = state.regions.at<RegionFrame>(region);
+  fit_region_support(
+      body, supported,
+      disc_in(frame, overlap.rest_center, overlap.radius * std::numbers::sqrt2 / 2.0));
+  state.support_fits.at<SupportFit>(block).serial |= kForFirstStep;
 }
 
 void begin_split_support(const Model& model, State& state, std::uint32_t from,

@@ -118,7 +118,7 @@ void fit_supports(const CompliantBody& body) {
     const SupportedRegion& supported = body.regions[i];
     const SupportFit& support_fit = support_fit_of(body, supported);
     const ContactEllipse contact = contact_ellipse(body.model, body.state, supported.region);
-    if (support_fit.reach == 0.0) {
+    if (support_fit.reach == 0.0 || (support_fit.serial & kForFirstStep) != 0) {
       forget_couplings(body.state, supported.block);
       fit_region_support(body, supported, contact);
     } else if (!still_fits(support_fit, contact) &&

@@ -78,6 +78,10 @@ RegionCoupling& coupling_between(const CompliantBody& body, const SupportedRegio
 Matrix6 layer_motion(const Model& model, std::uint32_t body, const ContactEllipse& contact,
                      double thickness);
 
+/// In a support fit's serial: it is for the step in which its region begins, before that has
+/// carried a load that says how large its contact is.
+inline constexpr std::uint64_t kForFirstStep = std::uint64_t{1} << 63U;
+
 // For regions that begin, split off or end: kComplianceLaw (contact/support/body_law.hpp).
 
 /// BodyLaw::motion_at.
@@ -86,6 +90,9 @@ Pose motion_of_material(const Model& model, State& state, std::uint32_t row, std
 
 /// BodyLaw::begin. Writes RegionSupport.
 void begin_support(const Model& model, State& state, std::uint32_t region);
+
+/// BodyLaw::begin_answer. Writes SupportFit.
+void begin_answer(const Model& model, State& state, std::uint32_t region);
 
 /// BodyLaw::begin_split. Writes RegionSupport, of both.
 void begin_split_support(const Model& model, State& state, std::uint32_t from,

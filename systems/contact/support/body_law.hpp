@@ -34,6 +34,10 @@ struct BodyLaw {
   /// Without it the first solution would press on the body at rest, and the other regions would
   /// feel that.
   void (*begin)(const Model& model, State& state, std::uint32_t region) = nullptr;
+  /// A region's cells have been found: where that is for the first time, finds how the body answers
+  /// to its load, for contact models that know that. A body that stood still under their first
+  /// solution would push back as if it were held, and then leap away.
+  void (*begin_answer)(const Model& model, State& state, std::uint32_t region) = nullptr;
   /// A region splits off another one: the material is where that one has it. With a contact law by
   /// cells `split` follows; with another one the load is shared out here, by the discs' areas.
   void (*begin_split)(const Model& model, State& state, std::uint32_t from,

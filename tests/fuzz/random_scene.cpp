@@ -97,23 +97,8 @@ void add_tool(Dice& dice, double size, double side, RandomScene& random) {
   random.ways.push_back(way);
 }
 
-}  // namespace
-
-RandomScene random_scene(std::uint64_t seed) {
-  Dice dice(seed);
-  RandomScene random;
-  const double size = dice.logarithmic(1e-6, 100.0);
-  random.size = 2.0 * size;
-  std::vector<PartDescription> parts;
-  Made first = random_part(dice, size, glm::dvec3(0.0));
-  random.text = fmt::format("{:.3g} m, body {}", 2.0 * size, first.text);
-  parts.push_back(std::move(first.part));
-  if (dice.chance(0.2)) {
-    Made second = random_part(dice, 0.6 * size, {0.5 * size, 0.4 * size, 0.0});
-    random.text += " and " + second.text;
-    parts.push_back(std::move(second.part));
-  }
-  BodyDescription body = make_body(std::move(parts));
+/// Materials and models.
+void add_physics(Dice& dice, RandomScene& random, BodyDescription& body) {
   body.elasticity.youngs_modulus = dice.logarithmic(1.0, 1e12);
   body.elasticity.poisson_ratio = dice.chance(0.2) ? 0.5 : dice.between(0.0, 0.5);
   const double dynamic = dice.chance(0.1) ? 0.0 : dice.logarithmic(0.01, 10.0);
@@ -132,15 +117,76 @@ RandomScene random_scene(std::uint64_t seed) {
                              body.elasticity.youngs_modulus, body.elasticity.poisson_ratio,
                              body.friction.static_friction, body.friction.dynamic_friction,
                              name_of(body.models.contact), name_of(body.models.body));
+}
+
+void add_rate(Dice& dice, RandomScene& random) {
+  random.options.rate = dice.logarithmic(100.0, 1e5);
+  random.options.use_cache = false;
+  random.text += fmt::format("; {:.4g} Hz", random.options.rate);
+}
+
+}  // namespace
+
+RandomScene random_scene(std::uint64_t seed) {
+  Dice dice(seed);
+  RandomScene random;
+  const double size = dice.logarithmic(1e-6, 100.0);
+  random.size = 2.0 * size;
+  std::vector<PartDescription> parts;
+  Made first = random_part(dice, size, glm::dvec3(0.0));
+  random.text = fmt::format("{:.3g} m, body {}", 2.0 * size, first.text);
+  parts.push_back(std::move(first.part));
+  if (dice.chance(0.2)) {
+    Made second = random_part(dice, 0.6 * size, {0.5 * size, 0.4 * size, 0.0});
+    random.text += " and " + second.text;
+    parts.push_back(std::move(second.part));
+  }
+  BodyDescription body = make_body(std::move(parts));
+  add_physics(dice, random, body);
   random.scene.bodies.push_back(std::move(body));
   const bool two = dice.chance(0.2);
   add_tool(dice, size, two ? -1.0 : 0.0, random);
   if (two) {
     add_tool(dice, size, 1.0, random);
   }
-  random.options.rate = dice.logarithmic(100.0, 1e5);
-  random.options.use_cache = false;
-  random.text += fmt::format("; {:.4g} Hz", random.options.rate);
+  add_rate(dice, random);
+  return random;
+}
+
+RandomScene random_pinch(std::uint64_t seed) {
+  Dice dice(seed);
+  RandomScene random;
+  const double size = dice.logarithmic(1e-6, 100.0);
+  random.size = 2.0 * size;
+  constexpr ShapeKind kKinds[] = {ShapeKind::kBox, ShapeKind::kCylinder, ShapeKind::kEllipsoid};
+  constexpr const char* kNames[] = {"box", "cylinder", "ellipsoid"};
+  const std::size_t kind = dice.one_of(std::size(kKinds));
+  const double width = dice.logarithmic(0.15, 0.7);
+  const bool as_mesh = dice.chance(0.3);
+  const auto fineness = static_cast<std::uint32_t>(3 + dice.one_of(12));
+  BodyDescription body = make_body({make_part(kKinds[kind], size * glm::dvec3(width, 1.0, width),
+                                              {glm::dvec3(0.0), kUpright}, as_mesh, fineness)});
+  random.text = fmt::format("{:.3g} m, body {}{}, {:.2g} wide", 2.0 * size, kNames[kind],
+                            as_mesh ? fmt::format(" mesh {}", fineness) : "", width);
+  add_physics(dice, random, body);
+  body.fixed.kind = FixedKind::kFace;
+  body.fixed.normal = {0.0, 1.0, 0.0};
+  random.scene.bodies.push_back(std::move(body));
+  const double height = dice.between(-0.2, 0.85);
+  const bool together = dice.chance(0.7);
+  for (const double side : {1.0, -1.0}) {
+    add_tool(dice, dice.between(0.7, 2.0) * width * size, 0.0, random);
+    RandomWay& way = random.ways.back();
+    // y to the side, x along the column: down on one side, up on the other.
+    way.axes = glm::angleAxis(-0.5 * std::numbers::pi * side, glm::dvec3(0.0, 0.0, 1.0));
+    way.beside = size * glm::dvec2{-side * (height + dice.between(-0.05, 0.05)),
+                                   dice.between(-0.2, 0.2) * width};
+    if (together && side < 0.0) {
+      way.slide = random.ways.front().slide * glm::dvec2(-1.0, 1.0);
+    }
+  }
+  add_rate(dice, random);
+  random.text += "; a pinch";
   return random;
 }
 

@@ -14,8 +14,8 @@ namespace {
 struct Seed {
   std::uint64_t seed;
   const char* what;
-  bool chosen = false;   // for every run; the others with all cases
-  bool at_edge = false;  // random_scene_at_edge
+  bool chosen = false;  // for every run; the others with all cases
+  RandomScene (*scene)(std::uint64_t) = random_scene;
 };
 
 class RandomSceneTest : public testing::TestWithParam<Seed> {};
@@ -24,8 +24,7 @@ TEST_P(RandomSceneTest, KeepsAllProperties) {
   if (test::is_left_out(GetParam().chosen)) {
     GTEST_SKIP() << test::kLeftOut;
   }
-  const RandomScene scene =
-      GetParam().at_edge ? random_scene_at_edge(GetParam().seed) : random_scene(GetParam().seed);
+  const RandomScene scene = GetParam().scene(GetParam().seed);
   const std::optional<std::string> broken = broken_property(scene);
   EXPECT_FALSE(broken.has_value()) << *broken << "\n" << scene.text;
 }
@@ -59,8 +58,14 @@ INSTANTIATE_TEST_SUITE_P(
         Seed{31027, "MdrOnTwoPartsThatMeetAtAnEdge"},
         Seed{72102, "BoxOfTrianglesSetDownFlat", true}, Seed{24035, "RimsOfTriangles"},
         Seed{62103, "MdrPuckAndBallOnASoftBody", true}, Seed{31238, "MdrTwoToolsOnASoftCapsule"},
-        Seed{90181, "PaperOnABodyThatAnotherToolTilts", false, true},
-        Seed{62088, "RimsOnABlockThatAnotherToolMoves"}),
+        Seed{90181, "PaperOnABodyThatAnotherToolTilts", false, random_scene_at_edge},
+        Seed{62088, "RimsOnABlockThatAnotherToolMoves"},
+        Seed{33, "MdrAlongALineThatAnotherToolPushes", true, random_pinch},
+        Seed{280, "MdrAlongALine", false, random_pinch},
+        Seed{47, "PatchAlongALine", false, random_pinch},
+        Seed{220, "PatchAlongALineWithoutFriction", false, random_pinch},
+        Seed{263, "PatchOfABoxOnASlenderCylinder", false, random_pinch},
+        Seed{274, "PatchThatThrowsAStickFromToolToTool", true, random_pinch}),
     [](const testing::TestParamInfo<Seed>& seed) { return std::string(seed.param.what); });
 
 }  // namespace

@@ -59,6 +59,10 @@ int hold_steps(double rate) {
   return std::max(60, static_cast<int>(std::ceil(0.012 * rate))) + kStill;
 }
 
+Pose in_axes(const RandomWay& way, const Pose& pose) {
+  return {way.axes * pose.position, way.axes * pose.rotation};
+}
+
 /// Height of a tool's frame at which its surface samples just touch the body, m: what lies between
 /// them touches a little earlier. By bisection.
 double touching_height(const World& world, std::uint32_t tool, const RandomWay& way, double size) {
@@ -66,7 +70,7 @@ double touching_height(const World& world, std::uint32_t tool, const RandomWay& 
   const auto samples =
       world.model.samples.rows<SurfaceSample>(world.model.tools.at<OwnedRows>(tool).samples);
   const auto inside = [&](double height) {
-    const Pose pose{{way.beside.x, height, way.beside.y}, way.rotation};
+    const Pose pose = in_axes(way, {{way.beside.x, height, way.beside.y}, way.rotation});
     return std::ranges::any_of(samples, [&](const SurfaceSample& sample) {
       return signed_distance(world.model, parts, to_outer(pose, sample.position)).value < 0.0;
     });
@@ -86,7 +90,7 @@ Pose pose_at(const RandomWay& way, double touching, double size, const Progress&
       touching + clear - (way.depth + clear) * progress.press + 0.02 * size * progress.away;
   const glm::dvec2 beside = way.beside + way.slide * progress.move;
   const glm::dquat turn = glm::angleAxis(way.turn * progress.move, glm::dvec3(0.0, 1.0, 0.0));
-  return {{beside.x, height, beside.y}, turn * way.rotation};
+  return in_axes(way, {{beside.x, height, beside.y}, turn * way.rotation});
 }
 
 /// The poses of all tools, step by step.
@@ -147,13 +151,18 @@ bool only_drags(const Simulation& simulation, std::uint32_t tool) {
          simulation.world.state.tools.at<ToolWrench>(tool).total.force != glm::dvec3(0.0);
 }
 
-/// Whether a region is on a side of the body, which tools come down on from above.
-bool meets_a_side(const World& world) {
+/// Whether a region is on a side of the body as its tool sees it, which comes down on it.
+/// @param ways  of the tools, in the body's axes
+bool meets_a_side(const World& world, std::span<const RandomWay> ways) {
   constexpr double kUpwards = 0.4;
-  const auto frames = world.state.regions.column<RegionFrame>();
-  return std::ranges::any_of(frames, [&](const RegionFrame& frame) {
-    return (world.model.bodies.at<Pose>(0).rotation * frame.normal).y < kUpwards;
-  });
+  for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
+    const RandomWay& way = ways[world.state.regions.at<RegionIdentity>(region).tool];
+    const glm::dvec3 up = way.axes * glm::dvec3(0.0, 1.0, 0.0);
+    if (glm::dot(world.state.regions.at<RegionFrame>(region).normal, up) < kUpwards) {
+      return true;
+    }
+  }
+  return false;
 }
 
 /// Adds what a step's regions say of themselves.
@@ -189,7 +198,8 @@ void look_at_regions(const World& world, int step, Run& run) {
 // late.
 constexpr int kLate = 5;
 
-Run run(Simulation& simulation, const std::vector<std::vector<Pose>>& poses) {
+Run run(Simulation& simulation, std::span<const RandomWay> ways,
+        const std::vector<std::vector<Pose>>& poses) {
   Run run;
   const World& world = simulation.world;
   run.forces.resize(world.model.tools.size());
@@ -214,7 +224,7 @@ Run run(Simulation& simulation, const std::vector<std::vector<Pose>>& poses) {
       }
     }
     run.work.push_back(work);
-    run.into_a_side = run.into_a_side || meets_a_side(world);
+    run.into_a_side = run.into_a_side || meets_a_side(world, ways);
     look_at_regions(world, static_cast<int>(index), run);
     const std::uint32_t faults = world.state.clock.faults;
     run.fault_step = faults != 0 && run.faults == 0 ? static_cast<int>(index) : run.fault_step;
@@ -334,7 +344,7 @@ std::optional<std::string> not_turned(const RandomScene& random, const Run& stra
   if (!simulation) {
     return "turned as a whole it cannot be prepared: " + simulation.error().text;
   }
-  const Run other = run(simulation.value(), poses);
+  const Run other = run(simulation.value(), turned.ways, poses);
   for (std::size_t tool = 0; tool < straight.forces.size(); ++tool) {
     const double median = median_length(straight.forces[tool]);
     for (std::size_t step = 0; step < poses.size(); ++step) {
@@ -366,7 +376,7 @@ std::optional<std::string> broken_property(const RandomScene& scene) {
   if (!simulation) {
     return "with a lower rate it cannot be prepared: " + simulation.error().text;
   }
-  const Run straight = run(simulation.value(), poses);
+  const Run straight = run(simulation.value(), random.ways, poses);
   if (auto broken = not_finite(straight)) {
     return broken;
   }

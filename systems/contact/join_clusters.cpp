@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -164,6 +163,14 @@ bool is_of_pair(const State& state, std::uint32_t region, const ContactPair& pai
   return identity.tool == pair.tool && identity.body == pair.body;
 }
 
+std::uint32_t regions_of(const State& state, const ContactPair& pair) {
+  std::uint32_t count = 0;
+  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
+    count += is_of_pair(state, region, pair) ? 1U : 0U;
+  }
+  return count;
+}
+
 /// Links the clusters on a region's cells with each other and with those of the regions that it
 /// touches.
 void join_on(const Model& model, const State& state, std::uint32_t region, const ContactPair& pair,
@@ -229,14 +236,17 @@ class ClusterBoxes {
   std::uint32_t count_;
 };
 
-/// The point of a cluster that is nearest to a place.
+/// The point of a cluster that is nearest to a place, its first one where places are not numbers.
 const glm::dvec3& nearest_of(std::uint32_t cluster, std::span<const ContactPoint> points,
                              const glm::dvec3& place) {
   const glm::dvec3* nearest = nullptr;
-  double least = std::numeric_limits<double>::infinity();
+  double least = 0.0;
   for (const ContactPoint& point : points) {
+    if (point.cluster != cluster) {
+      continue;
+    }
     const glm::dvec3 gap = point.position - place;
-    if (point.cluster == cluster && glm::dot(gap, gap) < least) {
+    if (nearest == nullptr || glm::dot(gap, gap) < least) {
       least = glm::dot(gap, gap);
       nearest = &point.position;
     }
@@ -283,21 +293,22 @@ bool overlaps_between(const Model& model, const ContactPair& pair, const glm::dv
 /// line.
 void link_through_overlap(const Model& model, const ContactPair& pair, const ClusterBoxes& boxes,
                           std::span<const ContactPoint> points, std::span<std::uint32_t> parent) {
-  constexpr double kReach = 8.0;  // of the threshold
-  constexpr double kStep = 0.5;   // likewise
-  const double threshold = model.bodies.at<BodyModels>(pair.body).region_threshold;
+  constexpr double kReach = 10.0;  // of the spacing of samples
+  constexpr double kStep = 0.6;    // likewise
+  const std::uint32_t first = model.tools.at<OwnedRows>(pair.tool).samples.first;
+  const double spacing = model.samples.at<SurfaceSample>(first).spacing;
   for (std::uint32_t one = 0; boxes.has_all() && one < pair.clusters; ++one) {
     for (std::uint32_t other = one + 1; other < pair.clusters; ++other) {
       if (root_of(parent, one) == root_of(parent, other) ||
-          !boxes.near(one, other, kReach * threshold)) {
+          !boxes.near(one, other, kReach * spacing)) {
         continue;
       }
       // Nearly the nearest two.
       glm::dvec3 from = nearest_of(one, points, nearest_of(other, points, points[0].position));
       const glm::dvec3 to = nearest_of(other, points, from);
       from = nearest_of(one, points, to);
-      if (glm::distance(from, to) < kReach * threshold &&
-          overlaps_between(model, pair, from, to, kStep * threshold)) {
+      if (glm::distance(from, to) < kReach * spacing &&
+          overlaps_between(model, pair, from, to, kStep * spacing)) {
         link(parent, one, other);
       }
     }
@@ -316,7 +327,11 @@ void join_clusters(const Model& model, const State& state, ContactScratch& scrat
   const std::span<std::uint32_t> parent(scratch.parent.data(), pair.clusters);
   std::iota(parent.begin(), parent.end(), 0U);
   const ClusterBoxes boxes(points, pair.clusters);
-  link_through_overlap(model, pair, boxes, points, parent);
+  // As many clusters as there are regions are those that were apart in the last step. When they
+  // grow together their cells tell.
+  if (regions_of(state, pair) != pair.clusters) {
+    link_through_overlap(model, pair, boxes, points, parent);
+  }
   for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
     // A region far from all clusters but one has nothing to join, and no near neighbour.
     if (is_of_pair(state, region, pair) && boxes.near(state, region) > 1) {

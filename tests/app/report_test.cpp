@@ -106,7 +106,8 @@ constexpr Bounds kBounds[] = {
     // Large steps on few cells: the column's end is a thousand times softer sideways than the
     // contact, and some steps of these 64 cells are not solved.
     {"slender_column patch compliance 64", 0.03, 0.20, 0.08},
-    {"slender_column patch compliance 144", 0.0035, 0.035, 0.018},
+    // The step of a regrid may fall on a point of the path.
+    {"slender_column patch compliance 144", 0.0055, 0.035, 0.018},
     {"slender_column patch compliance 256", 0.003, 0.015, 0.019},
     {"plate_on_edge mdr compliance 256", 0.048, 0.13, 0.086},
     {"plate_on_edge patch compliance 144", 0.050, 0.095, 0.079},

@@ -97,6 +97,8 @@ testing::AssertionResult matches_golden(const Image& actual, const std::filesyst
   const Result<Image> expected = read_png(golden);
   const std::string name = golden.stem().string();
   const auto keep = [&](const Image& image, const std::string& what) {
+    std::error_code none;  // the picture's own error says what is wrong
+    std::filesystem::create_directories(kept, none);
     const Result<Done> written = write_png(image, kept / (name + "_" + what + ".png"));
     return written.ok() ? "" : written.error().text;
   };

@@ -14,9 +14,9 @@ constexpr double kFarAway = -1.0;      // m, of the other ball
 class FirstContactTest : public testing::TestWithParam<ContactModel> {};
 
 // A column pressed from the side sways by up to ten times what its contact sinks in. A force that
-// is found as if it stood still, four to seven times too large, throws it off; another tool that is
-// near on its other side is hit by that, and throws it back harder. Within 15 %: the first step
-// knows no more of the contact's size than its points.
+// is found as if it stood still, Hertz' four to thirteen times as large at these depths, throws it
+// off; another tool that is near on its other side is hit by that, and throws it back harder.
+// Within 15 %: the first step knows no more of the contact's size than its overlap.
 TEST_P(FirstContactTest, HasTheForceOfAContactThatHasLasted) {
   test::Hand hand(test::pinched_column(kLandedWidth, GetParam(), 0.5));
   const auto stand = [&hand](double depth, int steps) {

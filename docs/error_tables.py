@@ -127,10 +127,14 @@ def main():
         print(__doc__, file=sys.stderr)
         sys.exit(2)
     folder = pathlib.Path(arguments[0])
-    report = read_report(folder)
     found = []
     for path, rows in TABLES.items():
-        text, differences = renewed(path, rows, report)
+        try:
+            text, differences = renewed(path, rows, read_report(folder))
+        except OSError as error:
+            sys.exit(f"{error.filename}: {error.strerror}: run torsion report --out {folder} first")
+        except KeyError as error:
+            sys.exit(f"{folder}/report.csv: no row {error}: run torsion report without --quick")
         found += differences
         if "--check" not in sys.argv:
             path.write_text(text, encoding="utf-8")

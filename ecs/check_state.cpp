@@ -54,7 +54,7 @@ void check_support_fit(const Model& model, const State& state, const RegionIdent
                        std::uint32_t row, Findings& findings) {
   const std::uint32_t block = region.cells.first / std::max(region.cells.count, 1U);
   if (block >= state.support_fits.size()) {
-    findings.require(false, "regions", row, "its footing is not there");
+    findings.require(false, "regions", row, "its support fit is not there");
     return;
   }
   const SupportFit& support_fit = state.support_fits.at<SupportFit>(block);

@@ -360,7 +360,7 @@ void detect_contacts(StepContext& context) {
       const Range points{first, static_cast<std::uint32_t>(scratch.points.size()) - first};
       const std::uint32_t sets =
           link_points(search, first, model.bodies.at<BodyModels>(body).region_threshold);
-      scratch.pairs.push_back({tool, body, points, sets, 0, search.tool_in_body, touches_moved});
+      scratch.pairs.push_back({tool, body, points, sets, search.tool_in_body, touches_moved});
       if (too_deep(search, model.bodies.at<Bounds>(body),
                    {scratch.points.data() + first, points.count})) {
         raise(state.clock, Fault::kTooDeep);

@@ -83,7 +83,6 @@ std::uint32_t group_points(std::span<const glm::dvec3> points, double threshold,
 void group_contact_points(StepContext& context) {
   ContactScratch& scratch = context.scratch;
   for (ContactPair& pair : scratch.pairs) {
-    pair.clusters = pair.linked_sets;
     if (pair.clusters <= 1) {
       continue;  // all points are of cluster 0 already
     }
@@ -99,7 +98,7 @@ void group_contact_points(StepContext& context) {
         std::span(scratch.parent).subspan(pair.points.first, pair.points.count);
     pair.clusters = group_points(scratch.cluster_points,
                                  context.model.bodies.at<BodyModels>(pair.body).region_threshold,
-                                 {parent, pair.linked_sets}, order.first(order.size() / 2), groups);
+                                 {parent, pair.clusters}, order.first(order.size() / 2), groups);
     for (std::size_t i = 0; i < points.size(); ++i) {
       points[i].cluster = groups[i];
     }

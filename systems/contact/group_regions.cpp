@@ -40,10 +40,6 @@ struct RegionCells {
   std::span<const CellGeometry> cells;
 };
 
-bool of_pair(const RegionIdentity& region, const ContactPair& pair) {
-  return region.tool == pair.tool && region.body == pair.body;
-}
-
 /// Ends a region. Another region, `heir`, may take over what it exerted.
 void end_region(const Model& model, State& state, std::uint32_t region, std::uint32_t heir) {
   if (heir != kNoRow) {
@@ -173,7 +169,7 @@ void match_by_overlap(const Model& model, const State& state, ContactScratch& sc
                       const ContactPair& pair, std::span<const ContactPoint> points) {
   const auto regions = state.regions.column<RegionIdentity>();
   for (std::uint32_t region = 0; region < regions.size(); ++region) {
-    if (!of_pair(regions[region], pair)) {
+    if (!is_of_pair(regions[region], pair)) {
       continue;
     }
     scratch.overlaps.assign(pair.clusters, 0.0);
@@ -202,7 +198,7 @@ void match_by_distance(const Model& model, const State& state, ContactScratch& s
   const double threshold = model.bodies.at<BodyModels>(pair.body).region_threshold;
   const auto regions = state.regions.column<RegionIdentity>();
   for (std::uint32_t region = 0; region < regions.size(); ++region) {
-    if (!of_pair(regions[region], pair) || owns_cluster(scratch, region)) {
+    if (!is_of_pair(regions[region], pair) || owns_cluster(scratch, region)) {
       continue;
     }
     double nearest = threshold;
@@ -273,7 +269,7 @@ bool lives_without_points(const State& state, const ContactPair& pair, std::uint
 std::uint32_t heir_by_cells(const Model& model, const State& state, const ContactScratch& scratch,
                             const ContactPair& pair, std::uint32_t region) {
   for (std::uint32_t other = 0; other < region; ++other) {
-    if (of_pair(state.regions.at<RegionIdentity>(other), pair) &&
+    if (is_of_pair(state.regions.at<RegionIdentity>(other), pair) &&
         std::ranges::find(scratch.ended_regions, other) == scratch.ended_regions.end() &&
         touch(model, state, region, other)) {
       return other;
@@ -307,7 +303,7 @@ void end_or_go_on(StepContext& context, const ContactPair& pair,
   ContactScratch& scratch = context.scratch;
   const auto regions = state.regions.column<RegionIdentity>();
   for (std::uint32_t region = 0; region < regions.size(); ++region) {
-    if (!of_pair(regions[region], pair) || owns_cluster(scratch, region)) {
+    if (!is_of_pair(regions[region], pair) || owns_cluster(scratch, region)) {
       continue;
     }
     if (lives_without_points(state, pair, region)) {
@@ -327,7 +323,7 @@ void join_regions(StepContext& context, const ContactPair& pair,
   const ContactLaw& law = law_of(model, pair.body);
   const auto regions = state.regions.column<RegionIdentity>();
   for (std::uint32_t region = 0; law.join != nullptr && region < regions.size(); ++region) {
-    if (of_pair(regions[region], pair) && !owns_cluster(context.scratch, region)) {
+    if (is_of_pair(regions[region], pair) && !owns_cluster(context.scratch, region)) {
       const std::uint32_t heir = heir_of(model, state, context.scratch, region, points);
       if (heir != kNoRow) {
         law.join(context, region, heir);

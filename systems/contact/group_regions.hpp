@@ -6,6 +6,10 @@
 
 namespace torsion::engine {
 
+inline bool is_of_pair(const RegionIdentity& region, const ContactPair& pair) {
+  return region.tool == pair.tool && region.body == pair.body;
+}
+
 /// Gives the groups of contact points an identity over time: a group continues the region that it
 /// overlaps most. Of several groups over one region the largest keeps it and the others form new
 /// ones (a split); several regions over one group end in the oldest (a merge); a region over no

@@ -158,17 +158,10 @@ void renumber(std::span<std::uint32_t> parent, std::span<std::uint32_t> numbers,
   pair.clusters = count;
 }
 
-bool is_of_pair(const State& state, std::uint32_t region, const ContactPair& pair) {
-  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
-  return identity.tool == pair.tool && identity.body == pair.body;
-}
-
 std::uint32_t regions_of(const State& state, const ContactPair& pair) {
-  std::uint32_t count = 0;
-  for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
-    count += is_of_pair(state, region, pair) ? 1U : 0U;
-  }
-  return count;
+  return static_cast<std::uint32_t>(std::ranges::count_if(
+      state.regions.column<RegionIdentity>(),
+      [&pair](const RegionIdentity& region) { return is_of_pair(region, pair); }));
 }
 
 /// Links the clusters on a region's cells with each other and with those of the regions that it
@@ -181,7 +174,7 @@ void join_on(const Model& model, const State& state, std::uint32_t region, const
   }
   const std::uint32_t cluster = cluster_on(cover, points);
   for (std::uint32_t other = 0; cluster != kNoRow && other < state.regions.size(); ++other) {
-    if (other == region || !is_of_pair(state, other, pair)) {
+    if (other == region || !is_of_pair(state.regions.at<RegionIdentity>(other), pair)) {
       continue;
     }
     const RegionCover beside(model, state, other);
@@ -334,7 +327,8 @@ void join_clusters(const Model& model, const State& state, ContactScratch& scrat
   }
   for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
     // A region far from all clusters but one has nothing to join, and no near neighbour.
-    if (is_of_pair(state, region, pair) && boxes.near(state, region) > 1) {
+    if (is_of_pair(state.regions.at<RegionIdentity>(region), pair) &&
+        boxes.near(state, region) > 1) {
       join_on(model, state, region, pair, points, parent);
     }
   }

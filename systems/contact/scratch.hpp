@@ -27,8 +27,7 @@ struct ContactPair {
   std::uint32_t tool = 0;
   std::uint32_t body = 0;
   Range points;  // in Scratch::points
-  // Of points, when those of neighbouring samples are linked (Scratch::parent).
-  std::uint32_t linked_sets = 0;
+  // Of points: as the links of neighbouring samples leave them, until all near ones are grouped.
   std::uint32_t clusters = 0;
   Pose tool_in_body;           // for which the points were found
   bool touches_moved = false;  // no points, but it would touch the material as others have it

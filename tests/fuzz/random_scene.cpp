@@ -97,7 +97,7 @@ void add_tool(Dice& dice, double size, double side, RandomScene& random) {
   random.ways.push_back(way);
 }
 
-/// Materials and models.
+/// Materials, models, and whether its lowest face is fixed or the middle of that.
 void add_physics(Dice& dice, RandomScene& random, BodyDescription& body) {
   body.elasticity.youngs_modulus = dice.logarithmic(1.0, 1e12);
   body.elasticity.poisson_ratio = dice.chance(0.2) ? 0.5 : dice.between(0.0, 0.5);

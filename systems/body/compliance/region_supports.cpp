@@ -28,14 +28,6 @@ ToEachOther to_each_other(const CompliantBody& body, const SupportFit& there,
   return both;
 }
 
-SupportedRegion solved_stand(const State& state, std::uint32_t region) {
-  SupportedRegion supported;
-  supported.region = region;
-  supported.block = block_of(state.regions.at<RegionIdentity>(region));
-  supported.solved = true;
-  return supported;
-}
-
 ContactEllipse disc_in(const RegionFrame& frame, const glm::dvec3& center, double radius) {
   return {center, radius * frame.tangent_x, radius * frame.tangent_y, frame.normal, radius};
 }
@@ -132,23 +124,19 @@ void begin_answer(const Model& model, State& state, std::uint32_t region) {
   const ContactLaw& law = law_of(model, identity.body);
   const Overlap& overlap = state.regions.at<Overlap>(region);
   const bool knows_answer = law.by_cells || law.moves_own_support;
-  const std::uint32_t block = block_of(identity);
-  if (!knows_answer || overlap.area <= 0.0 ||
-      state.support_fits.at<SupportFit>(block).reach > 0.0) {
+  SupportFit& support_fit = state.support_fits.at<SupportFit>(block_of(identity));
+  if (!knows_answer || overlap.area <= 0.0 || support_fit.reach > 0.0) {
     return;
   }
   const CompliantBody body{model, state, identity.body, ports_of(model, identity.body)};
-  SupportedRegion supported;
-  supported.region = region;
-  supported.block = block;
-  supported.solved = law.by_cells;
-  forget_couplings(state, block);
+  const SupportedRegion supported = supported_region(model, state, region);
+  forget_couplings(state, supported.block);
   // A ball's contact on an elastic half-space has half the area of its overlap.
   const RegionFrame& frame = state.regions.at<RegionFrame>(region);
   fit_region_support(
       body, supported,
       disc_in(frame, overlap.rest_center, overlap.radius * std::numbers::sqrt2 / 2.0));
-  state.support_fits.at<SupportFit>(block).serial |= kForFirstStep;
+  support_fit.serial |= kForFirstStep;
 }
 
 void begin_split_support(const Model& model, State& state, std::uint32_t from,
@@ -189,7 +177,7 @@ void split_support(const Model& model, State& state, std::uint32_t from, std::ui
     return;
   }
   const CompliantBody body{model, state, identity.body, ports_of(model, identity.body)};
-  const SupportedRegion supported = solved_stand(state, region);
+  const SupportedRegion supported = supported_region(model, state, region);
   forget_couplings(state, supported.block);
   fit_region_support(body, supported, contact_ellipse(model, state, region));
   const SupportFit& there = support_fit_of(body, supported);

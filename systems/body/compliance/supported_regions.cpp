@@ -162,6 +162,15 @@ SupportFit& support_fit_of(const CompliantBody& body, const SupportedRegion& sup
   return body.state.support_fits.at<SupportFit>(supported.block);
 }
 
+SupportedRegion supported_region(const Model& model, const State& state, std::uint32_t region) {
+  const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
+  SupportedRegion supported;
+  supported.region = region;
+  supported.block = block_of(identity);
+  supported.solved = law_of(model, identity.body).by_cells;
+  return supported;
+}
+
 StiffnessRoot stiffness_root(const CompliantBody& body, const SupportedRegion& supported) {
   const RegionFrame& frame = body.state.regions.at<RegionFrame>(supported.region);
   StuckStiffness stuck = stuck_stiffness(body.model, body.state, supported.region,
@@ -206,10 +215,7 @@ void find_supported_regions(CompliantBody& body) {
   for (std::uint32_t region = 0; region < state.regions.size(); ++region) {
     const RegionIdentity& identity = state.regions.at<RegionIdentity>(region);
     if (identity.body == body.row) {
-      SupportedRegion& supported = body.regions[body.count++];
-      supported.region = region;
-      supported.block = block_of(identity);
-      supported.solved = law_of(model, body.row).by_cells;
+      body.regions[body.count++] = supported_region(model, state, region);
     }
   }
   fit_supports(body);

@@ -41,6 +41,9 @@ struct StiffnessRoot {
 };
 StiffnessRoot stiffness_root(const CompliantBody& body, const SupportedRegion& supported);
 
+/// A region as it stands, its load and motion not found yet.
+SupportedRegion supported_region(const Model& model, const State& state, std::uint32_t region);
+
 /// Fits the region's support, and finds the region's motion by its own wrench.
 void fit_region_support(const CompliantBody& body, const SupportedRegion& supported,
                         const ContactEllipse& contact);

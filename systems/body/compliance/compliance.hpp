@@ -11,10 +11,10 @@ extern const BodyLaw kComplianceLaw;
 
 /// What compliance needs while it works on one body.
 struct ComplianceScratch {
-  std::vector<double> matrix;     // (6 kMaxRegionsPerBody)^2, row-major
-  std::vector<double> copy;       // likewise
-  std::vector<double> inverse;    // likewise
-  std::vector<double> residuals;  // (6 kMaxRegionsPerBody)
+  std::vector<double> matrix;   // (6 kMaxRegionsPerBody)^2, row-major
+  std::vector<double> copy;     // likewise
+  std::vector<double> inverse;  // likewise
+  std::vector<double> full;     // likewise
 
   /// Takes all memory that a step can need; none where no body has this model.
   void reserve(const State& state);
@@ -24,9 +24,9 @@ struct ComplianceScratch {
 /// has gone under the tractions of all regions of the body, as a rigid body and beyond. Reads what
 /// the contact models write; writes RegionSupport, SupportField, SupportFit and RegionCoupling.
 ///
-/// The rigid part is one step of a quasi-Newton method for u = C f(u), all regions at once, so
-/// their order does not matter: du = (I + C K)^-1 (C f - u), with K the contacts' stiffness without
-/// slip. Where a contact slips K is too large and du too small, so it converges all the same. What
+/// The rigid part is one step of Newton's method for u = C f(u), all regions at once, so their
+/// order does not matter: du = (I + C K)^-1 (C f - u), with K the contacts' stiffness without slip,
+/// and where friction does not hold what K makes of du, Newton's method goes on with that. What
 /// is left, how the material bends and stretches under the contact, is small against the contact's
 /// own compliance and follows by plain iteration.
 void compliance(StepContext& context);

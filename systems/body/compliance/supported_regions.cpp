@@ -191,7 +191,7 @@ StiffnessRoot stiffness_root(const CompliantBody& body, const SupportedRegion& s
   axes.topLeftCorner<3, 3>() = rotation;
   axes.bottomRightCorner<3, 3>() = rotation;
   return {axes.transpose() * root.asDiagonal() * axes,
-          axes.transpose() * root.cwiseInverse().asDiagonal() * axes};
+          axes.transpose() * root.cwiseInverse().asDiagonal() * axes, root, axes};
 }
 
 void fit_region_support(const CompliantBody& body, const SupportedRegion& supported,

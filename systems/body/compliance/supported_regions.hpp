@@ -38,7 +38,10 @@ SupportFit& support_fit_of(const CompliantBody& body, const SupportedRegion& sup
 struct StiffnessRoot {
   Matrix6 root;
   Matrix6 inverse;
+  Vector6 along;  // its diagonal along the contact's axes
+  Matrix6 axes;   // rows: the grid's tangents and normal, for forces and for couples
 };
+using StiffnessRoots = std::array<StiffnessRoot, kMaxRegionsPerBody>;
 StiffnessRoot stiffness_root(const CompliantBody& body, const SupportedRegion& supported);
 
 /// A region as it stands, its load and motion not found yet.

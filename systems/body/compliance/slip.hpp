@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+
+#include <Eigen/Core>
+
+#include "systems/body/compliance/supported_regions.hpp"
+
+namespace torsion::engine {
+
+// What Newton's step of a compliant body makes of contacts that cannot hold what it counts on them
+// to hold. Motions are scaled, y = K^(1/2) du, in the body's axes.
+
+/// Of a region whose material moves by y while its tool goes on as in this step. Beside what it
+/// does where the material stays, its load changes by -K^(1/2) (y - slipped).
+struct Slip {
+  bool any;
+  Vector6 slipped;  // what friction does not hold of y
+  Matrix6 change;   // of that with y; where there is any
+};
+using Slips = std::array<Slip, kMaxRegionsPerBody>;
+
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+// On the stack: a step takes nothing from the heap.
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6 * kMaxRegionsPerBody, 1>;
+
+/// Newton's equations of a body, n = 6 rows a region, were all contacts to stick: A y = b.
+struct StuckEquations {
+  Eigen::Map<RowMatrix>& couplings;  // I + K^(1/2) C K^(1/2): the diagonal and what is right of it
+  Eigen::Map<RowMatrix>& matrix;     // A, all of it
+  const Vector& right;               // b
+};
+
+/// What slips of a motion of the body's regions.
+/// @param motion  n
+/// @return whether any does
+bool find_slips(const CompliantBody& body, const StiffnessRoots& roots, const Vector& motion,
+                Slips& slips);
+
+/// Solves A y - K^(1/2) C K^(1/2) s(y) = b, with s what slips, from the solution without slip, by
+/// Newton's method. Where it does not converge, what satisfies the equations best is taken.
+/// @param motion    n: y
+/// @param slips     of `motion`, before and after
+/// @param jacobian  n x n, is overwritten
+void let_slip(const CompliantBody& body, const StiffnessRoots& roots,
+              const StuckEquations& equations, Eigen::Map<RowMatrix>& jacobian, Vector& motion,
+              Slips& slips);
+
+}  // namespace torsion::engine

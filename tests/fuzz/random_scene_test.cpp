@@ -29,6 +29,20 @@ TEST_P(RandomSceneTest, KeepsAllProperties) {
   EXPECT_FALSE(broken.has_value()) << *broken << "\n" << scene.text;
 }
 
+class StepsTest : public testing::TestWithParam<Seed> {};
+
+TEST_P(StepsTest, TheForceIsTheSameHoweverManySteps) {
+  const RandomScene scene = GetParam().scene(GetParam().seed);
+  const std::optional<std::string> broken = depends_on_steps(scene);
+  EXPECT_FALSE(broken.has_value()) << *broken << "\n" << scene.text;
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, StepsTest,
+                         testing::Values(Seed{22, "MdrToolsThatSlideOverABodyThatLeans"}),
+                         [](const testing::TestParamInfo<Seed>& seed) {
+                           return std::string(seed.param.what);
+                         });
+
 INSTANTIATE_TEST_SUITE_P(
     Seeds, RandomSceneTest,
     testing::Values(

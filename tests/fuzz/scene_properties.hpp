@@ -14,4 +14,10 @@ namespace torsion::engine::test {
 /// @return nothing where all hold, or the scene cannot be prepared, which is said in its own words
 std::optional<std::string> broken_property(const RandomScene& random);
 
+/// Says how much it is another force where the same ways are gone in twice as many steps at twice
+/// the rate, so as fast. Not for friction that drags a contact's material by more than its size,
+/// mu > 1: those displacements are not small.
+/// @return nothing where it is the same, or the scene cannot be prepared
+std::optional<std::string> depends_on_steps(const RandomScene& random);
+
 }  // namespace torsion::engine::test

@@ -133,11 +133,29 @@ void look_at_regions(const World& world, int step, Run& run) {
 // late.
 constexpr int kLate = 5;
 
-}  // namespace
-
+/// What events have done to a force fades in 10 ms (region_wrenches.cpp).
 int hold_steps(double rate) {
   return std::max(60, static_cast<int>(std::ceil(0.012 * rate))) + kStill;
 }
+
+/// The rate, or a lower one at which no step is half a jump (tool_motion.cpp).
+double slow_enough_rate(const std::vector<std::vector<Pose>>& poses, double rate) {
+  constexpr double kSpeed = 10.0;       // m/s
+  constexpr double kTurnSpeed = 250.0;  // rad/s
+  for (std::size_t step = 1; step < poses.size(); ++step) {
+    for (std::size_t tool = 0; tool < poses[step].size(); ++tool) {
+      const Pose& from = poses[step - 1][tool];
+      const Pose& to = poses[step][tool];
+      const double turn =
+          2.0 * std::acos(std::min(1.0, std::abs(glm::dot(from.rotation, to.rotation))));
+      rate = std::min(rate, kSpeed / std::max(glm::distance(from.position, to.position), 1e-300));
+      rate = std::min(rate, kTurnSpeed / std::max(turn, 1e-300));
+    }
+  }
+  return rate;
+}
+
+}  // namespace
 
 std::vector<std::vector<Pose>> poses_of(const RandomScene& random, const World& world, int hold,
                                         int parts) {
@@ -156,20 +174,15 @@ std::vector<std::vector<Pose>> poses_of(const RandomScene& random, const World& 
   return poses;
 }
 
-double slow_enough_rate(const std::vector<std::vector<Pose>>& poses, double rate) {
-  constexpr double kSpeed = 10.0;       // m/s
-  constexpr double kTurnSpeed = 250.0;  // rad/s
-  for (std::size_t step = 1; step < poses.size(); ++step) {
-    for (std::size_t tool = 0; tool < poses[step].size(); ++tool) {
-      const Pose& from = poses[step - 1][tool];
-      const Pose& to = poses[step][tool];
-      const double turn =
-          2.0 * std::acos(std::min(1.0, std::abs(glm::dot(from.rotation, to.rotation))));
-      rate = std::min(rate, kSpeed / std::max(glm::distance(from.position, to.position), 1e-300));
-      rate = std::min(rate, kTurnSpeed / std::max(turn, 1e-300));
-    }
+std::optional<Journey> journey_of(const RandomScene& random) {
+  const Result<Simulation> simulation = prepare(random.scene, random.options);
+  if (!simulation) {
+    return std::nullopt;
   }
-  return rate;
+  Journey journey{random, hold_steps(random.options.rate), {}};
+  journey.poses = poses_of(random, simulation.value().world, journey.hold);
+  journey.scene.options.rate = slow_enough_rate(journey.poses, random.options.rate);
+  return journey;
 }
 
 Run run(Simulation& simulation, std::span<const RandomWay> ways,

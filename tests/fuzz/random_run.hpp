@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,18 +17,22 @@ inline constexpr int kMove = 150;
 inline constexpr int kHeld = kCome + kPress + kMove;  // from here on it is held still
 inline constexpr int kStill = 20;  // steps at the end of that in which nothing changes
 
-/// Steps for which the tools of a scene at this rate are held still: what events have done to a
-/// force fades in 10 ms (region_wrenches.cpp).
-int hold_steps(double rate);
-
 /// The poses of all tools, step by step, through the way and back.
-/// @param hold   hold_steps
+/// @param world  of the scene, at any rate
+/// @param hold   steps for which they are held still
 /// @param parts  steps for one of the others
 std::vector<std::vector<Pose>> poses_of(const RandomScene& random, const World& world, int hold,
                                         int parts = 1);
 
-/// The rate, or a lower one at which no step is half a jump (tool_motion.cpp).
-double slow_enough_rate(const std::vector<std::vector<Pose>>& poses, double rate);
+/// A scene at a rate that its tools' ways allow, and these.
+struct Journey {
+  RandomScene scene;
+  int hold = 0;  // steps for which the tools are held still
+  std::vector<std::vector<Pose>> poses;
+};
+
+/// @return nothing where the scene cannot be prepared
+std::optional<Journey> journey_of(const RandomScene& random);
 
 /// What is seen while the tools go their ways.
 struct Run {

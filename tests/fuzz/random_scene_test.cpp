@@ -29,6 +29,12 @@ TEST_P(RandomSceneTest, KeepsAllProperties) {
   EXPECT_FALSE(broken.has_value()) << *broken << "\n" << scene.text;
 }
 
+RandomScene random_scene_of_patch(std::uint64_t seed) {
+  RandomScene random = random_scene(seed);
+  random.scene.bodies[0].models.contact = ContactModel::kPatch;
+  return random;
+}
+
 class StepsTest : public testing::TestWithParam<Seed> {};
 
 TEST_P(StepsTest, TheForceIsTheSameHoweverManySteps) {
@@ -38,7 +44,9 @@ TEST_P(StepsTest, TheForceIsTheSameHoweverManySteps) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, StepsTest,
-                         testing::Values(Seed{22, "MdrToolsThatSlideOverABodyThatLeans"}),
+                         testing::Values(Seed{22, "MdrToolsThatSlideOverABodyThatLeans"},
+                                         Seed{22, "PatchToolsThatSlideOverABodyThatLeans", false,
+                                              random_scene_of_patch}),
                          [](const testing::TestParamInfo<Seed>& seed) {
                            return std::string(seed.param.what);
                          });

@@ -156,14 +156,11 @@ std::optional<std::string> depends_on_steps(const RandomScene& scene) {
   if (std::max(friction.static_friction, friction.dynamic_friction) > kMostFriction) {
     return std::nullopt;
   }
-  RandomScene random = scene;
-  const Result<Simulation> first = prepare(random.scene, random.options);
-  if (!first) {
+  std::optional<Journey> journey = journey_of(scene);
+  if (!journey) {
     return std::nullopt;
   }
-  const int hold = hold_steps(random.options.rate);
-  const std::vector<std::vector<Pose>> poses = poses_of(random, first.value().world, hold);
-  random.options.rate = slow_enough_rate(poses, random.options.rate);
+  auto& [random, hold, poses] = *journey;
   Result<Simulation> coarse = prepare(random.scene, random.options);
   random.options.rate *= kParts;
   Result<Simulation> fine = prepare(random.scene, random.options);
@@ -172,34 +169,31 @@ std::optional<std::string> depends_on_steps(const RandomScene& scene) {
   }
   const Run all = run(coarse.value(), random.ways, poses);
   const Run parts =
-      run(fine.value(), random.ways, poses_of(random, first.value().world, hold, kParts));
+      run(fine.value(), random.ways, poses_of(random, fine.value().world, hold, kParts));
   for (std::size_t tool = 0; tool < all.forces.size() && !all.into_a_side; ++tool) {
     double apart = 0.0;
-    double all_of_it = 0.0;
+    double whole = 0.0;
     for (std::size_t step = 0; step < poses.size(); ++step) {
       const glm::dvec3& force = all.forces[tool][step];
       apart += glm::distance(force, parts.forces[tool][kParts * step]);
-      all_of_it += glm::length(force);
+      whole += glm::length(force);
     }
-    if (apart > kSame * all_of_it) {
+    if (apart > kSame * whole) {
       return fmt::format(
           "tool {}: in twice as many steps the force differs by {:.3g} of itself, "
           "in the mean",
-          tool, apart / all_of_it);
+          tool, apart / whole);
     }
   }
   return std::nullopt;
 }
 
 std::optional<std::string> broken_property(const RandomScene& scene) {
-  RandomScene random = scene;
-  const Result<Simulation> first = prepare(random.scene, random.options);
-  if (!first) {
+  const std::optional<Journey> journey = journey_of(scene);
+  if (!journey) {
     return std::nullopt;
   }
-  const int hold = hold_steps(random.options.rate);
-  const std::vector<std::vector<Pose>> poses = poses_of(random, first.value().world, hold);
-  random.options.rate = slow_enough_rate(poses, random.options.rate);
+  const auto& [random, hold, poses] = *journey;
   Result<Simulation> simulation = prepare(random.scene, random.options);
   if (!simulation) {
     return "with a lower rate it cannot be prepared: " + simulation.error().text;

@@ -25,8 +25,9 @@ struct ComplianceScratch {
 /// the contact models write; writes RegionSupport, SupportField, SupportFit and RegionCoupling.
 ///
 /// The rigid part is one step of Newton's method for u = C f(u), all regions at once, so their
-/// order does not matter: du = (I + C K)^-1 (C f - u), with K the contacts' stiffness without slip,
-/// and where friction does not hold what K makes of du, Newton's method goes on with that. What
+/// order does not matter: du = (I + C K)^-1 (C f - u), with K the contacts' stiffness without slip.
+/// On a body that is soft beside its contacts it goes on from there where they slip (slip.hpp);
+/// on others K is too large then and du too small, so it converges all the same. What
 /// is left, how the material bends and stretches under the contact, is small against the contact's
 /// own compliance and follows by plain iteration.
 void compliance(StepContext& context);

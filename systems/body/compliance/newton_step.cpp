@@ -220,7 +220,7 @@ NewtonStep newton_step(CompliantBody& body, ComplianceScratch& scratch) {
         matrix, copy, [&] { newton.motion = right; }, newton.motion);
   }
   // On other bodies no region counts on another one to hold the body.
-  if (answers && find_slips(body, newton.roots, newton.motion, newton.slips)) {
+  if (answers) {
     if (!newton.sways_together) {
       full = matrix.selfadjointView<Eigen::Upper>();
     }

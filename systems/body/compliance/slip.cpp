@@ -44,8 +44,9 @@ double held_share(const FrictionLimit& limit, const Tangential& load, double pre
   return force > most * (1.0 + kRounding) ? most / force : 1.0;
 }
 
-/// The limit is an ellipsoid of the two forces and the couple about the normal (Goyal, Ruina and
-/// Papadopoulos, Wear 143, 1991); under Hertz' pressure the couple alone is 3 pi / 16 mu N a.
+/// The limit surface (Goyal, Ruina and Papadopoulos, Wear 143, 1991) is taken for an ellipsoid of
+/// the two forces and the couple about the normal (Howe and Cutkosky, Int. J. Robotics Research 15,
+/// 1996); under Hertz' pressure the couple alone is 3 pi / 16 mu N a.
 FrictionLimit friction_limit(const CompliantBody& body, const SupportedRegion& supported,
                              const StiffnessRoot& root) {
   constexpr double kArm = 0.589;  // of the radius
@@ -127,22 +128,26 @@ Matrix6 coupling(const Eigen::Map<RowMatrix>& upper, std::size_t i, std::size_t 
 
 }  // namespace
 
-bool find_slips(const CompliantBody& body, const StiffnessRoots& roots, const Vector& motion,
-                Slips& slips) {
-  bool any = false;
-  for (std::size_t i = 0; i < body.count; ++i) {
-    slips[i] = slip_of(friction_limit(body, body.regions[i], roots[i]), roots[i],
-                       motion.segment<6>(static_cast<Eigen::Index>(6 * i)));
-    any = any || slips[i].any;
-  }
-  return any;
-}
-
 void let_slip(const CompliantBody& body, const StiffnessRoots& roots,
               const StuckEquations& equations, Eigen::Map<RowMatrix>& jacobian, Vector& motion,
               Slips& slips) {
   constexpr int kMostSteps = 6;
   constexpr double kSolved = 1e-3;  // of the right side; the next step of the world goes on from it
+  std::array<FrictionLimit, kMaxRegionsPerBody> limits;
+  for (std::size_t i = 0; i < body.count; ++i) {
+    limits[i] = friction_limit(body, body.regions[i], roots[i]);
+  }
+  const auto find_slips = [&] {
+    bool any = false;
+    for (std::size_t i = 0; i < body.count; ++i) {
+      slips[i] = slip_of(limits[i], roots[i], motion.segment<6>(static_cast<Eigen::Index>(6 * i)));
+      any = any || slips[i].any;
+    }
+    return any;
+  };
+  if (!find_slips()) {
+    return;
+  }
   Vector best = motion;
   double least = std::numeric_limits<double>::infinity();
   for (int k = 0; k <= kMostSteps; ++k) {
@@ -168,10 +173,10 @@ void let_slip(const CompliantBody& body, const StiffnessRoots& roots,
     }
     solve_general(static_cast<std::size_t>(residual.size()), jacobian.data(), residual.data());
     motion -= residual;
-    find_slips(body, roots, motion, slips);
+    find_slips();
   }
   motion = best;
-  find_slips(body, roots, motion, slips);
+  find_slips();
 }
 
 }  // namespace torsion::engine

@@ -31,17 +31,11 @@ struct StuckEquations {
   const Vector& right;               // b
 };
 
-/// What slips of a motion of the body's regions.
-/// @param motion  n
-/// @return whether any does
-bool find_slips(const CompliantBody& body, const StiffnessRoots& roots, const Vector& motion,
-                Slips& slips);
-
 /// Solves A y - K^(1/2) C K^(1/2) s(y) = b, with s what slips, from the solution without slip, by
 /// Newton's method. Where it does not converge, what satisfies the equations best is taken.
-/// @param motion    n: y
-/// @param slips     of `motion`, before and after
 /// @param jacobian  n x n, is overwritten
+/// @param motion    n: y, before that of A y = b
+/// @param slips     of `motion`; filled
 void let_slip(const CompliantBody& body, const StiffnessRoots& roots,
               const StuckEquations& equations, Eigen::Map<RowMatrix>& jacobian, Vector& motion,
               Slips& slips);

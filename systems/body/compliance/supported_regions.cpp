@@ -24,15 +24,6 @@ namespace {
 /// interpolation between ports could go below that.
 constexpr double kStiffest = -0.75;
 
-/// Coefficient of friction below which a contact counts as free to slide: it would stick for less
-/// than this part of its depth. A pinched column still shakes at 1e-4 when such a contact counts as
-/// one that sticks, and no longer at this.
-constexpr double kSlippery = 1e-3;
-
-/// Of the stiffness of a contact that sticks: what one that is free has against sliding and
-/// turning, so that there is a root to divide by.
-constexpr double kFreeToSlide = 1e-4;
-
 /// A symmetric compliance over the contact's own: its eigenvalues, and the factors that make it a
 /// compliance again.
 struct RelativeCompliance {
@@ -173,13 +164,8 @@ SupportedRegion supported_region(const Model& model, const State& state, std::ui
 
 StiffnessRoot stiffness_root(const CompliantBody& body, const SupportedRegion& supported) {
   const RegionFrame& frame = body.state.regions.at<RegionFrame>(supported.region);
-  StuckStiffness stuck = stuck_stiffness(body.model, body.state, supported.region,
-                                         support_fit_of(body, supported).radius);
-  const Friction& friction = body.model.bodies.at<Friction>(body.row);
-  if (std::max(friction.static_friction, friction.dynamic_friction) < kSlippery) {
-    stuck.along_tangents *= kFreeToSlide;
-    stuck.about_normal *= kFreeToSlide;
-  }
+  const StuckStiffness stuck = stuck_stiffness(body.model, body.state, supported.region,
+                                               support_fit_of(body, supported).radius);
   Vector6 root;
   root << stuck.along_tangents, stuck.along_tangents, stuck.along_normal, stuck.about_tangents.x,
       stuck.about_tangents.y, stuck.about_normal;

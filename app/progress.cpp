@@ -25,12 +25,12 @@ void Progress::show(double share) {
   if (!on_ || Clock::now() < next_) {
     return;
   }
-  constexpr int kWidth = 40;
-  const int filled = static_cast<int>(std::clamp(share, 0.0, 1.0) * kWidth);
+  constexpr int kBarWidth = 40;
+  const int filled = static_cast<int>(std::clamp(share, 0.0, 1.0) * kBarWidth);
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
   const double left = share > 0.0 ? elapsed / share - elapsed : 0.0;
   fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3.0f} %, {:.0f} s left \033[K", what_, "", filled, "",
-             kWidth - filled, 100.0 * share, left);
+             kBarWidth - filled, 100.0 * share, left);
   std::fflush(stderr);
   drawn_ = true;
   next_ = Clock::now() + std::chrono::milliseconds(100);

@@ -60,10 +60,10 @@ static_assert(sizeof(SchedulerAttributes) == 48);
 /// place at once (EEVDF, Stoica and Abdel-Wahab 1995, as Linux has had it since 6.12; kernels
 /// before take no notice). Needs no privilege.
 void ask_for_short_turns() {
-  constexpr std::uint64_t kTurn = 100'000;  // ns: the shortest that the kernel takes
+  constexpr std::uint64_t kShortestTurn = 100'000;  // ns: the shortest that the kernel takes
   SchedulerAttributes wanted;
   if (::syscall(SYS_sched_getattr, 0, &wanted, sizeof wanted, 0U) == 0) {
-    wanted.runtime = kTurn;
+    wanted.runtime = kShortestTurn;
     ::syscall(SYS_sched_setattr, 0, &wanted, 0U);
   }
 }

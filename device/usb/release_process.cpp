@@ -85,11 +85,12 @@ bool claim(int node, unsigned interface) {
 }
 
 void let_go(const Watched& device) {
-  constexpr unsigned kTimeout = 50;  // ms
+  constexpr unsigned kReleaseTimeout = 50;  // ms
   for (std::uint32_t i = 0; i < device.entry.writes && device.node >= 0; ++i) {
     LastWrite last = device.entry.last[i];
     if (claim(device.node, last.interface)) {
-      usbdevfs_bulktransfer transfer{last.endpoint, last.length, kTimeout, last.bytes.data()};
+      usbdevfs_bulktransfer transfer{last.endpoint, last.length, kReleaseTimeout,
+                                     last.bytes.data()};
       ::ioctl(device.node, USBDEVFS_BULK, &transfer);  // of an interrupt endpoint, too
       unsigned interface = last.interface;
       ::ioctl(device.node, USBDEVFS_RELEASEINTERFACE, &interface);

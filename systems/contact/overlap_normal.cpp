@@ -57,14 +57,15 @@ class CellLine {
   /// How much the body ends just beyond a cell at the grid's edge, 0 to 1.
   /// @param outward  cosine between the body's normal there and the way out
   [[nodiscard]] double ends_beyond(std::size_t cell, double outward) const {
-    constexpr double kSure = 1.0;  // cells
+    constexpr double kSureDistance = 1.0;  // cells
     constexpr double kTooFar = 1.5;
     if (!body_ends_) {
       return 0.0;
     }
     const double away = -columns_.points.value[cell] / axis_.length;
     return (1.0 - facing_share(columns_.points.gradient_z[cell])) * columns_.over_body[cell] *
-           smooth_step((kTooFar - away) / (kTooFar - kSure)) * std::clamp(outward, 0.0, 1.0);
+           smooth_step((kTooFar - away) / (kTooFar - kSureDistance)) *
+           std::clamp(outward, 0.0, 1.0);
   }
 
   /// A grid that holds what is loaded may end where the overlap is still deep. What is counted then

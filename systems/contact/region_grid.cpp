@@ -170,7 +170,7 @@ void fit(const Grid& grid, const PlaneBox& box) {
 }
 
 void approach(const Grid& grid, const PlaneBox& box, bool moves) {
-  constexpr double kShort = 0.05;  // of the half size: a cell is an eighth of it
+  constexpr double kShortMotion = 0.05;  // of the half size: a cell is an eighth of it
   constexpr double kLong = 0.2;
   constexpr double kPart = 0.5;
   const glm::dvec2 half = grid.frame.half_size;
@@ -178,10 +178,11 @@ void approach(const Grid& grid, const PlaneBox& box, bool moves) {
   const glm::dvec2 growth = half_size_for(grid, box) - half;
   const glm::dvec2 off = glm::max(glm::abs(shift), glm::abs(growth)) / half;
   const double most = std::max(off.x, off.y);
-  if (!moves && most < kShort) {
+  if (!moves && most < kShortMotion) {
     return;
   }
-  const double part = kPart + (1.0 - kPart) * smooth_step((most - kShort) / (kLong - kShort));
+  const double part =
+      kPart + (1.0 - kPart) * smooth_step((most - kShortMotion) / (kLong - kShortMotion));
   lay(grid, part * shift, half + part * growth);
 }
 

@@ -86,7 +86,7 @@ void keep_plane_sides(const Grid& grid, double above) {
   if (count == 0) {
     return;
   }
-  constexpr double kBent = 0.7;
+  constexpr double kBentRatio = 0.7;
   constexpr double kPlane = 0.9;
   const DistanceColumns sides = distances_above(grid, count, above);
   for (std::size_t k = 0; k < count; ++k) {
@@ -95,7 +95,7 @@ void keep_plane_sides(const Grid& grid, double above) {
         columns.tool_x[cell] * columns.tool_x[cell] + columns.tool_y[cell] * columns.tool_y[cell];
     const double ratio =
         sides.gradient_z[k] * sides.gradient_z[k] * (1.0 + slope) / columns.gradient_square[cell];
-    columns.open[cell] *= smooth_step((kPlane - ratio) / (kPlane - kBent));
+    columns.open[cell] *= smooth_step((kPlane - ratio) / (kPlane - kBentRatio));
   }
 }
 

@@ -94,12 +94,12 @@ void over_resting(const Pose& body, const ToolMotion& tool, double dt, ToolOverB
 /// What is left of a motion that tool and body make together is rounding, and no slip: some models
 /// ask for its direction.
 void drop_rounding(const BodyPose& body, ToolOverBody& over) {
-  constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
+  constexpr double kMotionRounding = 64.0 * std::numeric_limits<double>::epsilon();
   const double size = glm::length(body.now.position) + glm::length(over.center);
-  if (glm::length(over.shift) <= kRounding * size) {
+  if (glm::length(over.shift) <= kMotionRounding * size) {
     over.shift = glm::dvec3(0.0);
   }
-  if (glm::length(over.turn) <= kRounding) {
+  if (glm::length(over.turn) <= kMotionRounding) {
     over.turn = glm::dvec3(0.0);
   }
 }

@@ -16,12 +16,12 @@ constexpr double kHeldBand =
     0.03;  // of the body's size: over this width beside what is fixed motion fades to zero
 
 double distance_share_from_volume(const FixedVolume& volume, const glm::dvec3& point) {
-  constexpr double kBand = 0.1;  // of the volume's half size
+  constexpr double kFadeBand = 0.1;  // of the volume's half size
   const glm::dvec3 unit = volume.to_unit * (point - volume.center);
   const double away = volume.kind == VolumeKind::kSphere
                           ? glm::length(unit)
                           : std::max({std::abs(unit.x), std::abs(unit.y), std::abs(unit.z)});
-  return smooth_step((away - 1.0) / kBand);
+  return smooth_step((away - 1.0) / kFadeBand);
 }
 
 /// Displacements at the interpolation's centers: those of the body model, and zero at the held

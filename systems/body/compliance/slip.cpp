@@ -40,8 +40,8 @@ double pressing_force(const FrictionLimit& limit, const Vector6& motion) {
 double held_share(const FrictionLimit& limit, const Tangential& load, double pressing) {
   const double force = load.cwiseProduct(limit.weight).norm();
   const double most = limit.coefficient * pressing;
-  constexpr double kRounding = 1e-9;
-  return force > most * (1.0 + kRounding) ? most / force : 1.0;
+  constexpr double kLimitRounding = 1e-9;
+  return force > most * (1.0 + kLimitRounding) ? most / force : 1.0;
 }
 
 /// The limit surface (Goyal, Ruina and Papadopoulos, Wear 143, 1991) is taken for an ellipsoid of
@@ -75,8 +75,8 @@ FrictionLimit friction_limit(const CompliantBody& body, const SupportedRegion& s
   return limit;
 }
 
-Slip slip_of(const FrictionLimit& limit, const StiffnessRoot& root, const Vector6& motion) {
-  Slip slip;
+RegionSlip slip_of(const FrictionLimit& limit, const StiffnessRoot& root, const Vector6& motion) {
+  RegionSlip slip;
   slip.slipped.setZero();
   const Vector6 moved = root.axes * motion;
   const Tangential stuck = limit.ahead - tangential(moved);
@@ -131,7 +131,7 @@ Matrix6 coupling(const Eigen::Map<RowMatrix>& upper, std::size_t i, std::size_t 
 void let_slip(const CompliantBody& body, const StiffnessRoots& roots,
               const StuckEquations& equations, Eigen::Map<RowMatrix>& jacobian, Vector& motion,
               Slips& slips) {
-  constexpr int kMostSteps = 6;
+  constexpr int kMostSlipSteps = 6;
   constexpr double kSolved = 1e-3;  // of the right side; the next step of the world goes on from it
   std::array<FrictionLimit, kMaxRegionsPerBody> limits;
   for (std::size_t i = 0; i < body.count; ++i) {
@@ -150,7 +150,7 @@ void let_slip(const CompliantBody& body, const StiffnessRoots& roots,
   }
   Vector best = motion;
   double least = std::numeric_limits<double>::infinity();
-  for (int k = 0; k <= kMostSteps; ++k) {
+  for (int k = 0; k <= kMostSlipSteps; ++k) {
     Vector residual(motion.size());
     residual.noalias() = equations.matrix.lazyProduct(motion);
     residual -= equations.right;
@@ -168,7 +168,7 @@ void let_slip(const CompliantBody& body, const StiffnessRoots& roots,
       least = size;
       best = motion;
     }
-    if (!(size > kSolved * equations.right.norm()) || k == kMostSteps) {
+    if (!(size > kSolved * equations.right.norm()) || k == kMostSlipSteps) {
       break;
     }
     solve_general(static_cast<std::size_t>(residual.size()), jacobian.data(), residual.data());

@@ -13,12 +13,12 @@ namespace torsion::engine {
 
 /// Of a region whose material moves by y while its tool goes on as in this step. Beside what it
 /// does where the material stays, its load changes by -K^(1/2) (y - slipped).
-struct Slip {
+struct RegionSlip {
   bool any;
   Vector6 slipped;  // what friction does not hold of y
   Matrix6 change;   // of that with y; where there is any
 };
-using Slips = std::array<Slip, kMaxRegionsPerBody>;
+using Slips = std::array<RegionSlip, kMaxRegionsPerBody>;
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 // On the stack: a step takes nothing from the heap.

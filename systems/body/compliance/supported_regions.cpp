@@ -22,7 +22,7 @@ namespace {
 
 /// The smallest allowed eigenvalue of K^(1/2) C K^(1/2). At -1 no compliance would be left;
 /// interpolation between ports could go below that.
-constexpr double kStiffest = -0.75;
+constexpr double kStiffestContact = -0.75;
 
 /// A symmetric compliance over the contact's own: its eigenvalues, and the factors that make it a
 /// compliance again.
@@ -82,7 +82,7 @@ void find_own_motion(const CompliantBody& body, const SupportedRegion& supported
   motion.topLeftCorner<3, 3>() += bend;
   const RelativeCompliance relative(body, supported, motion);
   const double least = relative.system.values[0];
-  support_fit.share = std::min(1.0, kStiffest / std::min(least, -1e-300));
+  support_fit.share = std::min(1.0, kStiffestContact / std::min(least, -1e-300));
   support_fit.on_layer = 0;
   Eigen::Map<Matrix6>(support_fit.own.data()) = relative.at_least(0.0);
 }
@@ -98,7 +98,7 @@ void find_motion_on_layer(const CompliantBody& body, const SupportedRegion& supp
   if (!law_of(body.model, body.row).by_cells && !layer_kernel(body.model, body.row).empty()) {
     const Matrix6 motion = layer_motion(body.model, body.row, contact, thickness);
     Eigen::Map<Matrix6>(support_fit.own.data()) =
-        RelativeCompliance(body, supported, motion).at_least(kStiffest);
+        RelativeCompliance(body, supported, motion).at_least(kStiffestContact);
   }
 }
 

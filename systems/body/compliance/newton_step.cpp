@@ -80,18 +80,28 @@ void sway(const CompliantBody& body, SupportedRegion& supported) {
   }
 }
 
-/// Whether the body deflects so much beside the contacts, under at least two regions, that one of
-/// them feels within a step how the other answers.
-bool answers_within_a_step(const CompliantBody& body, const ContactLaw& law,
-                           const StiffnessRoots& roots) {
+/// How many regions' own compliance is more than `least` times their contacts'.
+std::size_t count_soft_regions(const CompliantBody& body, const StiffnessRoots& roots,
+                               double least) {
   std::size_t soft = 0;
   for (std::size_t i = 0; i < body.count; ++i) {
     const SupportFit& support_fit = support_fit_of(body, body.regions[i]);
     const Eigen::Map<const Matrix6> own(support_fit.own.data());
     const double share = (roots[i].root * own * roots[i].root).trace();
-    soft += support_fit.on_layer == 0 && share > law.answers_from ? 1U : 0U;
+    soft += support_fit.on_layer == 0 && share > least ? 1U : 0U;
   }
-  return soft >= 2;
+  return soft;
+}
+
+/// Whether the only tool's regions count on their own friction to hold the body: their equations
+/// leave out that the body gives way to their load. Regions of two tools that pinch a soft body
+/// swing when they are let slip, for Newton's matrix has nothing of how their loads' places move
+/// (add_sway).
+bool counts_on_itself(const CompliantBody& body, const ContactLaw& law,
+                      const StiffnessRoots& roots) {
+  constexpr double kSoftBody = 0.5;
+  return body.model.tools.size() == 1 && !law.by_cells && !law.moves_own_support &&
+         count_soft_regions(body, roots, kSoftBody) > 0;
 }
 
 /// Solves with Newton's symmetric matrix. Couplings between regions that overlap are found through
@@ -197,7 +207,8 @@ NewtonStep newton_step(CompliantBody& body, ComplianceScratch& scratch) {
   Eigen::Map<RowMatrix> full(scratch.full.data(), rows, rows);
   Eigen::Map<RowMatrix> copy(scratch.copy.data(), rows, rows);
   const ContactLaw& law = law_of(body.model, body.row);
-  const bool answers = answers_within_a_step(body, law, newton.roots);
+  // Under at least two regions: one of them feels within a step how the other answers.
+  const bool answers = count_soft_regions(body, newton.roots, law.answers_from) >= 2;
   newton.sways_together = answers && law.by_cells;
   if (!newton.sways_together) {
     for (std::size_t i = 0; i < body.count; ++i) {
@@ -219,8 +230,8 @@ NewtonStep newton_step(CompliantBody& body, ComplianceScratch& scratch) {
     solve_newton(
         matrix, copy, [&] { newton.motion = right; }, newton.motion);
   }
-  // On other bodies no region counts on another one to hold the body.
-  if (answers) {
+  // On other bodies no region counts on another one, or on itself, to hold the body.
+  if (answers || counts_on_itself(body, law, newton.roots)) {
     if (!newton.sways_together) {
       full = matrix.selfadjointView<Eigen::Upper>();
     }

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "systems/contact/strain.hpp"
+
 namespace torsion::engine {
 namespace {
 
@@ -70,6 +72,17 @@ double PatchStatistics::mean_iterations() const {
   return static_cast<double>(iterations) / static_cast<double>(region_steps());
 }
 
+void StrainStatistics::add(const World& world, std::uint32_t region) {
+  if (world.state.regions.at<Contact>(region).area > 0.0) {
+    tractions.add(traction_over_modulus(world.model, world.state, region));
+  }
+  tilts.add(support_tilt(world.state, region));
+}
+
+bool StrainStatistics::is_large() const {
+  return most_traction() > kLargeTraction || most_tilt() > kLargeTilt;
+}
+
 void RunStatistics::add_step(const World& world, double step_us) {
   steps += 1;
   contact_steps += world.state.regions.size() > 0 ? 1U : 0U;
@@ -81,6 +94,7 @@ void RunStatistics::add_step(const World& world, double step_us) {
   }
   for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
     const std::uint32_t body = world.state.regions.at<RegionIdentity>(region).body;
+    strain.add(world, region);
     if (world.model.bodies.at<BodyModels>(body).contact == ContactModel::kPatch) {
       patch.add(world.state.regions.at<PatchState>(region));
     }

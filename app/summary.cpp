@@ -32,6 +32,16 @@ std::string patch_text(const PatchStatistics& patch) {
       patch.residuals.quantile(0.99), patch.residuals.largest());
 }
 
+std::string strain_text(const StrainStatistics& strain) {
+  return fmt::format(
+      "strain   mean traction of a contact up to {:.2g} of E/(1 - nu^2), tilt of the body under it "
+      "up to {:.2g} rad{}\n",
+      strain.most_traction(), strain.most_tilt(),
+      strain.is_large() ? ": large for linear elasticity, which all models are (docs/models.md, "
+                          "Large strain)"
+                        : "");
+}
+
 nlohmann::ordered_json patch_json(const PatchStatistics& patch) {
   return {{"region_steps", patch.region_steps()},
           {"iterations", {{"mean", patch.mean_iterations()}, {"most", patch.most_iterations}}},
@@ -39,6 +49,12 @@ nlohmann::ordered_json patch_json(const PatchStatistics& patch) {
            {{"median", patch.residuals.quantile(0.5)},
             {"p99", patch.residuals.quantile(0.99)},
             {"largest", patch.residuals.largest()}}}};
+}
+
+nlohmann::ordered_json strain_json(const StrainStatistics& strain) {
+  return {{"traction_over_modulus", strain.most_traction()},
+          {"tilt_rad", strain.most_tilt()},
+          {"large", strain.is_large()}};
 }
 
 }  // namespace
@@ -89,6 +105,9 @@ std::string summary_text(const Session& session, const RunStatistics& statistics
   }
   if (statistics.patch.region_steps() > 0) {
     text += patch_text(statistics.patch);
+  }
+  if (statistics.strain.tractions.count() > 0) {
+    text += strain_text(statistics.strain);
   }
   for (std::uint32_t body = 0; body < world.model.bodies.size(); ++body) {
     const ModelChoice& choice = session.simulation.choices[body];
@@ -145,6 +164,9 @@ std::string summary_json(const Session& session, const RunStatistics& statistics
   }
   if (statistics.patch.region_steps() > 0) {
     json["patch"] = patch_json(statistics.patch);
+  }
+  if (statistics.strain.tractions.count() > 0) {
+    json["strain"] = strain_json(statistics.strain);
   }
   for (std::uint32_t body = 0; body < world.model.bodies.size(); ++body) {
     const ModelChoice& choice = session.simulation.choices[body];

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <numbers>
 #include <sstream>
 #include <thread>
+#include <tuple>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -80,6 +83,27 @@ TEST(SimulateTest, JsonSummaryGivesTheRun) {
   EXPECT_EQ(summary["steps"], 1000);
   EXPECT_EQ(summary["most_regions"], 10);
   EXPECT_TRUE(summary["faults"].empty());
+}
+
+// Hertz: F = (4/3) E* R^(1/2) d^(3/2) on an area of pi R d.
+TEST(SimulateTest, SummaryGivesTheMeanTractionOfABall) {
+  for (const auto& [name, modulus, radius] :
+       {std::tuple("ball_on_cube", 4e6, 0.03), std::tuple("ball_on_cube_soft", 4e4 / 3.0, 0.03)}) {
+    const Ran ran = run_torsion(
+        {"simulate", scene(name), "--json", "--contact-model", "mdr", "--body-model", "none"});
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    const json summary = json::parse(ran.out);
+    const double force = summary["peak_force_N"];
+    const double depth = std::pow(0.75 * force / (modulus * std::sqrt(radius)), 2.0 / 3.0);
+    // Of the same force on a sphere, which is no paraboloid (Sneddon 1965), to the second order of
+    // a / R, which is the square root of d / R.
+    const double expected =
+        force / (std::numbers::pi * radius * depth) / modulus * (1.0 + 4.0 / 15.0 * depth / radius);
+    // Held for half of the run: the quantile's bin ends with the largest.
+    EXPECT_NEAR(summary["strain"]["traction_over_modulus"], expected, 0.02 * expected) << name;
+    EXPECT_EQ(summary["strain"]["large"], expected > 0.2) << name;
+    EXPECT_LT(summary["strain"]["tilt_rad"], 1e-5) << name;
+  }
 }
 
 TEST(SimulateTest, SummaryGivesResidualsAndSweepsOfPatch) {

@@ -84,5 +84,30 @@ TEST(RunStatisticsTest, OtherModelsHaveNoResiduals) {
   EXPECT_EQ(statistics.patch.region_steps(), 0U);
 }
 
+TEST(RunStatisticsTest, StrainIsOfTractionAndTilt) {
+  World world = world_with_patches();
+  for (Elasticity& elasticity : world.model.bodies.column<Elasticity>()) {
+    elasticity = {.youngs_modulus = 7.5e3, .poisson_ratio = 0.5};  // E* = 10 kPa
+  }
+  RunStatistics statistics;
+  statistics.add_step(world, 1.0);
+  EXPECT_EQ(statistics.strain.tractions.count(), 0U) << "without area there is no traction";
+  world.state.regions.at<Contact>(0).area = 1e-4;
+  world.state.regions.at<RegionNormal>(0).force = 0.03;
+  world.state.regions.at<RegionFriction>(0).force = {0.0, -0.04};
+  // A turn about the normal tilts nothing.
+  world.state.regions.at<RegionFrame>(1) = {};
+  world.state.regions.at<RegionSupport>(1).rotation = {0.06, 0.08, 5.0};
+  statistics.add_step(world, 1.0);
+  EXPECT_NEAR(statistics.strain.tractions.largest(), 0.05 / 1e-4 / 1e4, 1e-15);
+  EXPECT_NEAR(statistics.strain.tilts.largest(), 0.1, 1e-15);
+  EXPECT_FALSE(statistics.strain.is_large());
+  for (int i = 0; i < 10; ++i) {
+    world.state.regions.at<RegionNormal>(0).force = 0.3;
+    statistics.add_step(world, 1.0);
+  }
+  EXPECT_TRUE(statistics.strain.is_large());
+}
+
 }  // namespace
 }  // namespace torsion::engine

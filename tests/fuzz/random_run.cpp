@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "systems/contact/strain.hpp"
 #include "systems/geometry/distance.hpp"
 #include "systems/math/frames.hpp"
 #include "systems/scratch.hpp"
@@ -108,6 +109,7 @@ void look_at_regions(const World& world, int step, Run& run) {
   constexpr double kDrag = 0.05;
   double residual = 0.0;
   bool pressed = false;
+  bool strained = false;
   for (std::uint32_t region = 0; region < world.state.regions.size(); ++region) {
     const double force = world.state.regions.at<RegionNormal>(region).force;
     if (force <= 0.0) {
@@ -123,10 +125,12 @@ void look_at_regions(const World& world, int step, Run& run) {
       run.friction_step = step;
     }
     pressed = true;
+    strained = strained || traction_over_modulus(world.model, world.state, region) > kLargeTraction;
     residual = std::max(residual, world.state.regions.at<PatchState>(region).residual);
   }
   run.pressed += pressed ? 1 : 0;
   run.unsolved += residual > kUnsolved ? 1 : 0;
+  run.strained += strained ? 1 : 0;
 }
 
 // Steps for which a contact that a tool lifts off from may be without points: its body answers

@@ -47,6 +47,7 @@ struct Run {
   int friction_step = -1;
   int pressed = 0;   // steps with a force
   int unsolved = 0;  // those that left equations of `patch` far from solved
+  int strained = 0;  // those in which a contact was loaded too much for linear elasticity
 };
 
 Run run(Simulation& simulation, std::span<const RandomWay> ways,

@@ -151,11 +151,6 @@ std::optional<std::string> depends_on_steps(const RandomScene& scene) {
   // begins or lets go does so in a step.
   constexpr double kSame = 0.04;
   constexpr int kParts = 2;
-  constexpr double kMostFriction = 1.0;
-  const Friction& friction = scene.scene.bodies[0].friction;
-  if (std::max(friction.static_friction, friction.dynamic_friction) > kMostFriction) {
-    return std::nullopt;
-  }
   std::optional<Journey> journey = journey_of(scene);
   if (!journey) {
     return std::nullopt;
@@ -168,6 +163,13 @@ std::optional<std::string> depends_on_steps(const RandomScene& scene) {
     return "at another rate it cannot be prepared";
   }
   const Run all = run(coarse.value(), random.ways, poses);
+  // Friction that drags a contact's material by more than the contact's size: no answer is right.
+  constexpr double kMuchFriction = 1.0;
+  const Friction& friction = scene.scene.bodies[0].friction;
+  if (std::max(friction.static_friction, friction.dynamic_friction) > kMuchFriction &&
+      100 * all.strained > all.pressed) {
+    return std::nullopt;
+  }
   const Run parts =
       run(fine.value(), random.ways, poses_of(random, fine.value().world, hold, kParts));
   for (std::size_t tool = 0; tool < all.forces.size() && !all.into_a_side; ++tool) {

@@ -15,8 +15,8 @@ namespace torsion::engine::test {
 std::optional<std::string> broken_property(const RandomScene& random);
 
 /// Says how much it is another force where the same ways are gone in twice as many steps at twice
-/// the rate, so as fast. Not for friction that drags a contact's material by more than its size,
-/// mu > 1: those displacements are not small.
+/// the rate, so as fast. Not where friction with mu > 1 loads a contact too much for linear
+/// elasticity (systems/contact/strain.hpp).
 /// @return nothing where it is the same, or the scene cannot be prepared
 std::optional<std::string> depends_on_steps(const RandomScene& random);
 

@@ -7,23 +7,13 @@ one, and constants of functions that hide one of another file.
 
 usage: check_joined_files.py [--self-test]
 """
-import pathlib
 import re
-import subprocess
 import sys
 
-TYPE = re.compile(r"^(?:struct|class|union|enum(?: class| struct)?) (?:TORSION_API )?(\w+)\b(?!::)[^;()]*\{", re.MULTILINE)
+from check_type_names import TYPE, places_of, texts_of
+
 CONSTANT = re.compile(r"^(?:inline )?constexpr [^=;()]*?\b(k[A-Z]\w*)\b", re.MULTILINE)
 LOCAL = re.compile(r"^ +(?:static )?constexpr [^=;()]*?\b(k[A-Z]\w*)\b", re.MULTILINE)
-
-
-def places_of(pattern, texts):
-    """Of {path: text}, {name: the set of the paths where the pattern finds it}."""
-    places = {}
-    for path, text in texts.items():
-        for name in pattern.findall(text):
-            places.setdefault(name, set()).add(path)
-    return places
 
 
 def clashes(texts):
@@ -32,12 +22,12 @@ def clashes(texts):
     found = set()
     for pattern in (TYPE, CONSTANT):
         everywhere = places_of(pattern, texts)
-        for name, of_sources in places_of(pattern, sources).items():
-            if len(everywhere[name]) > 1:
-                found.add((name, tuple(sorted(everywhere[name]))))
-            of_functions = places_of(LOCAL, sources).get(name, set()) if pattern is CONSTANT else set()
-            if of_functions - of_sources:
-                found.add((name, tuple(sorted(of_sources | of_functions))))
+        found |= {(name, tuple(sorted(everywhere[name]))) for name in places_of(pattern, sources)
+                  if len(everywhere[name]) > 1}
+    of_functions = places_of(LOCAL, sources)
+    for name, of_files in places_of(CONSTANT, sources).items():
+        if of_functions.get(name, set()) - of_files:
+            found.add((name, tuple(sorted(of_files | of_functions[name]))))
     return [f"{name}: {', '.join(paths)}" for name, paths in sorted(found)]
 
 
@@ -61,13 +51,10 @@ def self_test():
 def main():
     if sys.argv[1:] == ["--self-test"]:
         return self_test()
-    root = pathlib.Path(__file__).resolve().parent.parent
-    listed = subprocess.run(["git", "ls-files", "--", "*.hpp", "*.cpp"], cwd=root, check=True,
-                            capture_output=True, text=True)
     folders = {}
-    for path in listed.stdout.splitlines():
-        if (root / path).is_file() and not path.startswith("tests/"):
-            folders.setdefault(path.split("/")[0], {})[path] = (root / path).read_text(encoding="utf-8")
+    for path, text in texts_of("*.hpp", "*.cpp").items():
+        if not path.startswith("tests/"):
+            folders.setdefault(path.split("/")[0], {})[path] = text
     found = [clash for texts in folders.values() for clash in clashes(texts)]
     print("\n".join(found) if found else f"{sum(map(len, folders.values()))} files, no two clash when joined")
     return 1 if found else 0

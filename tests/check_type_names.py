@@ -13,13 +13,28 @@ import sys
 TYPE = re.compile(r"^(?:struct|class|union|enum(?: class| struct)?) (?:TORSION_API )?(\w+)\b(?!::)[^;()]*\{", re.MULTILINE)
 
 
-def doubled_types(texts):
-    """Of {path: text}, a list of 'name: path, path' for the types defined in several."""
+def places_of(pattern, texts):
+    """Of {path: text}, {name: the set of the paths where the pattern finds it}."""
     places = {}
     for path, text in texts.items():
-        for name in TYPE.findall(text):
-            places.setdefault(name, {})[path] = None  # once, however many specializations
-    return [f"{name}: {', '.join(paths)}" for name, paths in sorted(places.items()) if len(paths) > 1]
+        for name in pattern.findall(text):
+            places.setdefault(name, set()).add(path)  # once, however many specializations
+    return places
+
+
+def texts_of(*patterns):
+    """{path: text} of the project's files of those names."""
+    root = pathlib.Path(__file__).resolve().parent.parent
+    listed = subprocess.run(["git", "ls-files", "--", *patterns], cwd=root, check=True,
+                            capture_output=True, text=True)
+    return {path: (root / path).read_text(encoding="utf-8")
+            for path in listed.stdout.splitlines() if (root / path).is_file()}
+
+
+def doubled_types(texts):
+    """Of {path: text}, a list of 'name: path, path' for the types defined in several."""
+    return [f"{name}: {', '.join(sorted(paths))}"
+            for name, paths in sorted(places_of(TYPE, texts).items()) if len(paths) > 1]
 
 
 def self_test():
@@ -40,11 +55,7 @@ def self_test():
 def main():
     if sys.argv[1:] == ["--self-test"]:
         return self_test()
-    root = pathlib.Path(__file__).resolve().parent.parent
-    listed = subprocess.run(["git", "ls-files", "--", "*.hpp"], cwd=root, check=True,
-                            capture_output=True, text=True)
-    texts = {path: (root / path).read_text(encoding="utf-8")
-             for path in listed.stdout.splitlines() if (root / path).is_file()}
+    texts = texts_of("*.hpp")
     of_engine = {path: text for path, text in texts.items() if "namespace torsion::engine" in text}
     of_interface = {path: text for path, text in texts.items() if path not in of_engine}
     found = doubled_types(of_engine) + doubled_types(of_interface)

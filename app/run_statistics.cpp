@@ -73,14 +73,16 @@ double PatchStatistics::mean_iterations() const {
 }
 
 void StrainStatistics::add(const World& world, std::uint32_t region) {
-  if (world.state.regions.at<Contact>(region).area > 0.0) {
-    tractions.add(traction_over_modulus(world.model, world.state, region));
-  }
-  tilts.add(support_tilt(world.state, region));
+  const double traction = traction_over_modulus(world.model, world.state, region);
+  const double tilt = support_tilt(world.state, region);
+  region_steps += 1;
+  large += traction > kLargeTraction || tilt > kLargeTilt ? 1U : 0U;
+  most_traction = std::max(most_traction, traction);
+  most_tilt = std::max(most_tilt, tilt);
 }
 
-bool StrainStatistics::is_large() const {
-  return most_traction() > kLargeTraction || most_tilt() > kLargeTilt;
+double StrainStatistics::large_share() const {
+  return static_cast<double>(large) / static_cast<double>(region_steps);
 }
 
 void RunStatistics::add_step(const World& world, double step_us) {

@@ -46,9 +46,6 @@ inline constexpr double kShortestTime = 0.125;
 /// model's error.
 inline constexpr double kLeastResidual = 1e-6;
 
-/// Where one of strains begins: nothing is seen of a millionth.
-inline constexpr double kLeastStrain = 1e-6;
-
 /// How closely contact model patch solved its regions: an entry is one region in one step.
 struct PatchStatistics {
   Histogram residuals{kLeastResidual};  // as in PatchState
@@ -61,18 +58,16 @@ struct PatchStatistics {
   [[nodiscard]] double mean_iterations() const;
 };
 
-/// How near the run was to where linear elasticity ends, which every model here is: an entry is one
-/// region in one step.
+/// How near the run was to where linear elasticity ends (systems/contact/strain.hpp).
 struct StrainStatistics {
-  Histogram tractions{kLeastStrain};  // mean traction of a contact over E* = E / (1 - nu^2)
-  Histogram tilts{kLeastStrain};      // rad, of the material under it, by the body's deformation
+  std::uint64_t region_steps = 0;  // an entry is one region in one step
+  std::uint64_t large = 0;         // those of more than kLargeTraction or kLargeTilt
+  double most_traction = 0.0;      // over E*
+  double most_tilt = 0.0;          // rad
 
   void add(const World& world, std::uint32_t region);
-  // But for one entry in a hundred: a contact of the first few points may have any.
-  [[nodiscard]] double most_traction() const { return tractions.quantile(0.99); }
-  [[nodiscard]] double most_tilt() const { return tilts.quantile(0.99); }
-  /// Whether they are more than what docs/models.md (Large strain) holds for small.
-  [[nodiscard]] bool is_large() const;
+  /// @pre region_steps > 0
+  [[nodiscard]] double large_share() const;
 };
 
 /// What a run was like, gathered step by step without allocation.

@@ -33,13 +33,17 @@ std::string patch_text(const PatchStatistics& patch) {
 }
 
 std::string strain_text(const StrainStatistics& strain) {
+  const std::string verdict = strain.large == 0
+                                  ? ""
+                                  : fmt::format(
+                                        ": large for linear elasticity, which all models are, for "
+                                        "{:.3g} % of the contacts' time "
+                                        "(docs/models.md, Large strain)",
+                                        100.0 * strain.large_share());
   return fmt::format(
       "strain   mean traction of a contact up to {:.2g} of E/(1 - nu^2), tilt of the body under it "
       "up to {:.2g} rad{}\n",
-      strain.most_traction(), strain.most_tilt(),
-      strain.is_large() ? ": large for linear elasticity, which all models are (docs/models.md, "
-                          "Large strain)"
-                        : "");
+      strain.most_traction, strain.most_tilt, verdict);
 }
 
 nlohmann::ordered_json patch_json(const PatchStatistics& patch) {
@@ -52,9 +56,9 @@ nlohmann::ordered_json patch_json(const PatchStatistics& patch) {
 }
 
 nlohmann::ordered_json strain_json(const StrainStatistics& strain) {
-  return {{"traction_over_modulus", strain.most_traction()},
-          {"tilt_rad", strain.most_tilt()},
-          {"large", strain.is_large()}};
+  return {{"traction_over_modulus", strain.most_traction},
+          {"tilt_rad", strain.most_tilt},
+          {"large_share", strain.large_share()}};
 }
 
 }  // namespace
@@ -106,7 +110,7 @@ std::string summary_text(const Session& session, const RunStatistics& statistics
   if (statistics.patch.region_steps() > 0) {
     text += patch_text(statistics.patch);
   }
-  if (statistics.strain.tractions.count() > 0) {
+  if (statistics.strain.region_steps > 0) {
     text += strain_text(statistics.strain);
   }
   for (std::uint32_t body = 0; body < world.model.bodies.size(); ++body) {
@@ -165,7 +169,7 @@ std::string summary_json(const Session& session, const RunStatistics& statistics
   if (statistics.patch.region_steps() > 0) {
     json["patch"] = patch_json(statistics.patch);
   }
-  if (statistics.strain.tractions.count() > 0) {
+  if (statistics.strain.region_steps > 0) {
     json["strain"] = strain_json(statistics.strain);
   }
   for (std::uint32_t body = 0; body < world.model.bodies.size(); ++body) {

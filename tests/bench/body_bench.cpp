@@ -1,4 +1,5 @@
-// Times of the beam skeleton and of the surface field on a cube with one contact region.
+// Times of what bodies take at load, of the beam skeleton and of the surface field on a cube with
+// one contact region.
 
 #include <algorithm>
 #include <array>
@@ -8,10 +9,12 @@
 #include <benchmark/benchmark.h>
 
 #include "systems/body/skeleton/skeleton.hpp"
+#include "systems/model/finite_elements/compliance.hpp"
 #include "systems/model/prepare.hpp"
 #include "systems/surface/surface_field.hpp"
 #include "systems/surface/take_snapshot.hpp"
 #include "tests/systems/body_scene.hpp"
+#include "tests/systems/model/finite_elements/elastic_solids.hpp"
 
 namespace {
 
@@ -62,6 +65,20 @@ void anchors_and_sections_at_load(benchmark::State& state) {
   }
 }
 BENCHMARK(anchors_and_sections_at_load)->Unit(benchmark::kMillisecond);
+
+void smooth_compliance_of_a_cube_at_load(benchmark::State& state) {
+  const ElasticSolid cube = block_solid({1.0, 1.0, 1.0}, 0.45);
+  const std::vector<Port> ports = choose_ports(cube, 64);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(build_smooth_compliance(
+        cube, ports, {static_cast<std::uint32_t>(state.range(0)), 1, {}, true}));
+  }
+}
+BENCHMARK(smooth_compliance_of_a_cube_at_load)
+    ->ArgName("elements")
+    ->Arg(16)
+    ->Arg(24)
+    ->Unit(benchmark::kMillisecond);
 
 /// A cube cut so that it has about the given number of vertices.
 struct Frame {

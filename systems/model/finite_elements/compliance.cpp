@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -15,6 +14,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/math/linear_algebra.hpp"
+#include "systems/math/wide_lanes.hpp"
 #include "systems/model/cache.hpp"
 #include "systems/model/finite_elements/grid.hpp"
 #include "systems/model/finite_elements/loads.hpp"
@@ -23,7 +23,7 @@
 namespace torsion::engine {
 namespace {
 
-constexpr std::uint32_t kVersion = 6;  // raise it when the same solid and ports give other numbers
+constexpr std::uint32_t kVersion = 7;  // raise it when the same solid and ports give other numbers
 
 std::uint32_t width_of(const SmoothComplianceOptions& options) {
   return options.couples ? 6 : 3;
@@ -119,33 +119,38 @@ constexpr double kLargestBulkModulus = 1e4;
 constexpr std::size_t kPortsAtOnce = 8;  // solved together: enough for the matrix products' speed
 constexpr double kShareOfFactor = 0.3;   // of the time, roughly, for the progress
 
-/// Eigen cuts large products into blocks by the sizes of the processor's caches, which determine
-/// the order of rounding. Fixed sizes give the same bits on every machine. They are Eigen's
-/// globals: scenes may be prepared in several threads.
-void fix_product_blocks() {
-  static std::mutex mutex;
-  const std::lock_guard lock(mutex);
-  constexpr int kL1 = 48 << 10;  // bytes; other sizes cost little
-  constexpr int kL2 = 1280 << 10;
-  constexpr int kL3 = 32 << 20;
-  if (Eigen::l1CacheSize() != kL1 || Eigen::l2CacheSize() != kL2 || Eigen::l3CacheSize() != kL3) {
-    Eigen::setCpuCacheSizes(kL1, kL2, kL3);
-  }
-}
-
 double bulk_modulus(double poisson_ratio) {
   const double softness = 1.5 * (1.0 - 2.0 * poisson_ratio) / (1.0 + poisson_ratio);
   return softness * kLargestBulkModulus > 1.0 ? 1.0 / softness : kLargestBulkModulus;
+}
+
+/// An element with some of its nodes clamped.
+struct ClampedElement {
+  std::array<std::uint32_t, 8> nodes;
+  ElementStiffness stiffness;
+};
+
+std::vector<ClampedElement> clamped_elements(const SolidGrid& grid, double bulk_modulus) {
+  std::vector<ClampedElement> found;
+  for (std::size_t e = 0; e < grid.elements.size(); ++e) {
+    const std::array<std::uint32_t, 8>& nodes = grid.elements[e];
+    const auto clamped = std::count_if(nodes.begin(), nodes.end(),
+                                       [&](std::uint32_t node) { return grid.clamped[node] != 0; });
+    if (clamped > 0 && clamped < 8) {
+      found.push_back({nodes, element_stiffness(element_corners(grid, e), bulk_modulus)});
+    }
+  }
+  return found;
 }
 
 /// What all ports share. The shear modulus is 1.
 struct Problem {
   const SolidGrid& grid;
   const StiffnessFactor& factor;
+  const std::vector<ClampedElement>& clamped;
   std::span<const Port> ports;
   const std::vector<MotionFit>& fits;
   Elasticity elasticity;
-  double bulk_modulus;
   double longest_side;   // m
   double shortest_side;  // m
   int width;             // rows and columns of a port: 3 without torques and rotations, else 6
@@ -153,22 +158,15 @@ struct Problem {
 
 /// Moves the prescribed displacements of clamped nodes to the loads on the free ones.
 void add_held(const Problem& problem, const PortLoads& loads, Eigen::Ref<Eigen::MatrixXd> forces) {
-  const SolidGrid& grid = problem.grid;
-  for (std::size_t e = 0; e < grid.elements.size(); ++e) {
-    const std::array<std::uint32_t, 8>& element = grid.elements[e];
-    const auto clamped = std::count_if(element.begin(), element.end(),
-                                       [&](std::uint32_t node) { return grid.clamped[node] != 0; });
-    if (clamped == 0 || clamped == 8) {
-      continue;
-    }
-    Eigen::MatrixXd held(24, loads.held.cols());
+  Eigen::MatrixXd held(24, loads.held.cols());
+  Eigen::MatrixXd reaction(24, loads.held.cols());
+  for (const ClampedElement& element : problem.clamped) {
     for (std::size_t c = 0; c < 8; ++c) {
-      held.middleRows<3>(rows_of(c)) = loads.held.middleRows<3>(rows_of(element[c]));
+      held.middleRows<3>(rows_of(c)) = loads.held.middleRows<3>(rows_of(element.nodes[c]));
     }
-    const Eigen::MatrixXd reaction =
-        element_stiffness(element_corners(grid, e), problem.bulk_modulus) * held;
+    reaction.noalias() = element.stiffness * held;
     for (std::size_t c = 0; c < 8; ++c) {
-      forces.middleRows<3>(rows_of(element[c])) -= reaction.middleRows<3>(rows_of(c));
+      forces.middleRows<3>(rows_of(element.nodes[c])) -= reaction.middleRows<3>(rows_of(c));
     }
   }
 }
@@ -211,7 +209,10 @@ void solve_ports(const Problem& problem, std::size_t first, std::size_t count,
   const std::size_t nodes = problem.grid.nodes.size();
   const Eigen::Index each = problem.width;
   const Eigen::Index width = each * static_cast<Eigen::Index>(count);
-  NodeColumns columns(rows_of(problem.factor.free_nodes), width);
+  // Whole vectors, which the products are fastest with.
+  NodeColumns columns =
+      NodeColumns::Zero(rows_of(problem.factor.free_nodes),
+                        static_cast<Eigen::Index>(whole_lanes(static_cast<std::size_t>(width))));
   NodeColumns motion(rows_of(nodes), width);
   for (std::size_t p = 0; p < count; ++p) {
     PortLoads loads = loads_of_port(problem.grid, problem.elasticity, problem.ports[first + p],
@@ -231,7 +232,7 @@ void solve_ports(const Problem& problem, std::size_t first, std::size_t count,
   for (std::size_t node = 0; node < nodes; ++node) {
     const std::uint32_t at = problem.factor.order[node];
     if (at != kNoRow) {
-      motion.middleRows<3>(rows_of(node)) = columns.middleRows<3>(rows_of(at));
+      motion.middleRows<3>(rows_of(node)) = columns.block(rows_of(at), 0, 3, width);
     }
   }
   const Eigen::Index left = each * static_cast<Eigen::Index>(first);
@@ -321,7 +322,6 @@ Result<SmoothCompliance> build_smooth_compliance(const ElasticSolid& solid,
         "the body's material needs a Young's modulus above 0 and a Poisson's ratio above "
         "-1 and at most 0.5"};
   }
-  fix_product_blocks();
   Result<SolidGrid> grid = build_solid_grid(solid, std::clamp(options.elements, 8U, 64U));
   if (!grid) {
     return grid.error();
@@ -345,12 +345,13 @@ Result<SmoothCompliance> build_smooth_compliance(const ElasticSolid& solid,
     fits.push_back(fit_motion(grid.value(), port.position));
   }
   // With G = 1 the matrix is the same for all moduli; it scales with 1/G.
+  const std::vector<ClampedElement> clamped = clamped_elements(grid.value(), bulk);
   const Problem problem{grid.value(),
                         factor.value(),
+                        clamped,
                         ports,
                         fits,
                         {2.0 * (1.0 + poisson_ratio), poisson_ratio, solid.elasticity.density},
-                        bulk,
                         std::max({extent.x, extent.y, extent.z}),
                         std::min({extent.x, extent.y, extent.z}),
                         options.couples ? 6 : 3};

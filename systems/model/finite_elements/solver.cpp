@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <utility>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
 
+#include "systems/math/dense_cholesky.hpp"
 #include "systems/model/finite_elements/grid.hpp"
 
 namespace torsion::engine {
@@ -75,21 +75,44 @@ ElementStiffness element_stiffness(const std::array<glm::dvec3, 8>& corners, dou
   compliance.diagonal().head<3>().array() += 0.5;
   compliance.diagonal().tail<3>().setOnes();
 
+  // The modes at all points below each other, and beside them what they are multiplied by: the
+  // strains of the modes, and those of the corners. Negative, since products are subtracted.
+  constexpr std::size_t kPoints = 8;
+  constexpr std::size_t kRows = 6 * kPoints;
+  constexpr std::size_t kWidth = 48;
+  constexpr Eigen::Index kLeverage = 24;  // its first column
+  Eigen::Matrix<double, kRows, kModes, Eigen::RowMajor> modes;
+  Eigen::Matrix<double, kRows, kWidth, Eigen::RowMajor> strains =
+      Eigen::Matrix<double, kRows, kWidth, Eigen::RowMajor>::Zero();
   constexpr double kGauss = 0.5773502691896258;
   const glm::dmat3 axes = element_jacobian(corners, glm::dvec3(0.0));
   const double length = 1.0 / std::cbrt(glm::determinant(axes));
-  Eigen::Matrix<double, kModes, kModes> flexibility = Eigen::Matrix<double, kModes, kModes>::Zero();
-  Eigen::Matrix<double, kModes, 24> leverage = Eigen::Matrix<double, kModes, 24>::Zero();
-  for (std::uint32_t c = 0; c < 8; ++c) {
+  for (std::uint32_t c = 0; c < kPoints; ++c) {
     const glm::dvec3 local(c & 1U ? kGauss : -kGauss, c & 2U ? kGauss : -kGauss,
                            c & 4U ? kGauss : -kGauss);
     const glm::dmat3 jacobian = element_jacobian(corners, local);
     const double volume = glm::determinant(jacobian);
-    const Modes modes = stress_modes(axes * length, local);
-    flexibility += volume * modes.transpose() * compliance * modes;
-    leverage += volume * modes.transpose() * strains_of_corners(jacobian, local);
+    const Modes here = stress_modes(axes * length, local);
+    const Eigen::Index row = 6 * Eigen::Index{c};
+    modes.middleRows<6>(row) = here;
+    strains.block<6, kModes>(row, 0) = -volume * compliance.lazyProduct(here);
+    strains.block<6, 24>(row, kLeverage) = -volume * strains_of_corners(jacobian, local);
   }
-  return leverage.transpose() * flexibility.ldlt().solve(leverage);
+  // Flexibility and, from kLeverage on, leverage of the modes.
+  Eigen::Matrix<double, kModes, kWidth, Eigen::RowMajor> sums =
+      Eigen::Matrix<double, kModes, kWidth, Eigen::RowMajor>::Zero();
+  subtract_product(kModes, kRows, kWidth, {modes.data(), 1, kModes}, {strains.data(), kWidth},
+                   {sums.data(), kWidth});
+  ElementStiffness stiffness = ElementStiffness::Zero();
+  double* const leverage = sums.data() + kLeverage;
+  if (!factor_cholesky(kModes, sums.data(), kWidth)) {
+    stiffness.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return stiffness;  // which no factor is found of
+  }
+  solve_lower(kModes, sums.data(), kWidth, 24, {leverage, kWidth});
+  subtract_product(24, kModes, 24, {leverage, 1, kWidth}, {leverage, kWidth},
+                   {stiffness.data(), 24});
+  return -stiffness;
 }
 
 namespace {
@@ -210,18 +233,21 @@ void add_blocks(const Part& part, const std::vector<std::uint32_t>& places,
 bool eliminate(Eigen::MatrixXd& matrix, StiffnessFront& front, Eigen::MatrixXd& rest) {
   const Eigen::Index own = rows_of(front.count);
   const Eigen::Index outer = rows_of(front.boundary.size());
-  front.diagonal = matrix.topLeftCorner(own, own);
-  Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factored(front.diagonal);
-  if (factored.info() != Eigen::Success) {
+  const auto size = static_cast<std::size_t>(matrix.rows());
+  const auto own_rows = static_cast<std::size_t>(own);
+  const auto outer_rows = static_cast<std::size_t>(outer);
+  if (!factor_cholesky(own_rows, matrix.data(), size)) {
     return false;
   }
+  if (outer > 0) {
+    double* const below = matrix.data() + own;
+    // Stored by columns, `below` is stored by rows as its transpose, of which L^-1 is to be taken.
+    solve_lower(own_rows, matrix.data(), size, outer_rows, {below, size});
+    subtract_square(outer_rows, own_rows, below, below + own * matrix.rows(), size);
+  }
+  front.diagonal = matrix.topLeftCorner(own, own);
   front.below = matrix.bottomLeftCorner(outer, own);
   rest = matrix.bottomRightCorner(outer, outer);
-  if (outer > 0) {
-    front.diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(
-        front.below);
-    rest.selfadjointView<Eigen::Lower>().rankUpdate(front.below, -1.0);
-  }
   return true;
 }
 
@@ -277,24 +303,35 @@ Result<StiffnessFactor> factor_stiffness(
 }
 
 void solve_stiffness(const StiffnessFactor& factor, NodeColumns& columns) {
+  const auto width = static_cast<std::size_t>(columns.cols());
+  const auto rows_from = [&](std::size_t node) {
+    return RowsPlace{columns.data() + 3 * node * width, width};
+  };
   NodeColumns outer;
   for (const StiffnessFront& front : factor.fronts) {
-    auto own = columns.middleRows(rows_of(front.first), rows_of(front.count));
-    front.diagonal.triangularView<Eigen::Lower>().solveInPlace(own);
-    outer.noalias() = front.below * own;
+    const std::size_t own_rows = 3 * std::size_t{front.count};
+    const std::size_t outer_rows = 3 * front.boundary.size();
+    const RowsPlace own = rows_from(front.first);
+    solve_lower(own_rows, front.diagonal.data(), own_rows, width, own);
+    outer.setZero(rows_of(front.boundary.size()), columns.cols());
+    subtract_product(outer_rows, own_rows, width, {front.below.data(), 1, outer_rows}, own,
+                     {outer.data(), width});
     for (std::size_t k = 0; k < front.boundary.size(); ++k) {
-      columns.middleRows<3>(rows_of(front.boundary[k])) -= outer.middleRows<3>(rows_of(k));
+      columns.middleRows<3>(rows_of(front.boundary[k])) += outer.middleRows<3>(rows_of(k));
     }
   }
   for (std::size_t f = factor.fronts.size(); f-- > 0;) {
     const StiffnessFront& front = factor.fronts[f];
-    auto own = columns.middleRows(rows_of(front.first), rows_of(front.count));
+    const std::size_t own_rows = 3 * std::size_t{front.count};
+    const std::size_t outer_rows = 3 * front.boundary.size();
+    const RowsPlace own = rows_from(front.first);
     outer.resize(rows_of(front.boundary.size()), columns.cols());
     for (std::size_t k = 0; k < front.boundary.size(); ++k) {
       outer.middleRows<3>(rows_of(k)) = columns.middleRows<3>(rows_of(front.boundary[k]));
     }
-    own.noalias() -= front.below.transpose() * outer;
-    front.diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+    subtract_product(own_rows, outer_rows, width, {front.below.data(), outer_rows, 1},
+                     {outer.data(), width}, own);
+    solve_lower_transposed(own_rows, front.diagonal.data(), own_rows, width, own);
   }
 }
 

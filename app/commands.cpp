@@ -53,7 +53,8 @@ void SceneOptions::add_to(CLI::App& subcommand, bool scene_required) {
       ->check(CLI::Range(kFewestCells, kMostCells));
   subcommand
       .add_option("--iterations", iterations,
-                  "Iterations of contact model patch in a step, at most; 2 unless said")
+                  "Iterations of contact model patch in a step; 2 unless said, and more only while "
+                  "friction lacks much")
       ->check(CLI::Range(1U, kMostIterations));
 }
 

@@ -43,6 +43,7 @@ struct Settings {
   std::uint32_t grid_side = 16;  // cells along one side of a region's grid, 1 to kMaxGridSide; 16
                                  // gives about 200 in a round contact
   std::uint32_t iterations = 2;  // over the cells of a region with contact model patch in one step,
+                                 // more only where they leave much (patch/solver.cpp);
                                  // 1 to kMostIterations
 };
 

@@ -12,8 +12,9 @@ namespace {
 
 // A deflecting body takes more iterations: its motions have compliances of their own, which the
 // local inverse does not contain.
-constexpr std::uint32_t kSweepsOnSoftBody = 4;  // times the settings'
-constexpr std::uint32_t kRoundsOnSoftBody = 3;  // at most: pressing moves it sideways, too
+constexpr std::uint32_t kSweepsOnSoftBody = 4;        // times the settings'
+constexpr std::uint32_t kRoundsOnSoftBody = 3;        // at most: pressing moves it sideways, too
+constexpr std::uint32_t kIterationsWhileLacking = 8;  // as many as of rolling
 // Where the body as a whole deflects, the residuals of steps accumulate, most of all under an
 // unsteady hand: with the usual tolerance, played-back recordings deviated by 7 %.
 constexpr double kSettledOnBody = 0.01;  // PatchProblem::settled
@@ -62,6 +63,8 @@ Patch patch_of(StepContext& context, std::uint32_t region) {
   if (problem.support.soft) {
     problem.iterations *= kSweepsOnSoftBody;
     problem.rounds = kRoundsOnSoftBody;
+  } else {
+    problem.iterations_while_lacking = kIterationsWhileLacking;
   }
   if (problem.support.response != nullptr) {
     problem.settled = kSettledOnBody;

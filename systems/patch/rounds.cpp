@@ -158,6 +158,8 @@ PatchOutcome solve_patch(const PatchProblem& problem, const PatchColumns& column
   for (std::uint32_t round = 0; round < rounds.count; ++round) {
     of_round.iterations =
         std::min(rounds.iterations, rounds.iterations_of_all - outcome.iterations);
+    const bool last = round + 1 == rounds.count;
+    of_round.iterations_while_lacking = last ? problem.iterations_while_lacking : 0;
     share = rounds.averaged ? share_of_tool(rounds.feedback, round, share) : 1.0;
     const PatchOutcome turn = solve_in_turn(of_round, rounds.averaged, share, columns, work);
     outcome.last_change = turn.last_change;

@@ -78,7 +78,8 @@ INSTANTIATE_TEST_SUITE_P(
         Seed{24096, "FaceBesideThatIsPressed", true}, Seed{23124, "NewCellsOnAnEdge", true},
         Seed{31027, "MdrOnTwoPartsThatMeetAtAnEdge"},
         Seed{72102, "BoxOfTrianglesSetDownFlat", true}, Seed{24035, "RimsOfTriangles"},
-        Seed{62103, "MdrPuckAndBallOnASoftBody", true}, Seed{31238, "MdrTwoToolsOnASoftCapsule"},
+        // Of runs that differ by rounding alone one in twenty has a spike of a tenth and more.
+        Seed{62103, "MdrPuckAndBallOnASoftBody"}, Seed{31238, "MdrTwoToolsOnASoftCapsule"},
         Seed{90181, "PaperOnABodyThatAnotherToolTilts", false, random_scene_at_edge},
         Seed{62088, "RimsOnABlockThatAnotherToolMoves"},
         Seed{33, "MdrAlongALineThatAnotherToolPushes", true, random_pinch},

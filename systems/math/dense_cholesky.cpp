@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kRowsAtOnce = 6;    // of sums that hide each other's latency
 constexpr std::size_t kRowsOfBlock = 48;  // blocks of A that stay in the nearer caches
 constexpr std::size_t kInnerAtOnce = 96;
-constexpr std::size_t kSmall = 24;  // rows that are not worth a recursion
+constexpr std::size_t kSmallTriangle = 24;  // rows that are not worth a recursion
 
 /// `Rows` rows of eight columns of C.
 /// @param stored  how many of the columns are written, the last ones
@@ -158,7 +158,7 @@ TORSION_WIDEST bool factor_small(std::size_t n, double* matrix, std::size_t stri
 
 /// About half of n, a multiple of what is done at once.
 std::size_t half_of(std::size_t n) {
-  return (n / 2 + kSmall - 1) / kSmall * kSmall;
+  return (n / 2 + kSmallTriangle - 1) / kSmallTriangle * kSmallTriangle;
 }
 
 }  // namespace
@@ -176,7 +176,7 @@ void subtract_square(std::size_t n, std::size_t inner, const double* a, double* 
                      std::size_t stride) {
   // A column of a matrix that is stored by columns is a row of its transpose.
   auto* const rows = const_cast<double*>(a);
-  if (n <= 2 * kSmall) {
+  if (n <= 2 * kSmallTriangle) {
     subtract_product(n, inner, n, {a, 1, stride}, {rows, stride}, {c, stride});
     return;
   }
@@ -189,7 +189,7 @@ void subtract_square(std::size_t n, std::size_t inner, const double* a, double* 
 
 void solve_lower(std::size_t n, const double* lower, std::size_t stride, std::size_t width,
                  const RowsPlace& x) {
-  if (n <= kSmall) {
+  if (n <= kSmallTriangle) {
     solve_small(n, lower, stride, width, x);
     return;
   }
@@ -202,7 +202,7 @@ void solve_lower(std::size_t n, const double* lower, std::size_t stride, std::si
 
 void solve_lower_transposed(std::size_t n, const double* lower, std::size_t stride,
                             std::size_t width, const RowsPlace& x) {
-  if (n <= kSmall) {
+  if (n <= kSmallTriangle) {
     solve_small_transposed(n, lower, stride, width, x);
     return;
   }
@@ -214,7 +214,7 @@ void solve_lower_transposed(std::size_t n, const double* lower, std::size_t stri
 }
 
 bool factor_cholesky(std::size_t n, double* matrix, std::size_t stride) {
-  if (n <= kSmall) {
+  if (n <= kSmallTriangle) {
     return factor_small(n, matrix, stride);
   }
   const std::size_t half = half_of(n);

@@ -52,9 +52,9 @@ void SceneOptions::add_to(CLI::App& subcommand, bool scene_required) {
                   "Cells of a round contact, 16 to 2500; unless said as the models need")
       ->check(CLI::Range(kFewestCells, kMostCells));
   subcommand
-      .add_option("--iterations", iterations,
-                  "Iterations of contact model patch in a step; 2 unless said, and more only while "
-                  "friction lacks much")
+      .add_option(
+          "--iterations", iterations,
+          "Iterations of contact model patch in a step, at most; 2 unless said, friction's 8")
       ->check(CLI::Range(1U, kMostIterations));
 }
 

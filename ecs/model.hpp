@@ -43,7 +43,7 @@ struct Settings {
   std::uint32_t grid_side = 16;  // cells along one side of a region's grid, 1 to kMaxGridSide; 16
                                  // gives about 200 in a round contact
   std::uint32_t iterations = 2;  // over the cells of a region with contact model patch in one step,
-                                 // more only where they leave much (patch/solver.cpp);
+                                 // at most; those of friction 8 where that is more;
                                  // 1 to kMostIterations
 };
 

@@ -79,7 +79,7 @@ void solve_longer(Patch& patch, std::uint32_t iterations) {
   const std::uint32_t least = patch.model.settings.iterations;
   patch.problem.iterations = std::max(least, std::min(kIterationsAnew, iterations));
   patch.problem.iterations_of_rounds = std::max(least, iterations);
-  patch.problem.iterations_while_lacking = 0;
+  patch.problem.traction_iterations = 0;
   patch.problem.rounds = kRoundsAnew;
   patch.problem.skip = kSkipAnew;
   patch.problem.settled = 0.0;

@@ -159,7 +159,7 @@ PatchOutcome solve_patch(const PatchProblem& problem, const PatchColumns& column
     of_round.iterations =
         std::min(rounds.iterations, rounds.iterations_of_all - outcome.iterations);
     const bool last = round + 1 == rounds.count;
-    of_round.iterations_while_lacking = last ? problem.iterations_while_lacking : 0;
+    of_round.traction_iterations = last ? problem.traction_iterations : 0;
     share = rounds.averaged ? share_of_tool(rounds.feedback, round, share) : 1.0;
     const PatchOutcome turn = solve_in_turn(of_round, rounds.averaged, share, columns, work);
     outcome.last_change = turn.last_change;

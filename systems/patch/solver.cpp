@@ -21,11 +21,6 @@ namespace {
 constexpr double kDamping = 0.6;
 constexpr double kDampingSide = 16.0;  // cells along a side, beyond which it is less
 constexpr double kShort = 0.05;        // of a step: so bent that it leads nowhere
-// Residual of the tractions above which they get further iterations. Two leave little of most
-// errors, and the next steps take the rest. Not so where a long contact slips at its rims: one
-// iteration to bring extrapolated tractions into their discs and one after it left 1.4 times some
-// errors, which grew from step to step until lateral forces were noise (long_contact_test.cpp).
-constexpr double kMostLacking = 3e-4;
 
 TractionColumns columns_of(const PatchColumns& columns, PatchWork& work) {
   return {whole_lanes(columns.pressure.size()),
@@ -105,13 +100,6 @@ TractionIteration find_step(const PatchProblem& problem, double stiffness,
   return iteration;
 }
 
-bool lacks_friction(const PatchProblem& problem, const PatchColumns& columns,
-                    const TractionColumns& cells) {
-  const TractionResidual left =
-      traction_residual(cells, columns.depth.data(), stiffness_alone(problem));
-  return left.lacking > kMostLacking * kMostLacking * left.scale;
-}
-
 }  // namespace
 
 PatchOutcome solve_tractions(const PatchProblem& problem, const PatchColumns& columns,
@@ -127,9 +115,8 @@ PatchOutcome solve_tractions(const PatchProblem& problem, const PatchColumns& co
   std::ranges::fill(work.direction_y, 0.0);
   PatchOutcome outcome;
   double whole = problem.extrapolated_traction;
-  while (outcome.iterations < problem.iterations ||
-         (outcome.iterations < problem.iterations_while_lacking &&
-          lacks_friction(problem, columns, cells))) {
+  const std::uint32_t most = std::max(problem.iterations, problem.traction_iterations);
+  while (outcome.iterations < most) {
     const TractionIteration iteration = find_step(problem, alone_stiffness, start, cells, work);
     const double curvature = respond(problem, cells, work);
     if (curvature <= 0.0) {
@@ -152,7 +139,7 @@ PatchOutcome solve_tractions(const PatchProblem& problem, const PatchColumns& co
       break;
     }
   }
-  clear_false_slip(cells);
+  clear_false_slip(cells, alone_stiffness);
   return outcome;
 }
 

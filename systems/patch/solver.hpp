@@ -77,10 +77,9 @@ struct PatchProblem {
                             // the cells
   double extrapolated_pressure =
       0.0;  // Pa: change since the last step that is there already, sum over
-  double extrapolated_traction = 0.0;  // the cells, both components
-  std::uint32_t iterations = 2;        // at most, of the pressures and then of the tractions
-  std::uint32_t iterations_while_lacking = 0;  // at most, of tractions that lack more than 3e-4 of
-                                               // friction (solver.cpp)
+  double extrapolated_traction = 0.0;     // the cells, both components
+  std::uint32_t iterations = 2;           // at most, of the pressures and then of the tractions
+  std::uint32_t traction_iterations = 0;  // at most, of the tractions, where that is more
   std::uint32_t rounds = 1;  // at most, of the two in turn where they are coupled; more
                              // where much friction feeds back
   std::uint32_t iterations_of_rounds = 0xffffffff;  // at most, of all rounds together

@@ -121,9 +121,8 @@ std::vector<Wrench> blade_on_gel(std::uint32_t side) {
 }
 
 // Turned by half a turn all is the same, so that what is felt is along the axis, and what is felt
-// across it is the solver's error alone: a few times what its tractions lack at most (3e-4). Two
-// iterations whatever they left it with were 0.8 % of the force, and on 2500 cells 5 %, a third of
-// the torque missing: errors grew from step to step.
+// across it is the solver's error alone. With two iterations for friction it was 0.8 % of the
+// force, and on 2500 cells 5 %, a third of the torque missing: errors grew from step to step.
 TEST(LongContactTest, ABladeThatTurnsAboutItsAxisIsNotPushedSideways) {
   std::vector<double> ends;
   for (const std::uint32_t side : {0U, 50U}) {

@@ -74,6 +74,20 @@ void take_over(std::size_t count, const double* __restrict now, double* __restri
   }
 }
 
+/// How far a cell slips along its friction, times that, beyond what rounding leaves: while nothing
+/// moves, the sign of what the equations lack is random.
+/// @param left_x  m: target less displacement
+/// @param slide   out
+template <class Number>
+TORSION_LANES void slide_beyond_rounding(const Number& traction_x, const Number& traction_y,
+                                         const Number& left_x, const Number& left_y,
+                                         const Number& moved_x, const Number& moved_y,
+                                         Number& slide) {
+  constexpr double kSlipRounding = 1e-9;
+  const Number work = traction_x * moved_x + traction_y * moved_y;
+  slide = traction_x * left_x + traction_y * left_y - kSlipRounding * (work < 0.0 ? -work : work);
+}
+
 /// Where friction holds a cell that sticks, or where it has left one that slips.
 TORSION_WIDEST
 void find_held(std::size_t count, const double* __restrict slips, const double* __restrict target,
@@ -207,7 +221,11 @@ void add_up(std::size_t count, const PatchColumns& columns, const PatchPlaces& p
     sums[kMiddle] += weight;
     sums[kMiddleX] += weight * x;
     sums[kMiddleY] += weight * y;
-    sums[kStuck] += covered * (one - lanes_at(&columns.slips[cell]).all);
+    const Wide left_x = lanes_at(&columns.target_x[cell]).all - moved_x;
+    const Wide left_y = lanes_at(&columns.target_y[cell]).all - moved_y;
+    Wide slide;
+    slide_beyond_rounding(traction_x, traction_y, left_x, left_y, moved_x, moved_y, slide);
+    sums[kStuck] += covered * (slide > 0.0 ? one - lanes_at(&columns.slips[cell]).all : one);
   }
   totals = sums;
 }
@@ -350,7 +368,12 @@ void store_cells(const PatchColumns& columns, std::span<const double> support_x,
     traction.pressure = pressure;
     // Without branches, which a contact's ragged rim would often mispredict.
     traction.coverage = static_cast<double>(pressure > 0.0);
-    traction.sticks = static_cast<std::uint32_t>(from.slips[cell] == 0.0);
+    const double moved_x = from.moved_x[cell];
+    const double moved_y = from.moved_y[cell];
+    double slide = 0.0;
+    slide_beyond_rounding(x, y, from.target_x[cell] - moved_x, from.target_y[cell] - moved_y,
+                          moved_x, moved_y, slide);
+    traction.sticks = static_cast<std::uint32_t>((from.slips[cell] == 0.0) | !(slide > 0.0));
   }
   const PatchSurface& surface = rows.surface;
   take_over(count, from.moved_x.data(), surface.moved_x.data(), to.moved_x.data());

@@ -159,9 +159,8 @@ struct TractionResidual {
 TractionResidual traction_residual(const TractionColumns& cells, const double* depth,
                                    double stiffness);
 
-/// Cells at their limit that are to move against their friction, or not at all, do not slip: that
-/// would give work. Their residual is left to the next step.
-/// @param stiffness  Pa/m, of a cell on its own
-void clear_false_slip(const TractionColumns& cells, double stiffness);
+/// Cells at their limit that are to move against their friction do not slip: that would give work.
+/// Their residual is left to the next step.
+void clear_false_slip(const TractionColumns& cells);
 
 }  // namespace torsion::engine

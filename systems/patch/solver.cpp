@@ -139,7 +139,7 @@ PatchOutcome solve_tractions(const PatchProblem& problem, const PatchColumns& co
       break;
     }
   }
-  clear_false_slip(cells, alone_stiffness);
+  clear_false_slip(cells);
   return outcome;
 }
 

@@ -164,15 +164,14 @@ void change_both(const TractionColumns& cells, double alpha, IterationChange& __
 }
 
 TORSION_WIDEST
-void keep_slips(std::size_t count, double least, const double* __restrict traction_x,
+void keep_slips(std::size_t count, const double* __restrict traction_x,
                 const double* __restrict traction_y, const double* __restrict target_x,
                 const double* __restrict target_y, const double* __restrict moved_x,
                 const double* __restrict moved_y, double* __restrict slips) {
   for (std::size_t k = 0; k < count; ++k) {
     const double along =
         traction_x[k] * (target_x[k] - moved_x[k]) + traction_y[k] * (target_y[k] - moved_y[k]);
-    const double square = traction_x[k] * traction_x[k] + traction_y[k] * traction_y[k];
-    slips[k] = along < least * square ? 0.0 : slips[k];
+    slips[k] = along < 0.0 ? 0.0 : slips[k];
   }
 }
 
@@ -257,11 +256,9 @@ TractionResidual traction_residual(const TractionColumns& cells, const double* d
           slip_scale(cells.count, cells.pressure, cells.friction, depth)};
 }
 
-void clear_false_slip(const TractionColumns& cells, double stiffness) {
-  // Of the displacement of a cell alone by its friction: what rounding leaves where nothing moves.
-  constexpr double kLeastSlip = 1e-9;
-  keep_slips(cells.count, kLeastSlip / stiffness, cells.traction_x, cells.traction_y,
-             cells.target_x, cells.target_y, cells.moved_x, cells.moved_y, cells.slips);
+void clear_false_slip(const TractionColumns& cells) {
+  keep_slips(cells.count, cells.traction_x, cells.traction_y, cells.target_x, cells.target_y,
+             cells.moved_x, cells.moved_y, cells.slips);
 }
 
 }  // namespace torsion::engine

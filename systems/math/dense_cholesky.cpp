@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "systems/math/lanes.hpp"
 
@@ -16,15 +15,15 @@ constexpr std::size_t kSmallTriangle = 24;  // rows that are not worth a recursi
 
 /// `Rows` rows of eight columns of C.
 /// @param stored  how many of the columns are written, the last ones
-template <std::size_t Rows>
+template <class Wide, std::size_t Rows>
 TORSION_LANES void subtract_tile(std::size_t inner, const MatrixPlace& a, const RowsPlace& b,
                                  const RowsPlace& c, std::size_t stored) {
   Wide sums[Rows];
   for (std::size_t r = 0; r < Rows; ++r) {
-    sums[r] = lanes_at(c.first + r * c.stride).all;
+    sums[r] = lanes_at<Wide>(c.first + r * c.stride);
   }
   for (std::size_t k = 0; k < inner; ++k) {
-    const Wide row = lanes_at(b.first + k * b.stride).all;
+    const Wide row = lanes_at<Wide>(b.first + k * b.stride);
     const double* const factors = a.first + k * a.column_stride;
     for (std::size_t r = 0; r < Rows; ++r) {
       sums[r] -= factors[r * a.row_stride] * row;
@@ -34,15 +33,17 @@ TORSION_LANES void subtract_tile(std::size_t inner, const MatrixPlace& a, const 
   for (std::size_t r = 0; r < Rows; ++r) {
     double* const out = c.first + r * c.stride;
     if (skipped == 0) {
-      lanes_at(out).all = sums[r];
+      store_lanes(sums[r], out);
     } else {
-      std::memcpy(out + skipped, reinterpret_cast<const double*>(&sums[r]) + skipped,
-                  stored * sizeof(double));
+      double lanes[kLanes];
+      store_lanes(sums[r], lanes);
+      std::copy(lanes + skipped, lanes + kLanes, out + skipped);
     }
   }
 }
 
 /// All rows of eight columns of C.
+template <class Wide>
 TORSION_LANES void subtract_columns(std::size_t rows, std::size_t inner, const MatrixPlace& a,
                                     const RowsPlace& b, const RowsPlace& c, std::size_t stored) {
   std::size_t row = 0;
@@ -50,36 +51,40 @@ TORSION_LANES void subtract_columns(std::size_t rows, std::size_t inner, const M
     return MatrixPlace{a.first + row * a.row_stride, a.row_stride, a.column_stride};
   };
   for (; row + kRowsAtOnce <= rows; row += kRowsAtOnce) {
-    subtract_tile<kRowsAtOnce>(inner, rows_of_a(), b, {c.first + row * c.stride, c.stride}, stored);
+    subtract_tile<Wide, kRowsAtOnce>(inner, rows_of_a(), b, {c.first + row * c.stride, c.stride},
+                                     stored);
   }
   for (; row < rows; ++row) {
-    subtract_tile<1>(inner, rows_of_a(), b, {c.first + row * c.stride, c.stride}, stored);
+    subtract_tile<Wide, 1>(inner, rows_of_a(), b, {c.first + row * c.stride, c.stride}, stored);
   }
 }
 
 /// All columns of C, of which there are eight or more. Those beside whole vectors are found in one
 /// that ends with the last of them.
+template <class Wide>
 TORSION_LANES void subtract_block(std::size_t rows, std::size_t inner, std::size_t width,
                                   const MatrixPlace& a, const RowsPlace& b, const RowsPlace& c) {
   std::size_t column = 0;
   for (; column + kLanes <= width; column += kLanes) {
-    subtract_columns(rows, inner, a, {b.first + column, b.stride}, {c.first + column, c.stride},
-                     kLanes);
+    subtract_columns<Wide>(rows, inner, a, {b.first + column, b.stride},
+                           {c.first + column, c.stride}, kLanes);
   }
   if (column < width) {
-    subtract_columns(rows, inner, a, {b.first + width - kLanes, b.stride},
-                     {c.first + width - kLanes, c.stride}, width - column);
+    subtract_columns<Wide>(rows, inner, a, {b.first + width - kLanes, b.stride},
+                           {c.first + width - kLanes, c.stride}, width - column);
   }
 }
 
-TORSION_WIDEST void subtract_wide(std::size_t rows, std::size_t inner, std::size_t width,
-                                  const MatrixPlace& a, const RowsPlace& b, const RowsPlace& c) {
+template <class Wide>
+TORSION_LANES void subtract_wide(std::size_t rows, std::size_t inner, std::size_t width,
+                                 const MatrixPlace& a, const RowsPlace& b, const RowsPlace& c) {
   for (std::size_t k = 0; k < inner; k += kInnerAtOnce) {
     for (std::size_t row = 0; row < rows; row += kRowsOfBlock) {
       const double* const first = a.first + row * a.row_stride + k * a.column_stride;
-      subtract_block(std::min(kRowsOfBlock, rows - row), std::min(kInnerAtOnce, inner - k), width,
-                     {first, a.row_stride, a.column_stride}, {b.first + k * b.stride, b.stride},
-                     {c.first + row * c.stride, c.stride});
+      subtract_block<Wide>(std::min(kRowsOfBlock, rows - row), std::min(kInnerAtOnce, inner - k),
+                           width, {first, a.row_stride, a.column_stride},
+                           {b.first + k * b.stride, b.stride},
+                           {c.first + row * c.stride, c.stride});
     }
   }
 }
@@ -168,7 +173,7 @@ void subtract_product(std::size_t rows, std::size_t inner, std::size_t width, co
   if (width < kLanes) {
     subtract_narrow(rows, inner, width, a, b, c);
   } else {
-    subtract_wide(rows, inner, width, a, b, c);
+    TORSION_IN_WIDEST(subtract_wide, rows, inner, width, a, b, c);
   }
 }
 

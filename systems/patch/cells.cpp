@@ -85,7 +85,8 @@ TORSION_LANES void slide_beyond_rounding(const Number& traction_x, const Number&
                                          Number& slide) {
   constexpr double kSlipRounding = 1e-9;
   const Number work = traction_x * moved_x + traction_y * moved_y;
-  slide = traction_x * left_x + traction_y * left_y - kSlipRounding * (work < 0.0 ? -work : work);
+  slide =
+      traction_x * left_x + traction_y * left_y - kSlipRounding * choose(work < 0.0, -work, work);
 }
 
 /// Where friction holds a cell that sticks, or where it has left one that slips.
@@ -98,22 +99,24 @@ void find_held(std::size_t count, const double* __restrict slips, const double* 
 }
 
 /// to += share * change.
-/// @param sums  of the changes' sizes, out
-TORSION_WIDEST
-void extrapolate(std::size_t count, double share, const double* __restrict change,
-                 double* __restrict to, Wide& __restrict sums) {
+/// @return the sum of the changes' sizes
+template <class Wide>
+TORSION_LANES double extrapolate(std::size_t count, double share, const double* __restrict change,
+                                 double* __restrict to) {
   Wide total{};
   std::size_t cell = 0;
   for (; cell + kLanes <= count; cell += kLanes) {
-    const Wide by = lanes_at(change + cell).all;
-    lanes_at(to + cell).all += share * by;
-    total += by < 0.0 ? -by : by;
+    const Wide by = lanes_at<Wide>(change + cell);
+    store_lanes(lanes_at<Wide>(to + cell) + share * by, to + cell);
+    total += choose(by < 0.0, -by, by);
   }
+  double sums[kLanes];
+  store_lanes(total, sums);
   for (std::size_t lane = 0; cell < count; ++cell, ++lane) {
     to[cell] += share * change[cell];
-    total[lane] += std::abs(change[cell]);
+    sums[lane] += std::abs(change[cell]);
   }
-  sums = total;
+  return sum_of(lanes_at<Wide>(sums));
 }
 
 /// Slope and curvature of the complementary energy along a change.
@@ -122,25 +125,29 @@ struct Slope {
   double stiffness = 0.0;  // Pa m
 };
 
-TORSION_WIDEST
-void add_slope(std::size_t count, const double* __restrict target, const double* __restrict moved,
-               const double* __restrict change, const double* __restrict moves,
-               Wide& __restrict slopes, Wide& __restrict stiffnesses) {
+template <class Wide>
+TORSION_LANES void add_slope(std::size_t count, const double* __restrict target,
+                             const double* __restrict moved, const double* __restrict change,
+                             const double* __restrict moves, Slope& __restrict along) {
   Wide slope{};
   Wide stiffness{};
   std::size_t cell = 0;
   for (; cell + kLanes <= count; cell += kLanes) {
-    const Wide to = lanes_at(target + cell).all;
-    const Wide by = lanes_at(change + cell).all;
-    slope += by * (to > kNoContact ? to - lanes_at(moved + cell).all : Wide{});
-    stiffness += by * lanes_at(moves + cell).all;
+    const Wide to = lanes_at<Wide>(target + cell);
+    const Wide by = lanes_at<Wide>(change + cell);
+    slope += by * choose(to > kNoContact, to - lanes_at<Wide>(moved + cell), Wide{});
+    stiffness += by * lanes_at<Wide>(moves + cell);
   }
+  double slopes[kLanes];
+  double stiffnesses[kLanes];
+  store_lanes(slope, slopes);
+  store_lanes(stiffness, stiffnesses);
   for (std::size_t lane = 0; cell < count; ++cell, ++lane) {
-    slope[lane] += change[cell] * (target[cell] > kNoContact ? target[cell] - moved[cell] : 0.0);
-    stiffness[lane] += change[cell] * moves[cell];
+    slopes[lane] += change[cell] * (target[cell] > kNoContact ? target[cell] - moved[cell] : 0.0);
+    stiffnesses[lane] += change[cell] * moves[cell];
   }
-  slopes = slope;
-  stiffnesses = stiffness;
+  along.slope += sum_of(lanes_at<Wide>(slopes));
+  along.stiffness += sum_of(lanes_at<Wide>(stiffnesses));
 }
 
 /// Adds to the slope along the last step's change.
@@ -148,19 +155,13 @@ void add_slope(std::size_t count, const double* __restrict target, const double*
 /// @param change, moves  Pa, and the displacement that it causes, m
 void add_slope(std::span<const double> target, std::span<const double> moved,
                std::span<const double> change, std::span<const double> moves, Slope& along) {
-  Wide slopes;
-  Wide stiffnesses;
-  add_slope(target.size(), target.data(), moved.data(), change.data(), moves.data(), slopes,
-            stiffnesses);
-  along.slope += sum_of(slopes);
-  along.stiffness += sum_of(stiffnesses);
+  TORSION_IN_WIDEST(add_slope, target.size(), target.data(), moved.data(), change.data(),
+                    moves.data(), along);
 }
 
 /// @return the sum of the changes' sizes
 double extrapolate(double share, std::span<const double> change, std::span<double> to) {
-  Wide sums;
-  extrapolate(change.size(), share, change.data(), to.data(), sums);
-  return sum_of(sums);
+  return TORSION_IN_WIDEST(extrapolate, change.size(), share, change.data(), to.data());
 }
 
 /// The sums of sum_cells, in this order.
@@ -185,30 +186,31 @@ enum Sum : std::size_t {
   kSums
 };
 
-TORSION_WIDEST
-void add_up(std::size_t count, const PatchColumns& columns, const PatchPlaces& places,
-            double reference, std::array<Wide, kSums>& totals) {
+template <class Wide>
+TORSION_LANES void add_up_cells(std::size_t count, const PatchColumns& columns,
+                                const PatchPlaces& places, double reference,
+                                std::array<double, kSums>& totals) {
   const Wide one = Wide{} + 1.0;
   const Wide none{};
   const Wide half = none + reference;
   std::array<Wide, kSums> sums{};
   for (std::size_t cell = 0; cell < count; cell += kLanes) {
-    const Wide pressure = lanes_at(&columns.pressure[cell]).all;
-    const Wide x = lanes_at(&places.x[cell]).all;
-    const Wide y = lanes_at(&places.y[cell]).all;
-    const Wide moved_x = lanes_at(&columns.moved_x[cell]).all;
-    const Wide moved_y = lanes_at(&columns.moved_y[cell]).all;
-    const Wide traction_x = lanes_at(&columns.traction_x[cell]).all;
-    const Wide traction_y = lanes_at(&columns.traction_y[cell]).all;
+    const Wide pressure = lanes_at<Wide>(&columns.pressure[cell]);
+    const Wide x = lanes_at<Wide>(&places.x[cell]);
+    const Wide y = lanes_at<Wide>(&places.y[cell]);
+    const Wide moved_x = lanes_at<Wide>(&columns.moved_x[cell]);
+    const Wide moved_y = lanes_at<Wide>(&columns.moved_y[cell]);
+    const Wide traction_x = lanes_at<Wide>(&columns.traction_x[cell]);
+    const Wide traction_y = lanes_at<Wide>(&columns.traction_y[cell]);
     const Wide by_x = pressure * x;
     const Wide by_y = pressure * y;
-    const Wide loaded = pressure > 0.0 ? one : none;
-    const Wide covered = loaded * lanes_at(&places.share[cell]).all;
+    const Wide loaded = choose(pressure > 0.0, one, none);
+    const Wide covered = loaded * lanes_at<Wide>(&places.share[cell]);
     sums[kPressure] += pressure;
     sums[kPlaceX] += by_x;
     sums[kPlaceY] += by_y;
-    sums[kHeight] += pressure * lanes_at(&places.height[cell]).all;
-    sums[kDepth] += pressure * lanes_at(&columns.depth[cell]).all;
+    sums[kHeight] += pressure * lanes_at<Wide>(&places.height[cell]);
+    sums[kDepth] += pressure * lanes_at<Wide>(&columns.depth[cell]);
     sums[kMovedX] += pressure * moved_x;
     sums[kMovedY] += pressure * moved_y;
     sums[kMoment] += by_x * moved_y - by_y * moved_x;
@@ -221,28 +223,28 @@ void add_up(std::size_t count, const PatchColumns& columns, const PatchPlaces& p
     sums[kMiddle] += weight;
     sums[kMiddleX] += weight * x;
     sums[kMiddleY] += weight * y;
-    const Wide left_x = lanes_at(&columns.target_x[cell]).all - moved_x;
-    const Wide left_y = lanes_at(&columns.target_y[cell]).all - moved_y;
+    const Wide left_x = lanes_at<Wide>(&columns.target_x[cell]) - moved_x;
+    const Wide left_y = lanes_at<Wide>(&columns.target_y[cell]) - moved_y;
     Wide slide;
     slide_beyond_rounding(traction_x, traction_y, left_x, left_y, moved_x, moved_y, slide);
-    sums[kStuck] += covered * (slide > 0.0 ? one - lanes_at(&columns.slips[cell]).all : one);
+    sums[kStuck] += covered * choose(slide > 0.0, one - lanes_at<Wide>(&columns.slips[cell]), one);
   }
-  totals = sums;
+  for (std::size_t k = 0; k < kSums; ++k) {
+    totals[k] = sum_of(sums[k]);
+  }
 }
 
-/// The pressures, and how many there are.
-TORSION_WIDEST
-void add_up(std::size_t count, const double* __restrict pressures, Wide& __restrict total,
-            Wide& __restrict loaded) {
+/// The pressures' sum by the number of those above 0, or 0.
+template <class Wide>
+TORSION_LANES double mean_of_loaded(std::size_t count, const double* __restrict pressures) {
   Wide sums{};
   Wide counts{};
   for (std::size_t cell = 0; cell < count; cell += kLanes) {
-    const Wide pressure = lanes_at(pressures + cell).all;
+    const Wide pressure = lanes_at<Wide>(pressures + cell);
     sums += pressure;
-    counts += pressure > 0.0 ? Wide{} + 1.0 : Wide{};
+    counts += choose(pressure > 0.0, Wide{} + 1.0, Wide{});
   }
-  total = sums;
-  loaded = counts;
+  return sum_of(sums) / larger(sum_of(counts), 1.0);
 }
 
 }  // namespace
@@ -402,40 +404,38 @@ void take_off_support(std::span<const double> known, std::span<const double> sup
 
 PatchSums sum_cells(const PatchColumns& columns, const PatchPlaces& places, double cell_area,
                     double reference) {
-  std::array<Wide, kSums> totals;
-  add_up(whole_lanes(columns.pressure.size()), columns, places, reference, totals);
+  std::array<double, kSums> totals{};
+  TORSION_IN_WIDEST(add_up_cells, whole_lanes(columns.pressure.size()), columns, places, reference,
+                    totals);
   PatchSums sums;
-  const double pressure = sum_of(totals[kPressure]);
+  const double pressure = totals[kPressure];
   if (pressure <= 0.0) {
     return sums;
   }
   sums.force = pressure * cell_area;
-  sums.center = glm::dvec2(sum_of(totals[kPlaceX]), sum_of(totals[kPlaceY])) / pressure;
-  sums.height = sum_of(totals[kHeight]) / pressure;
-  sums.depth = sum_of(totals[kDepth]) / pressure;
-  sums.moved = glm::dvec2(sum_of(totals[kMovedX]), sum_of(totals[kMovedY])) / pressure;
-  const double moment = sum_of(totals[kMoment]) -
-                        pressure * (sums.center.x * sums.moved.y - sums.center.y * sums.moved.x);
+  sums.center = glm::dvec2(totals[kPlaceX], totals[kPlaceY]) / pressure;
+  sums.height = totals[kHeight] / pressure;
+  sums.depth = totals[kDepth] / pressure;
+  sums.moved = glm::dvec2(totals[kMovedX], totals[kMovedY]) / pressure;
+  const double moment =
+      totals[kMoment] - pressure * (sums.center.x * sums.moved.y - sums.center.y * sums.moved.x);
   const double second_moment =
-      sum_of(totals[kSecondMoment]) - pressure * glm::dot(sums.center, sums.center);
+      totals[kSecondMoment] - pressure * glm::dot(sums.center, sums.center);
   sums.turn = second_moment > 0.0 ? moment / second_moment : 0.0;
   // The columns' tractions act on the body.
-  sums.friction = -cell_area * glm::dvec2(sum_of(totals[kTractionX]), sum_of(totals[kTractionY]));
-  sums.couple = -cell_area * sum_of(totals[kCouple]);
-  sums.loaded_cells = sum_of(totals[kLoaded]);
-  const double weights = sum_of(totals[kMiddle]);
-  sums.middle = weights > 0.0
-                    ? glm::dvec2(sum_of(totals[kMiddleX]), sum_of(totals[kMiddleY])) / weights
-                    : sums.center;
-  sums.stuck_cells = sum_of(totals[kStuck]);
+  sums.friction = -cell_area * glm::dvec2(totals[kTractionX], totals[kTractionY]);
+  sums.couple = -cell_area * totals[kCouple];
+  sums.loaded_cells = totals[kLoaded];
+  const double weights = totals[kMiddle];
+  sums.middle =
+      weights > 0.0 ? glm::dvec2(totals[kMiddleX], totals[kMiddleY]) / weights : sums.center;
+  sums.stuck_cells = totals[kStuck];
   return sums;
 }
 
 double mean_pressure(const PatchColumns& columns) {
-  Wide total;
-  Wide loaded;
-  add_up(whole_lanes(columns.pressure.size()), columns.pressure.data(), total, loaded);
-  return sum_of(total) / larger(sum_of(loaded), 1.0);
+  return TORSION_IN_WIDEST(mean_of_loaded, whole_lanes(columns.pressure.size()),
+                           columns.pressure.data());
 }
 
 }  // namespace torsion::engine

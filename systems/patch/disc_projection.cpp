@@ -21,18 +21,18 @@ constexpr double kRounding = 1e-14;    // of the motions
 constexpr double kUphill = 0.5;        // of the slope downhill: then a step was too long
 constexpr double kTiny = 1e-300;       // keeps 0 / 0 away
 
-TORSION_WIDEST
-void find_load(std::size_t count, const double* place_x, const double* place_y, const double* x,
-               const double* y, std::array<Wide, 3>& totals) {
+template <class Wide>
+TORSION_LANES void find_load(std::size_t count, const double* place_x, const double* place_y,
+                             const double* x, const double* y, SurfaceLoad& load) {
   std::array<Wide, 3> sums{};
   for (std::size_t k = 0; k < count; k += kLanes) {
-    const Wide along_x = lanes_at(x + k).all;
-    const Wide along_y = lanes_at(y + k).all;
+    const Wide along_x = lanes_at<Wide>(x + k);
+    const Wide along_y = lanes_at<Wide>(y + k);
     sums[0] += along_x;
     sums[1] += along_y;
-    sums[2] += lanes_at(place_x + k).all * along_y - lanes_at(place_y + k).all * along_x;
+    sums[2] += lanes_at<Wide>(place_x + k) * along_y - lanes_at<Wide>(place_y + k) * along_x;
   }
-  totals = sums;
+  load = {sum_of(sums[0]), sum_of(sums[1]), sum_of(sums[2])};
 }
 
 TORSION_WIDEST
@@ -75,15 +75,15 @@ void project(std::size_t count, const SurfaceMotion& motion, const double* __res
 }
 
 /// Sums of the cells' responses to the motions x, y and turning: xx, xy, yy, xt, yt, tt.
-TORSION_WIDEST
-void add_answers(const DiscColumns& columns, std::array<Wide, 6>& totals) {
+template <class Wide>
+TORSION_LANES void add_answers(const DiscColumns& columns, std::array<double, 6>& totals) {
   std::array<Wide, 6> sums{};
   for (std::size_t k = 0; k < columns.place_x.size(); k += kLanes) {
-    const Wide x = lanes_at(&columns.place_x[k]).all;
-    const Wide y = lanes_at(&columns.place_y[k]).all;
-    const Wide xx = lanes_at(&columns.answer_xx[k]).all;
-    const Wide xy = lanes_at(&columns.answer_xy[k]).all;
-    const Wide yy = lanes_at(&columns.answer_yy[k]).all;
+    const Wide x = lanes_at<Wide>(&columns.place_x[k]);
+    const Wide y = lanes_at<Wide>(&columns.place_y[k]);
+    const Wide xx = lanes_at<Wide>(&columns.answer_xx[k]);
+    const Wide xy = lanes_at<Wide>(&columns.answer_xy[k]);
+    const Wide yy = lanes_at<Wide>(&columns.answer_yy[k]);
     const Wide turn_x = xy * x - xx * y;
     const Wide turn_y = yy * x - xy * y;
     sums[0] += xx;
@@ -93,16 +93,16 @@ void add_answers(const DiscColumns& columns, std::array<Wide, 6>& totals) {
     sums[4] += turn_y;
     sums[5] += x * turn_y - y * turn_x;
   }
-  totals = sums;
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    totals[k] = sum_of(sums[k]);
+  }
 }
 
 glm::dmat3 answers_of(const DiscColumns& columns) {
-  std::array<Wide, 6> totals;
-  add_answers(columns, totals);
-  const double xy = sum_of(totals[1]);
-  const double xt = sum_of(totals[3]);
-  const double yt = sum_of(totals[4]);
-  return {sum_of(totals[0]), xy, xt, xy, sum_of(totals[2]), yt, xt, yt, sum_of(totals[5])};
+  std::array<double, 6> totals{};
+  TORSION_IN_WIDEST(add_answers, columns, totals);
+  const auto [xx, xy, yy, xt, yt, tt] = totals;
+  return {xx, xy, xt, xy, yy, yt, xt, yt, tt};
 }
 
 /// Solves matrix x = right, with pivots: a body may be compliant along one motion alone, and a
@@ -171,9 +171,10 @@ void DiscColumns::reserve(std::size_t count) {
 }
 
 SurfaceLoad load_of(const DiscColumns& columns, const double* x, const double* y) {
-  std::array<Wide, 3> totals;
-  find_load(columns.place_x.size(), columns.place_x.data(), columns.place_y.data(), x, y, totals);
-  return {sum_of(totals[0]), sum_of(totals[1]), sum_of(totals[2])};
+  SurfaceLoad load(0.0);
+  TORSION_IN_WIDEST(find_load, columns.place_x.size(), columns.place_x.data(),
+                    columns.place_y.data(), x, y, load);
+  return load;
 }
 
 void take_off_motion(const DiscColumns& columns, const SurfaceMotion& motion, const double* from_x,

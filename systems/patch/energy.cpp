@@ -25,41 +25,42 @@ constexpr double kMostLent = 0.01;
 constexpr double kMostOwed = 0.01;
 
 struct EnergySums {
-  Wide stored{};  // Pa m: twice the energy of the tractions
-  Wide left{};    // Pa m: the tractions times what is left to do
+  double stored = 0.0;  // Pa m: twice the energy of the tractions
+  double left = 0.0;    // Pa m: the tractions times what is left to do
 };
 
 /// @param sunk  m: PatchSolution::sunk
 /// @param left_x, left_y, left_z  m: the displacements beyond their targets, out
-TORSION_WIDEST
-void add_up(std::size_t count, const PatchColumns& columns, const double* __restrict sunk,
-            double* __restrict left_x, double* __restrict left_y, double* __restrict left_z,
-            EnergySums& sums) {
-  EnergySums total;
+template <class Wide>
+TORSION_LANES EnergySums add_up_energy(std::size_t count, const PatchColumns& columns,
+                                       const double* __restrict sunk, double* __restrict left_x,
+                                       double* __restrict left_y, double* __restrict left_z) {
+  Wide stored{};
+  Wide left{};
   const Wide none{};
   const Wide one = none + 1.0;
   for (std::size_t cell = 0; cell < count; cell += kLanes) {
-    const Wide pressure = lanes_at(&columns.pressure[cell]).all;
-    const Wide traction_x = lanes_at(&columns.traction_x[cell]).all;
-    const Wide traction_y = lanes_at(&columns.traction_y[cell]).all;
-    const Wide down = lanes_at(&columns.depression[cell]).all;
-    const Wide moved_x = lanes_at(&columns.moved_x[cell]).all;
-    const Wide moved_y = lanes_at(&columns.moved_y[cell]).all;
-    const Wide sticks = one - lanes_at(&columns.slips[cell]).all;
-    const Wide gap = down + lanes_at(sunk + cell).all - lanes_at(&columns.depth[cell]).all;
+    const Wide pressure = lanes_at<Wide>(&columns.pressure[cell]);
+    const Wide traction_x = lanes_at<Wide>(&columns.traction_x[cell]);
+    const Wide traction_y = lanes_at<Wide>(&columns.traction_y[cell]);
+    const Wide down = lanes_at<Wide>(&columns.depression[cell]);
+    const Wide moved_x = lanes_at<Wide>(&columns.moved_x[cell]);
+    const Wide moved_y = lanes_at<Wide>(&columns.moved_y[cell]);
+    const Wide sticks = one - lanes_at<Wide>(&columns.slips[cell]);
+    const Wide gap = down + lanes_at<Wide>(sunk + cell) - lanes_at<Wide>(&columns.depth[cell]);
     // No branch inside a branch, which the compiler would take cell by cell.
-    const Wide overlap = gap < 0.0 ? gap : none;
-    const Wide apart = pressure > 0.0 ? gap - overlap : none;
+    const Wide overlap = choose(gap < 0.0, gap, none);
+    const Wide apart = choose(pressure > 0.0, gap - overlap, none);
     const Wide z = overlap + apart;
-    const Wide x = sticks * (moved_x - lanes_at(&columns.target_x[cell]).all);
-    const Wide y = sticks * (moved_y - lanes_at(&columns.target_y[cell]).all);
-    total.stored += pressure * down + traction_x * moved_x + traction_y * moved_y;
-    total.left += pressure * z + traction_x * x + traction_y * y;
-    lanes_at(left_x + cell).all = x;
-    lanes_at(left_y + cell).all = y;
-    lanes_at(left_z + cell).all = z;
+    const Wide x = sticks * (moved_x - lanes_at<Wide>(&columns.target_x[cell]));
+    const Wide y = sticks * (moved_y - lanes_at<Wide>(&columns.target_y[cell]));
+    stored += pressure * down + traction_x * moved_x + traction_y * moved_y;
+    left += pressure * z + traction_x * x + traction_y * y;
+    store_lanes(x, left_x + cell);
+    store_lanes(y, left_y + cell);
+    store_lanes(z, left_z + cell);
   }
-  sums = total;
+  return {sum_of(stored), sum_of(left)};
 }
 
 /// u' B u of displacements u with B the preconditioner, Pa m.
@@ -74,15 +75,15 @@ double preconditioned_product(const PatchProblem& problem, const LocalInverse& i
 double held_energy(const PatchSolution& solution, double cell_area) {
   const PatchProblem& problem = solution.problem;
   PatchWork& work = solution.work;
-  EnergySums sums;
-  add_up(whole_lanes(solution.columns.pressure.size()), solution.columns, solution.sunk.data(),
-         work.response_x.data(), work.response_y.data(), work.residual_x.data(), sums);
+  const EnergySums sums = TORSION_IN_WIDEST(
+      add_up_energy, whole_lanes(solution.columns.pressure.size()), solution.columns,
+      solution.sunk.data(), work.response_x.data(), work.response_y.data(), work.residual_x.data());
   const double product = preconditioned_product(problem, work.inverses.x, work.response_x, work) +
                          preconditioned_product(problem, work.inverses.y, work.response_y, work) +
                          preconditioned_product(problem, work.inverses.z, work.residual_x, work);
   const double stiffest = problem.coupled ? kStiffestCoupled : kStiffest;
   return solution.held_by_body +
-         cell_area * (0.5 * sum_of(sums.stored) - sum_of(sums.left) + 0.5 * stiffest * product);
+         cell_area * (0.5 * sums.stored - sums.left + 0.5 * stiffest * product);
 }
 
 /// A step's motion, measured with the region's stiffness.

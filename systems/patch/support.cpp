@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include <glm/geometric.hpp>
 #include <glm/mat2x2.hpp>
@@ -19,36 +18,37 @@ namespace {
 // A body's compliances over those of its contact (yielding_ratio), above which the solver takes
 // them into account.
 constexpr double kSoft = 0.5;
-using Half = double __attribute__((vector_size(sizeof(double) * kLanes / 2)));
 constexpr std::size_t kAxisColumn = kSupportColumn;
+constexpr std::size_t kTermsAtOnce = 5;  // whose sums all machines have registers for
+static_assert(kSupportTerms % kTermsAtOnce == 0);
 
 /// Moments of tractions with the terms, summed over the cells.
 /// @param cells    a multiple of kLanes, of terms and tractions
 /// @param moments  (kAxisColumn) out
-TORSION_WIDEST
-void find_moments(const double* __restrict terms, const double* __restrict traction,
-                  std::size_t cells, double* __restrict moments) {
-  Wide sums[kSupportTerms] = {};
-  for (std::size_t cell = 0; cell < cells; cell += kLanes) {
-    Wide load;
-    std::memcpy(&load, traction + cell, sizeof load);
-    for (std::size_t k = 0; k < kSupportTerms; ++k) {
-      Wide term;
-      std::memcpy(&term, terms + k * cells + cell, sizeof term);
-      sums[k] += term * load;
+template <class Wide>
+TORSION_LANES void find_moments(const double* __restrict terms, const double* __restrict traction,
+                                std::size_t cells, double* __restrict moments) {
+  for (std::size_t first = 0; first < kSupportTerms; first += kTermsAtOnce) {
+    Wide sums[kTermsAtOnce] = {};
+    for (std::size_t cell = 0; cell < cells; cell += kLanes) {
+      const Wide load = lanes_at<Wide>(traction + cell);
+      for (std::size_t k = 0; k < kTermsAtOnce; ++k) {
+        sums[k] += lanes_at<Wide>(terms + (first + k) * cells + cell) * load;
+      }
     }
-  }
-  for (std::size_t k = 0; k < kSupportTerms; ++k) {
-    const Half half = __builtin_shufflevector(sums[k], sums[k], 0, 1, 2, 3) +
-                      __builtin_shufflevector(sums[k], sums[k], 4, 5, 6, 7);
-    moments[k] = (half[0] + half[2]) + (half[1] + half[3]);
+    for (std::size_t k = 0; k < kTermsAtOnce; ++k) {
+      double at[kLanes];
+      store_lanes(sums[k], at);
+      moments[first + k] =
+          ((at[0] + at[4]) + (at[2] + at[6])) + ((at[1] + at[5]) + (at[3] + at[7]));
+    }
   }
 }
 
 /// polynomials = response times moments.
-TORSION_WIDEST
-void respond(const double* __restrict response, const double* __restrict moments,
-             double* __restrict polynomials) {
+template <class Wide>
+TORSION_LANES void respond(const double* __restrict response, const double* __restrict moments,
+                           double* __restrict polynomials) {
   constexpr std::size_t kVectors = 3 * kAxisColumn / kLanes;
   Wide sums[kVectors] = {};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -56,28 +56,25 @@ void respond(const double* __restrict response, const double* __restrict moments
       const double moment = moments[axis * kAxisColumn + k];
       const double* const column = response + (axis * kAxisColumn + k) * 3 * kAxisColumn;
       for (std::size_t row = 0; row < kVectors; ++row) {
-        Wide value;
-        std::memcpy(&value, column + row * kLanes, sizeof value);
-        sums[row] += moment * value;
+        sums[row] += moment * lanes_at<Wide>(column + row * kLanes);
       }
     }
   }
-  std::memcpy(polynomials, sums, sizeof sums);
+  for (std::size_t row = 0; row < kVectors; ++row) {
+    store_lanes(sums[row], polynomials + row * kLanes);
+  }
 }
 
 /// displacements += the sum of the terms times their values.
-TORSION_WIDEST
-void add_terms(const double* __restrict terms, const double* __restrict values, std::size_t cells,
-               double* __restrict displacements) {
+template <class Wide>
+TORSION_LANES void add_terms(const double* __restrict terms, const double* __restrict values,
+                             std::size_t cells, double* __restrict displacements) {
   for (std::size_t cell = 0; cell < cells; cell += kLanes) {
-    Wide sum;
-    std::memcpy(&sum, displacements + cell, sizeof sum);
+    Wide sum = lanes_at<Wide>(displacements + cell);
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
-      Wide term;
-      std::memcpy(&term, terms + k * cells + cell, sizeof term);
-      sum += values[k] * term;
+      sum += values[k] * lanes_at<Wide>(terms + k * cells + cell);
     }
-    std::memcpy(displacements + cell, &sum, sizeof sum);
+    store_lanes(sum, displacements + cell);
   }
 }
 
@@ -282,7 +279,7 @@ SupportMotion support_by(const PatchSupport& support, const PatchField& traction
     }
     const glm::dvec3 way = support.area * support.to_body[axis];
     std::array<double, kAxisColumn> sums{};
-    find_moments(support.terms.data(), along.data(), support.cells, sums.data());
+    TORSION_IN_WIDEST(find_moments, support.terms.data(), along.data(), support.cells, sums.data());
     for (std::size_t k = 0; k < kSupportTerms; ++k) {
       moments[k] += way.x * sums[k];
       moments[kAxisColumn + k] += way.y * sums[k];
@@ -290,7 +287,8 @@ SupportMotion support_by(const PatchSupport& support, const PatchField& traction
     }
   }
   SupportMotion motion;
-  respond(support.response->terms.data(), moments.data(), motion.polynomials.data());
+  TORSION_IN_WIDEST(respond, support.response->terms.data(), moments.data(),
+                    motion.polynomials.data());
   for (std::size_t k = 0; k < moments.size(); ++k) {
     motion.energy += 0.5 * moments[k] * motion.polynomials[k];
   }
@@ -340,7 +338,7 @@ void add_polynomials(const PatchSupport& support, const SupportPolynomials& poly
       values[k] = way.x * polynomials[k] + way.y * polynomials[kAxisColumn + k] +
                   way.z * polynomials[2 * kAxisColumn + k];
     }
-    add_terms(support.terms.data(), values.data(), support.cells, along.data());
+    TORSION_IN_WIDEST(add_terms, support.terms.data(), values.data(), support.cells, along.data());
   }
 }
 

@@ -95,65 +95,66 @@ void mix_directions(std::size_t count, const DirectionShares& shares,
   }
 }
 
-TORSION_WIDEST
-void add_up_step(const TractionColumns& cells, TractionStep& __restrict step) {
+template <class Wide>
+TORSION_LANES void add_up_step(const TractionColumns& cells, TractionStep& __restrict step) {
   Wide slope{};
   Wide slipped{};
   Wide clipped{};
   const Wide none{};
   for (std::size_t k = 0; k < cells.count; k += kLanes) {
-    const Wide left_x = lanes_at(cells.target_x + k).all - lanes_at(cells.moved_x + k).all;
-    const Wide left_y = lanes_at(cells.target_y + k).all - lanes_at(cells.moved_y + k).all;
-    const Wide slips = lanes_at(cells.slips + k).all;
-    const Wide clips = lanes_at(cells.clips + k).all;
-    const Wide has_converged = slips > clips ? slips : clips;
-    slope +=
-        left_x * lanes_at(cells.direction_x + k).all + left_y * lanes_at(cells.direction_y + k).all;
-    slipped += lanes_at(cells.limit + k).all > 0.0 ? has_converged : none;
+    const Wide left_x = lanes_at<Wide>(cells.target_x + k) - lanes_at<Wide>(cells.moved_x + k);
+    const Wide left_y = lanes_at<Wide>(cells.target_y + k) - lanes_at<Wide>(cells.moved_y + k);
+    const Wide slips = lanes_at<Wide>(cells.slips + k);
+    const Wide clips = lanes_at<Wide>(cells.clips + k);
+    const Wide has_converged = choose(slips > clips, slips, clips);
+    slope += left_x * lanes_at<Wide>(cells.direction_x + k) +
+             left_y * lanes_at<Wide>(cells.direction_y + k);
+    slipped += choose(lanes_at<Wide>(cells.limit + k) > 0.0, has_converged, none);
     clipped += (1.0 - slips) * clips;
   }
   step = {sum_of(slope), sum_of(slipped), sum_of(clipped)};
 }
 
-TORSION_WIDEST
-double slope_of(const TractionColumns& cells, const double* x, const double* y) {
+template <class Wide>
+TORSION_LANES double slope_of(const TractionColumns& cells, const double* x, const double* y) {
   Wide slope{};
   for (std::size_t k = 0; k < cells.count; k += kLanes) {
     // The remaining distance is small beside the distance: subtract first.
-    const Wide left_x = lanes_at(cells.target_x + k).all - lanes_at(cells.moved_x + k).all;
-    const Wide left_y = lanes_at(cells.target_y + k).all - lanes_at(cells.moved_y + k).all;
-    slope += left_x * lanes_at(x + k).all + left_y * lanes_at(y + k).all;
+    const Wide left_x = lanes_at<Wide>(cells.target_x + k) - lanes_at<Wide>(cells.moved_x + k);
+    const Wide left_y = lanes_at<Wide>(cells.target_y + k) - lanes_at<Wide>(cells.moved_y + k);
+    slope += left_x * lanes_at<Wide>(x + k) + left_y * lanes_at<Wide>(y + k);
   }
   return sum_of(slope);
 }
 
 /// @return the largest excess of a traction's square over its limit's square, Pa^2
-TORSION_WIDEST
-double limits(std::size_t count, const double* __restrict pressure,
-              const double* __restrict friction, const double* __restrict traction_x,
-              const double* __restrict traction_y, double* __restrict limit) {
+template <class Wide>
+TORSION_LANES double limits(std::size_t count, const double* __restrict pressure,
+                            const double* __restrict friction, const double* __restrict traction_x,
+                            const double* __restrict traction_y, double* __restrict limit) {
   Wide most{};
   for (std::size_t k = 0; k < count; k += kLanes) {
-    const Wide x = lanes_at(traction_x + k).all;
-    const Wide y = lanes_at(traction_y + k).all;
-    const Wide radius = lanes_at(friction + k).all * lanes_at(pressure + k).all;
+    const Wide x = lanes_at<Wide>(traction_x + k);
+    const Wide y = lanes_at<Wide>(traction_y + k);
+    const Wide radius = lanes_at<Wide>(friction + k) * lanes_at<Wide>(pressure + k);
     const Wide over = (x * x + y * y) - kInside * radius * radius;
-    lanes_at(limit + k).all = radius;
-    most = over > most ? over : most;
+    store_lanes(radius, limit + k);
+    most = choose(over > most, over, most);
   }
   return largest_of(most);
 }
 
-TORSION_WIDEST
-void change_both(const TractionColumns& cells, double alpha, IterationChange& __restrict change) {
+template <class Wide>
+TORSION_LANES void change_both(const TractionColumns& cells, double alpha,
+                               IterationChange& __restrict change) {
   Wide most{};
   Wide sums{};
-  const auto go = [&most, &sums, alpha](double* step, double* to) {
-    const Wide way = alpha * lanes_at(step).all;
-    lanes_at(step).all = way;
-    lanes_at(to).all += way;
-    const Wide size = way < 0.0 ? -way : way;
-    most = size > most ? size : most;
+  const auto go = [&most, &sums, alpha ](double* step, double* to) __attribute__((always_inline)) {
+    const Wide way = alpha * lanes_at<Wide>(step);
+    store_lanes(way, step);
+    store_lanes(lanes_at<Wide>(to) + way, to);
+    const Wide size = choose(way < 0.0, -way, way);
+    most = choose(size > most, size, most);
     sums += size;
   };
   for (std::size_t k = 0; k < cells.count; k += kLanes) {
@@ -196,14 +197,14 @@ void find_lacking(std::size_t count, double stiffness, const double* __restrict 
 }
 
 /// Sum of (friction's coefficient times depth)^2 over the cells with pressure.
-TORSION_WIDEST
-double slip_scale(std::size_t count, const double* __restrict pressure,
-                  const double* __restrict friction, const double* __restrict depth) {
+template <class Wide>
+TORSION_LANES double slip_scale(std::size_t count, const double* __restrict pressure,
+                                const double* __restrict friction, const double* __restrict depth) {
   Wide sums{};
   const Wide none{};
   for (std::size_t k = 0; k < count; k += kLanes) {
-    const Wide deep = lanes_at(pressure + k).all > 0.0 ? lanes_at(depth + k).all : none;
-    const Wide slip = lanes_at(friction + k).all * deep;
+    const Wide deep = choose(lanes_at<Wide>(pressure + k) > 0.0, lanes_at<Wide>(depth + k), none);
+    const Wide slip = lanes_at<Wide>(friction + k) * deep;
     sums += slip * slip;
   }
   return sum_of(sums);
@@ -212,8 +213,8 @@ double slip_scale(std::size_t count, const double* __restrict pressure,
 }  // namespace
 
 bool find_limits(const TractionColumns& cells) {
-  return limits(cells.count, cells.pressure, cells.friction, cells.traction_x, cells.traction_y,
-                cells.limit) > 0.0;
+  return TORSION_IN_WIDEST(limits, cells.count, cells.pressure, cells.friction, cells.traction_x,
+                           cells.traction_y, cells.limit) > 0.0;
 }
 
 void find_residuals(const TractionColumns& cells, double stiffness) {
@@ -231,17 +232,17 @@ TractionStep next_traction_direction(const TractionColumns& cells, const Directi
                  cells.preconditioned_x, cells.preconditioned_y, cells.along_x, cells.along_y,
                  cells.softened, cells.direction_x, cells.direction_y, cells.clips);
   TractionStep step;
-  add_up_step(cells, step);
+  TORSION_IN_WIDEST(add_up_step, cells, step);
   return step;
 }
 
 double slope_along(const TractionColumns& cells, const double* x, const double* y) {
-  return slope_of(cells, x, y);
+  return TORSION_IN_WIDEST(slope_of, cells, x, y);
 }
 
 IterationChange step_tractions(const TractionColumns& cells, double alpha) {
   IterationChange change;
-  change_both(cells, alpha, change);
+  TORSION_IN_WIDEST(change_both, cells, alpha, change);
   add_scaled(cells.count, alpha, cells.response_x, cells.moved_x);
   add_scaled(cells.count, alpha, cells.response_y, cells.moved_y);
   return change;
@@ -253,7 +254,7 @@ TractionResidual traction_residual(const TractionColumns& cells, const double* d
                cells.target_x, cells.target_y, cells.moved_x, cells.moved_y, cells.residual_x,
                cells.residual_y);
   return {dot(cells.count, cells.residual_x, cells.residual_y, cells.residual_x, cells.residual_y),
-          slip_scale(cells.count, cells.pressure, cells.friction, depth)};
+          TORSION_IN_WIDEST(slip_scale, cells.count, cells.pressure, cells.friction, depth)};
 }
 
 void clear_false_slip(const TractionColumns& cells) {

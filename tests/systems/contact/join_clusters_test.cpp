@@ -105,7 +105,7 @@ TEST(JoinClustersTest, ACylinderAlongACylinderIsOneRegionFromTheFirst) {
   constexpr double kColumn = 0.07;  // m, radii
   constexpr double kRoller = 0.03;
   constexpr double kClear = 1e-8;  // m
-  constexpr double kDepth = 2e-5;
+  constexpr double kPressedBy = 2e-5;
   for (const bool as_mesh : {false, true}) {
     for (const ContactModel contact :
          {ContactModel::kPaper, ContactModel::kMdr, ContactModel::kPatch}) {
@@ -121,7 +121,7 @@ TEST(JoinClustersTest, ACylinderAlongACylinderIsOneRegionFromTheFirst) {
         ASSERT_EQ(hand.world().state.regions.size(), 0U);
         hand.move({-kClear, 0.0, 0.0}, up, 0.0, 1);
         for (int step = 1; step <= 100; ++step) {
-          hand.move({-kDepth / 100.0, 0.0, 0.0}, up, 0.0, 1);
+          hand.move({-kPressedBy / 100.0, 0.0, 0.0}, up, 0.0, 1);
           // The distance field of a mesh is a micrometre off.
           if (!as_mesh || step > 10) {
             ASSERT_EQ(hand.world().state.regions.size(), 1U)

@@ -96,28 +96,4 @@ void set_targets(const RegionMotion& motion, const PatchPlaces& places,
 void take_off_support(std::span<const double> known, std::span<const double> support_x,
                       std::span<const double> support_y, const PatchColumns& columns);
 
-/// Sums over the cells, in the grid's frame. What is weighted with the pressure is zero without.
-struct PatchSums {
-  double force = 0.0;         // N
-  glm::dvec2 center{0.0};     // m: of the pressure
-  double height = 0.0;        // m: the tool's, weighted with the pressure
-  double depth = 0.0;         // m: likewise
-  glm::dvec2 moved{0.0};      // m: displacement, likewise
-  double turn = 0.0;          // rad: of the surface about `center`, likewise
-  glm::dvec2 friction{0.0};   // N, on the tool
-  double couple = 0.0;        // N m about the grid's origin
-  double loaded_cells = 0.0;  // with the share of each that is in contact
-  // m: theirs, those of small pressure less, so that it does not jump as they come and go
-  glm::dvec2 middle{0.0};
-  double stuck_cells = 0.0;
-};
-
-/// @param cell_area  m^2
-/// @param reference  Pa: typical pressure
-PatchSums sum_cells(const PatchColumns& columns, const PatchPlaces& places, double cell_area,
-                    double reference);
-
-/// The mean of the pressures that there are, Pa; 0 without.
-double mean_pressure(const PatchColumns& columns);
-
 }  // namespace torsion::engine

@@ -11,6 +11,7 @@
 #include "systems/contact/stick_slip.hpp"
 #include "systems/contact/tool_motion.hpp"
 #include "systems/math/frames.hpp"
+#include "systems/patch/cell_sums.hpp"
 #include "systems/patch/cells.hpp"
 #include "systems/patch/energy.hpp"
 #include "systems/patch/grid.hpp"

@@ -7,6 +7,7 @@
 #include <glm/exponential.hpp>
 
 #include "systems/contact/tool_motion.hpp"
+#include "systems/math/frames.hpp"
 #include "systems/patch/grid.hpp"
 #include "systems/patch/loaded_cells.hpp"
 

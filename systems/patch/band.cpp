@@ -8,6 +8,7 @@
 
 #include "systems/contact/region_grid.hpp"
 #include "systems/half_space/influence.hpp"
+#include "systems/math/frames.hpp"
 #include "systems/patch/grid.hpp"
 #include "systems/patch/growth.hpp"
 #include "systems/patch/overlap_pass.hpp"

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "systems/contact/region_grid.hpp"
+#include "systems/math/frames.hpp"
 
 namespace torsion::engine {
 namespace {

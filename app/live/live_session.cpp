@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "device/scripted_motion.hpp"
 #include "ecs/assert.hpp"
 #include "ecs/hash.hpp"
 #include "systems/hold/virtual_coupling.hpp"

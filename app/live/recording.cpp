@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "device/scripted_motion.hpp"
 #include "ecs/assert.hpp"
 #include "ecs/hash.hpp"
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "device/protocols/falcon.hpp"
+
 namespace torsion::engine {
 namespace {
 

@@ -99,16 +99,16 @@ struct LaneAccess {
     Vector all;
   };
 
-  __attribute__((always_inline)) static inline void load(const double* from, Vector& to) {
+  TORSION_LANES void load(const double* from, Vector& to) {
     to = reinterpret_cast<const Loose*>(from)->all;
   }
 
-  __attribute__((always_inline)) static inline void store(const Vector& from, double* to) {
+  TORSION_LANES void store(const Vector& from, double* to) {
     reinterpret_cast<Loose*>(to)->all = from;
   }
 
   /// Neighbours first, then pairs.
-  __attribute__((always_inline)) static inline double sum(const Vector& of) {
+  TORSION_LANES double sum(const Vector& of) {
     if constexpr (kCount == 2) {
       return of[0] + of[1];
     } else if constexpr (kCount == 4) {
@@ -118,7 +118,7 @@ struct LaneAccess {
     }
   }
 
-  __attribute__((always_inline)) static inline double largest(const Vector& of, double most) {
+  TORSION_LANES double largest(const Vector& of, double most) {
     for (std::size_t lane = 0; lane < kCount; ++lane) {
       most = of[lane] > most ? of[lane] : most;
     }
@@ -131,22 +131,21 @@ struct LaneAccess<LanePair<Half>> {
   static constexpr std::size_t kHalf = sizeof(Half) / sizeof(double);
   using HalfAccess = LaneAccess<Half>;
 
-  __attribute__((always_inline)) static inline void load(const double* from, LanePair<Half>& to) {
+  TORSION_LANES void load(const double* from, LanePair<Half>& to) {
     HalfAccess::load(from, to.low);
     HalfAccess::load(from + kHalf, to.high);
   }
 
-  __attribute__((always_inline)) static inline void store(const LanePair<Half>& from, double* to) {
+  TORSION_LANES void store(const LanePair<Half>& from, double* to) {
     HalfAccess::store(from.low, to);
     HalfAccess::store(from.high, to + kHalf);
   }
 
-  __attribute__((always_inline)) static inline double sum(const LanePair<Half>& of) {
+  TORSION_LANES double sum(const LanePair<Half>& of) {
     return HalfAccess::sum(of.low) + HalfAccess::sum(of.high);
   }
 
-  __attribute__((always_inline)) static inline double largest(const LanePair<Half>& of,
-                                                              double most) {
+  TORSION_LANES double largest(const LanePair<Half>& of, double most) {
     return HalfAccess::largest(of.high, HalfAccess::largest(of.low, most));
   }
 };
